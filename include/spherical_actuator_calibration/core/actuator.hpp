@@ -72,8 +72,8 @@ struct AxisAngles {
   double azimuth = 0.0;
 };
 
-/// Inverse of axisFromAngles. The azimuth is the one nearest to `azimuth_hint`, so that 5.5 stays 5.5;
-/// on the axis itself (polar = ±π/2), where it is undefined, it is the hint.
+/// Inverse of axisFromAngles. The azimuth is the one nearest to `azimuth_hint`, so that 5.5
+/// stays 5.5; on the axis itself (polar = ±π/2), where it is undefined, it is the hint.
 AxisAngles anglesFromAxis(const Eigen::Vector3d& axis, double azimuth_hint);
 
 }  // namespace spherical_actuator_calibration

@@ -12,13 +12,15 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A description, configuration or option is wrong: the message names file, line and key where known.
+/// A description, configuration or option is wrong: the message names file, line and key where
+/// known.
 class ConfigError : public Error {
  public:
   using Error::Error;
 };
 
-/// Measured data cannot be used as given (wrong size, not finite, another unit's serial, unreadable).
+/// Measured data cannot be used as given (wrong size, not finite, another unit's serial,
+/// unreadable).
 class DataError : public Error {
  public:
   using Error::Error;

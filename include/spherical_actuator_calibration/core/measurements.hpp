@@ -13,8 +13,8 @@ struct JointMeasurement {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
-/// Measured rotor orientation (topic measured_orientation). The quaternion maps rotor coordinates to
-/// stator coordinates; it need not be normalised yet.
+/// Measured rotor orientation (topic measured_orientation). The quaternion maps rotor coordinates
+/// to stator coordinates; it need not be normalised yet.
 struct OrientationMeasurement {
   Stamp stamp = 0;
   Eigen::Quaterniond q_stator_rotor = Eigen::Quaterniond::Identity();

@@ -13,8 +13,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 /// Exponential map of SO(3), e^{v̂}: rotation by ‖v‖ [rad] about v. Defined for every finite v.
 Eigen::Matrix3d rotationExp(const Eigen::Vector3d& v);
 
-/// Logarithm of SO(3), the rotation vector ln(R)^∨ [rad] with norm in [0, π]. `R` must be a rotation
-/// matrix. At an angle of exactly π either of the two signs may be returned.
+/// Logarithm of SO(3), the rotation vector ln(R)^∨ [rad] with norm in [0, π]. `R` must be a
+/// rotation matrix. At an angle of exactly π either of the two signs may be returned.
 Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R);
 
 /// Left Jacobian J_l(v) of SO(3): e^{(v+δ)^} ≈ e^{(J_l(v) δ)^} e^{v̂} (METHOD section 2, below (8)).

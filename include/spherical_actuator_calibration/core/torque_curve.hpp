@@ -39,7 +39,8 @@ class TorqueCurve {
   double value(double psi) const;
   /// df/dψ [N·m/(A·rad)], ψ in [0, π] rad.
   double derivative(double psi) const;
-  /// h and dh/dκ for two unit axes with κ = r·s and sin ψ = ‖r×s‖. Finite for every pair, also ψ = 0.
+  /// h and dh/dκ for two unit axes with κ = r·s and sin ψ = ‖r×s‖. Finite for every pair, also ψ =
+  /// 0.
   Safe safe(double kappa, double sin_psi) const;
 
   /// Angles [rad] between which the curve is the polynomial, and beyond which it is zero.
