@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/core/parameter_space.hpp"
+#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/core/torque_curve.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// One coil that carries current during a sample.
+struct Excitation {
+  std::size_t coil = 0;  ///< counted from 0
+  double current = 0.0;  ///< [A]
+};
+
+/// Coils of a sample whose measured |current| reaches `threshold` [A]; the others count as off.
+std::vector<Excitation> excitedCoils(const Sample& sample, double threshold);
+
+/// Where a residual function writes a block of its Jacobian: 3 rows, row-major, `stride` doubles
+/// from row to row. Not wanted when `data` is null.
+struct JacobianBlock {
+  double* data = nullptr;
+  Eigen::Index stride = 0;
+};
+
+/// Residuals of samples as functions of the coordinates of a ParameterSpace, with analytic
+/// Jacobians. The coordinates come as pointers to the blocks (joints: 9, poles: 2m, one coil: 2),
+/// because that is how a solver holds them; a whole coordinate vector is such a set of blocks, too.
+class CalibrationModel {
+ public:
+  explicit CalibrationModel(ParameterSpace space);
+
+  const ParameterSpace& space() const { return space_; }
+  bool hasTorqueModel() const { return curve_.has_value(); }
+  /// Precondition: hasTorqueModel().
+  const TorqueCurve& curve() const { return *curve_; }
+
+  /// y = ln(R_a R(q)ᵀ)^∨ [rad], stator frame (METHOD (12–14)); ∂y/∂joints = −J_r⁻¹(y) ∂ξ/∂joints.
+  Eigen::Vector3d orientationResidual(const Sample& sample,
+                                      const double* joints,
+                                      JacobianBlock d_joints = {}) const;
+
+  /// Blocks that a torque residual depends on; `coils` and `d_coils` go along with its excitations.
+  struct TorqueBlocks {
+    const double* joints = nullptr;
+    const double* poles = nullptr;
+    const double* const* coils = nullptr;
+    JacobianBlock d_joints;
+    JacobianBlock d_poles;
+    const JacobianBlock* d_coils = nullptr;  ///< null when none is wanted
+  };
+
+  /// T_measured − T_model [N·m], rotor frame (paper (21), METHOD section 3). Precondition:
+  /// hasTorqueModel().
+  Eigen::Vector3d torqueResidual(const Sample& sample,
+                                 const std::vector<Excitation>& excitations,
+                                 const TorqueBlocks& blocks) const;
+
+ private:
+  ParameterSpace space_;
+  std::optional<TorqueCurve> curve_;
+};
+
+}  // namespace spherical_actuator_calibration

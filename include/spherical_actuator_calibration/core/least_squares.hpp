@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/core/estimation_problem.hpp"
+#include "spherical_actuator_calibration/core/linearization.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// How much a misfit counts.
+enum class Loss {
+  kSquared,
+  kHuber,   ///< linear beyond the transition: converges from afar
+  kCauchy,  ///< fades beyond the transition: gross errors lose their pull
+};
+
+/// One nonlinear least-squares solution over chosen observations and coordinates.
+struct LeastSquaresInput {
+  const EstimationProblem* problem = nullptr;
+  const ObservationEvaluator* evaluator = nullptr;
+  const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< per observation
+  std::vector<bool> active;                                 ///< per observation
+  std::vector<bool> free;                                   ///< per coordinate
+  Eigen::VectorXd start;                                    ///< all coordinates
+  Loss loss = Loss::kSquared;
+  double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
+  int max_iterations = 50;
+};
+
+struct LeastSquaresResult {
+  Termination termination = Termination::kNumericalFailure;
+  std::vector<Eigen::VectorXd>
+      path;                 ///< coordinates at the start and after each accepted iteration
+  double solve_time = 0.0;  ///< [s]
+
+  const Eigen::VectorXd& solution() const { return path.back(); }
+};
+
+/// Minimises Σ ρ(‖W r(x)‖²) by Levenberg–Marquardt (Ceres), analytic Jacobians, one thread, so that
+/// the same input gives the same bits.
+LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
+
+}  // namespace spherical_actuator_calibration

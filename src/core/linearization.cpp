@@ -1,0 +1,119 @@
+#include "spherical_actuator_calibration/core/linearization.hpp"
+
+#include <numeric>
+
+#include <boost/container/small_vector.hpp>
+
+namespace spherical_actuator_calibration {
+
+ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
+                                           const EstimationOptions& options)
+    : problem_(problem),
+      options_(options),
+      excitations_(problem.observations.size()),
+      prior_is_exact_(problem.prior.covariance.isZero(0.0)) {
+  for (std::size_t n = 0; n < problem.observations.size(); ++n) {
+    if (problem.observations[n].quantity == Quantity::kTorque) {
+      excitations_[n] = excitedCoils((*problem.samples)[problem.observations[n].sample],
+                                     options.current_threshold);
+    }
+  }
+}
+
+Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
+                                               const Eigen::VectorXd& x) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  if (what.quantity == Quantity::kOrientation) {
+    return problem_.model->orientationResidual(sample, x.data());
+  }
+  boost::container::small_vector<const double*, 8> coils;
+  for (const Excitation& excitation : excitations_[observation]) {
+    coils.push_back(x.data() + space.coil(excitation.coil));
+  }
+  CalibrationModel::TorqueBlocks blocks;
+  blocks.joints = x.data();
+  blocks.poles = x.data() + space.pole(0);
+  blocks.coils = coils.data();
+  return problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+}
+
+void ObservationEvaluator::linearize(std::size_t observation,
+                                     const Eigen::VectorXd& x,
+                                     LinearizedObservation& out) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  const Eigen::Index size = space.size();
+  out.jacobian.setZero(3, size);
+  const auto block = [&](Eigen::Index first) {
+    return JacobianBlock{out.jacobian.data() + first, size};
+  };
+  if (what.quantity == Quantity::kOrientation) {
+    out.columns.resize(static_cast<std::size_t>(space.pole(0)));
+    std::iota(out.columns.begin(), out.columns.end(), Eigen::Index{0});
+    out.residual = problem_.model->orientationResidual(sample, x.data(), block(0));
+    return;
+  }
+  out.columns.resize(static_cast<std::size_t>(space.coil(0)));
+  std::iota(out.columns.begin(), out.columns.end(), Eigen::Index{0});
+  boost::container::small_vector<const double*, 8> coils;
+  boost::container::small_vector<JacobianBlock, 8> d_coils;
+  for (const Excitation& excitation : excitations_[observation]) {
+    const Eigen::Index first = space.coil(excitation.coil);
+    coils.push_back(x.data() + first);
+    d_coils.push_back(block(first));
+    out.columns.push_back(first);
+    out.columns.push_back(first + 1);
+  }
+  CalibrationModel::TorqueBlocks blocks;
+  blocks.joints = x.data();
+  blocks.poles = x.data() + space.pole(0);
+  blocks.coils = coils.data();
+  blocks.d_joints = block(0);
+  blocks.d_poles = block(space.pole(0));
+  blocks.d_coils = d_coils.data();
+  out.residual = problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+}
+
+ObservationCovariance ObservationEvaluator::covariance(std::size_t observation,
+                                                       const LinearizedObservation& linear,
+                                                       const std::vector<bool>& held) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  const bool is_orientation = what.quantity == Quantity::kOrientation;
+  const double stated = is_orientation ? sample.orientation_stddev : sample.torque_stddev;
+  const double fallback =
+      is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
+  const double stddev = stated > 0.0 ? stated : fallback;
+
+  ObservationCovariance covariance;
+  covariance.noise = stddev * stddev * Eigen::Matrix3d::Identity();
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    // A joint sensor's error acts as an offset of that joint does.
+    const double joint_stddev = sample.joint_stddev[static_cast<Eigen::Index>(k)];
+    const Eigen::Vector3d effect = joint_stddev * linear.jacobian.col(space.joint(k));
+    covariance.noise += effect * effect.transpose();
+  }
+  covariance.total = covariance.noise;
+  if (prior_is_exact_) {
+    return covariance;
+  }
+  for (const Eigen::Index a : linear.columns) {
+    if (!held[static_cast<std::size_t>(a)]) {
+      continue;
+    }
+    Eigen::Vector3d effect = Eigen::Vector3d::Zero();
+    for (const Eigen::Index b : linear.columns) {
+      if (held[static_cast<std::size_t>(b)]) {
+        effect += linear.jacobian.col(b) * problem_.prior.covariance(b, a);
+      }
+    }
+    covariance.total += linear.jacobian.col(a) * effect.transpose();
+  }
+  return covariance;
+}
+
+}  // namespace spherical_actuator_calibration
