@@ -6,6 +6,9 @@
 #include <map>
 #include <optional>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
 #include "spherical_actuator_calibration/core/torque_model.hpp"
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+
+#include <Eigen/Core>
+
+namespace spherical_actuator_calibration {
+
+/// Jacobian of f at x by central differences, fourth order; error about 1e-10 for smooth f of
+/// size 1.
+inline Eigen::MatrixXd numericJacobian(
+    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x) {
+  constexpr double kStep = 1e-3;
+  Eigen::MatrixXd jacobian(f(x).size(), x.size());
+  for (Eigen::Index c = 0; c < x.size(); ++c) {
+    const auto at = [&](double step) {
+      Eigen::VectorXd moved = x;
+      moved[c] += step;
+      return f(moved);
+    };
+    jacobian.col(c) =
+        (8.0 * (at(kStep) - at(-kStep)) - (at(2.0 * kStep) - at(-2.0 * kStep))) / (12.0 * kStep);
+  }
+  return jacobian;
+}
+
+}  // namespace spherical_actuator_calibration
