@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/dwell_detector.hpp"
+#include "spherical_actuator_calibration/core/measurements.hpp"
+#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/core/sample_builder_options.hpp"
+#include "spherical_actuator_calibration/core/sample_builder_report.hpp"
+#include "spherical_actuator_calibration/core/stamp_filter.hpp"
+#include "spherical_actuator_calibration/core/stream_buffer.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// Makes samples out of streams of stamped measurements: one per dwell and current pattern.
+///
+/// The samples depend on the measurements and their stamps only, not on how the streams interleave
+/// on arrival, as long as no stream is behind another by `stream_timeout` and no clock is reset. A
+/// dwell is evaluated when every stream has passed its end, or when the newest stamp of any stream
+/// has passed it by `stream_timeout`. Memory is bounded by `largest_dwell`.
+///
+/// A reset of a stream's clock ends the present dwell of all streams and forgets what they held.
+class SampleBuilder {
+ public:
+  /// `coils`: number of coils; with 0, currents are ignored. Throws ConfigError when the options
+  /// are not valid.
+  SampleBuilder(const SampleBuilderOptions& options, std::size_t coils);
+  SampleBuilder(const SampleBuilder&) = delete;
+  SampleBuilder& operator=(const SampleBuilder&) = delete;
+
+  void add(const JointMeasurement& measurement);
+  void add(const OrientationMeasurement& measurement);
+  void add(const TorqueMeasurement& measurement);
+  void add(const CurrentMeasurement& measurement);
+
+  /// No more measurements follow: evaluates what is left. Measurements may be added afterwards, in
+  /// another base of time.
+  void finish();
+
+  /// Samples made since the last call, ids counted from 1 in the order of their stamps.
+  std::vector<Sample> takeSamples();
+
+  /// What was received, dropped and discarded so far.
+  const SampleBuilderReport& report() const { return report_; }
+
+ private:
+  /// One stream: what came, what of it was good, what is still needed.
+  struct Stream {
+    StreamStatistics* statistics;
+    StreamBuffer* buffer;
+    StampFilter filter;
+    std::optional<Stamp> horizon;  ///< newest accepted stamp
+  };
+
+  Stream& joints() { return streams_[0]; }
+
+  bool accept(Stream& stream, Stamp stamp, std::optional<DropReason> defect);
+  void push(Stream& stream, Stamp stamp, const double* values);
+  void endTimeBase();
+  void queue(const std::optional<StampInterval>& dwell);
+  void evaluateReadyDwells();
+  bool isReady(const StampInterval& dwell) const;
+  void evaluate(const StampInterval& dwell);
+  void closeDwellOfSilentJoints();
+  void forgetUnneeded();
+
+  SampleBuilderOptions options_;
+  std::size_t coils_;
+  Stamp largest_gap_;
+  Stamp stream_timeout_;
+
+  SampleBuilderReport report_;
+  MeasurementBuffers buffers_;
+  std::array<Stream, 4> streams_;
+  DwellDetector detector_;
+  std::optional<Stamp> newest_;       ///< of all streams
+  std::deque<StampInterval> queued_;  ///< dwells that wait for the other streams
+  std::vector<Sample> samples_;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/core/sample_builder_options.hpp"
+#include "spherical_actuator_calibration/core/stream_buffer.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// One sample out of the measurements of an interval, or the reason why there is none.
+struct SegmentAverage {
+  std::optional<Sample> sample;
+  std::string refusal;             ///< one sentence; empty with a sample
+  std::vector<std::string> notes;  ///< what limits the sample, one sentence each
+  std::size_t torque_count = 0;    ///< torque measurements averaged
+  std::size_t joint_glitches = 0;  ///< measurements left out as outliers
+  std::size_t orientation_glitches = 0;
+  std::size_t torque_glitches = 0;
+};
+
+/// Averages what the streams hold of the interval, in which currents are constant. The sample has
+/// id 0, the raw mean torque and the mean measured currents; `measurements` is the smallest number
+/// of measurements among the quantities that it carries. A quantity with fewer than
+/// `smallest_count` measurements is left out and noted. Refused: an interval that is too short, too
+/// few joint measurements, a joint or the measured orientation that moves, and a sample with
+/// neither orientation nor torque.
+SegmentAverage averageSegment(const MeasurementBuffers& buffers,
+                              const StampInterval& interval,
+                              const SampleBuilderOptions& options);
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "spherical_actuator_calibration/core/sample_builder_options.hpp"
+#include "spherical_actuator_calibration/core/stamp_interval.hpp"
+#include "spherical_actuator_calibration/core/stream_statistics.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// Judges the stamps of one stream, in the order of arrival. Accepted stamps increase strictly
+/// between resets of the clock. A step far back or far ahead is believed only when the next stamp
+/// follows it closely, so that one wrong stamp costs one measurement.
+class StampFilter {
+ public:
+  struct Verdict {
+    std::optional<DropReason> drop;  ///< nothing: accepted
+    bool clock_reset = false;        ///< accepted, as the first after a step back
+    bool gap = false;                ///< accepted, after a hole
+  };
+
+  explicit StampFilter(const SampleBuilderOptions& options);
+
+  Verdict judge(Stamp stamp);
+
+  /// The next stamp may be anything: another recording begins.
+  void restart();
+
+ private:
+  Verdict judgeJump(Stamp stamp);
+
+  Stamp largest_gap_;
+  Stamp clock_reset_;
+  Stamp largest_jump_;
+  std::optional<Stamp> last_;     ///< newest accepted
+  std::optional<Stamp> suspect_;  ///< waits for a confirmation
+};
+
+}  // namespace spherical_actuator_calibration
