@@ -58,8 +58,77 @@ struct CoilTerm {
   Eigen::Vector3d coil_rotor;
   Eigen::Matrix<double, 3, 2> d_axis;  ///< ∂s⁰/∂(u, v)
   Eigen::Matrix3d d_coil;              ///< ∂T/∂s
-  double weight;                       ///< current times coil gain [A]
+  double weight = 0.0;                 ///< current times coil gain [A]
 };
+
+using CoilTerms = boost::container::small_vector<CoilTerm, 8>;
+
+CoilTerms coilTerms(const ParameterSpace& space,
+                    const std::vector<Excitation>& excitations,
+                    const double* const* coils,
+                    const Eigen::Matrix3d& R_rotor_stator) {
+  CoilTerms terms(excitations.size());
+  for (std::size_t e = 0; e < excitations.size(); ++e) {
+    const std::size_t coil = excitations[e].coil;
+    CoilTerm& term = terms[e];
+    space.coilChart(coil).evaluate(coils[e][0], coils[e][1], term.coil_stator, term.d_axis);
+    term.coil_rotor = R_rotor_stator * term.coil_stator;
+    term.d_coil.setZero();
+    term.weight = excitations[e].current * space.nominal().coils[coil].gain;
+  }
+  return terms;
+}
+
+/// Model torque of all pole–coil pairs [N·m].
+Eigen::Vector3d plainTorque(const ParameterSpace& space,
+                            const TorqueCurve& curve,
+                            const CalibrationModel::TorqueBlocks& blocks,
+                            const CoilTerms& terms) {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < space.poles(); ++i) {
+    const PoleAxis& pole = space.nominal().poles[i];
+    const Eigen::Vector3d pole_rotor =
+        space.poleChart(i).axis(blocks.poles[2 * i], blocks.poles[2 * i + 1]);
+    for (const CoilTerm& term : terms) {
+      if (interacts(curve, pole_rotor, term.coil_rotor)) {
+        torque += term.weight * pole.polarity * pole.gain *
+                  pairTorque(curve, pole_rotor, term.coil_rotor);
+      }
+    }
+  }
+  return torque;
+}
+
+/// The same, with the pole block of the residual's Jacobian and each term's ∂T/∂s.
+Eigen::Vector3d linearizeTorque(const ParameterSpace& space,
+                                const TorqueCurve& curve,
+                                const CalibrationModel::TorqueBlocks& blocks,
+                                CoilTerms& terms) {
+  const bool wants_poles = blocks.d_poles.data != nullptr;
+  RowBlock d_poles =
+      mapBlock(blocks.d_poles, wants_poles ? static_cast<Eigen::Index>(2 * space.poles()) : 0);
+  d_poles.setZero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < space.poles(); ++i) {
+    const PoleAxis& pole = space.nominal().poles[i];
+    Eigen::Vector3d pole_rotor;
+    Eigen::Matrix<double, 3, 2> d_axis;
+    space.poleChart(i).evaluate(blocks.poles[2 * i], blocks.poles[2 * i + 1], pole_rotor, d_axis);
+    for (CoilTerm& term : terms) {
+      if (!interacts(curve, pole_rotor, term.coil_rotor)) {
+        continue;
+      }
+      const double weight = term.weight * pole.polarity * pole.gain;
+      const PairTorque pair = linearizePairTorque(curve, pole_rotor, term.coil_rotor);
+      torque += weight * pair.torque;
+      term.d_coil += weight * pair.d_coil;
+      if (wants_poles) {
+        d_poles.middleCols<2>(static_cast<Eigen::Index>(2 * i)) -= weight * pair.d_pole * d_axis;
+      }
+    }
+  }
+  return torque;
+}
 
 }  // namespace
 
@@ -89,7 +158,7 @@ Eigen::Vector3d CalibrationModel::orientationResidual(const Sample& sample,
   }
   const JointLinearization linear =
       linearizeRotorOrientation(point.geometry, sample.joint_position);
-  const Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * linear.R_stator_rotor.transpose());
+  Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * linear.R_stator_rotor.transpose());
   // R → e^{ξ̂}R turns e^{ŷ} into e^{ŷ}e^{−ξ̂}, and J_r(y) = J_l(−y).
   writeJointJacobian(point, linear, -leftJacobianInverse(-y), d_joints);
   return y;
@@ -99,10 +168,6 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
                                                  const std::vector<Excitation>& excitations,
                                                  const TorqueBlocks& blocks) const {
   const bool wants_joints = blocks.d_joints.data != nullptr;
-  const bool wants_poles = blocks.d_poles.data != nullptr;
-  const bool wants_coils = blocks.d_coils != nullptr;
-  const bool wants_jacobian = wants_joints || wants_poles || wants_coils;
-
   const JointPoint point = jointPoint(space_, blocks.joints);
   JointLinearization linear;
   if (wants_joints) {
@@ -111,48 +176,11 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
     linear.R_stator_rotor = rotorOrientation(point.geometry, sample.joint_position);
   }
   const Eigen::Matrix3d R_rotor_stator = linear.R_stator_rotor.transpose();
-
-  boost::container::small_vector<CoilTerm, 8> terms(excitations.size());
-  for (std::size_t e = 0; e < excitations.size(); ++e) {
-    const std::size_t coil = excitations[e].coil;
-    CoilTerm& term = terms[e];
-    space_.coilChart(coil).evaluate(
-        blocks.coils[e][0], blocks.coils[e][1], term.coil_stator, term.d_axis);
-    term.coil_rotor = R_rotor_stator * term.coil_stator;
-    term.d_coil.setZero();
-    term.weight = excitations[e].current * space_.nominal().coils[coil].gain;
-  }
-
-  const auto pole_columns = static_cast<Eigen::Index>(2 * space_.poles());
-  if (wants_poles) {
-    mapBlock(blocks.d_poles, pole_columns).setZero();
-  }
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < space_.poles(); ++i) {
-    const auto first = static_cast<Eigen::Index>(2 * i);
-    Eigen::Vector3d pole_rotor;
-    Eigen::Matrix<double, 3, 2> d_axis;
-    space_.poleChart(i).evaluate(blocks.poles[first], blocks.poles[first + 1], pole_rotor, d_axis);
-    const PoleAxis& pole = space_.nominal().poles[i];
-    for (CoilTerm& term : terms) {
-      if (!interacts(*curve_, pole_rotor, term.coil_rotor)) {
-        continue;
-      }
-      const double weight = term.weight * pole.polarity * pole.gain;
-      if (!wants_jacobian) {
-        torque += weight * pairTorque(*curve_, pole_rotor, term.coil_rotor);
-        continue;
-      }
-      const PairTorque pair = linearizePairTorque(*curve_, pole_rotor, term.coil_rotor);
-      torque += weight * pair.torque;
-      term.d_coil += weight * pair.d_coil;
-      if (wants_poles) {
-        mapBlock(blocks.d_poles, pole_columns).middleCols<2>(first) -=
-            weight * pair.d_pole * d_axis;
-      }
-    }
-  }
-
+  CoilTerms terms = coilTerms(space_, excitations, blocks.coils, R_rotor_stator);
+  const bool wants_jacobian =
+      wants_joints || blocks.d_poles.data != nullptr || blocks.d_coils != nullptr;
+  const Eigen::Vector3d torque = wants_jacobian ? linearizeTorque(space_, *curve_, blocks, terms)
+                                                : plainTorque(space_, *curve_, blocks, terms);
   // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰ and ∂s/∂s⁰ = Rᵀ; the residual carries the minus sign.
   if (wants_joints) {
     Eigen::Matrix3d d_rotation = Eigen::Matrix3d::Zero();
@@ -161,12 +189,10 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
     }
     writeJointJacobian(point, linear, d_rotation, blocks.d_joints);
   }
-  if (wants_coils) {
-    for (std::size_t e = 0; e < terms.size(); ++e) {
-      if (blocks.d_coils[e].data != nullptr) {
-        mapBlock(blocks.d_coils[e], ParameterSpace::kPerAxis) =
-            -terms[e].d_coil * R_rotor_stator * terms[e].d_axis;
-      }
+  for (std::size_t e = 0; blocks.d_coils != nullptr && e < terms.size(); ++e) {
+    if (blocks.d_coils[e].data != nullptr) {
+      mapBlock(blocks.d_coils[e], ParameterSpace::kPerAxis) =
+          -terms[e].d_coil * R_rotor_stator * terms[e].d_axis;
     }
   }
   return sample.torque - torque;

@@ -26,8 +26,7 @@ double percentile95(std::vector<double>& values) {
   if (values.empty()) {
     return 0.0;
   }
-  const auto rank =
-      static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1) + 0.5);
+  const std::ptrdiff_t rank = std::lround(0.95 * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

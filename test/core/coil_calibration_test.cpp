@@ -36,7 +36,7 @@ class CoilCalibration : public testing::Test {
   const ParameterSpace& space_ = model_.space();
   const Eigen::VectorXd x_true_ = space_.coordinatesOf(truth_);
   CalibrationState poles_known_ = scenarios::exactJoints(space_, truth_, ManufacturingTolerance());
-  const EstimationOptions options_;
+  const EstimationOptions options_{};
 };
 
 TEST_F(CoilCalibration, RecoversCoil2ExactlyFromFourOrientations) {

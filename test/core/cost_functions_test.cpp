@@ -12,37 +12,38 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Largest deviation of a cost function's Jacobians from numeric ones, at the coordinates `x` cut
-/// into the cost's blocks.
+/// Residual, and on request the Jacobians, of a cost function at its blocks.
+Eigen::VectorXd evaluate(const ceres::CostFunction& cost,
+                         const std::vector<Eigen::VectorXd>& blocks,
+                         std::vector<RowMajor>* jacobians = nullptr) {
+  std::vector<const double*> parameters(blocks.size());
+  std::vector<double*> d_blocks(blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    parameters[b] = blocks[b].data();
+    d_blocks[b] = jacobians != nullptr ? (*jacobians)[b].data() : nullptr;
+  }
+  Eigen::VectorXd residual(3);
+  cost.Evaluate(
+      parameters.data(), residual.data(), jacobians != nullptr ? d_blocks.data() : nullptr);
+  return residual;
+}
+
+/// Largest deviation of a cost function's Jacobians from numeric ones.
 double jacobianError(const ceres::CostFunction& cost, const std::vector<Eigen::VectorXd>& blocks) {
+  std::vector<RowMajor> jacobians(blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    jacobians[b].resize(3, blocks[b].size());
+  }
+  EXPECT_LT((evaluate(cost, blocks, &jacobians) - evaluate(cost, blocks)).norm(), 1e-15);
   double worst = 0.0;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const auto residual = [&](const Eigen::VectorXd& moved) -> Eigen::VectorXd {
-      std::vector<const double*> pointers;
-      for (std::size_t other = 0; other < blocks.size(); ++other) {
-        pointers.push_back(other == b ? moved.data() : blocks[other].data());
-      }
-      Eigen::VectorXd value(3);
-      cost.Evaluate(pointers.data(), value.data(), nullptr);
-      return value;
+    const auto residual = [&](const Eigen::VectorXd& moved) {
+      std::vector<Eigen::VectorXd> at = blocks;
+      at[b] = moved;
+      return evaluate(cost, at);
     };
-    std::vector<const double*> pointers;
-    for (const Eigen::VectorXd& block : blocks) {
-      pointers.push_back(block.data());
-    }
-    std::vector<RowMajor> jacobians;
-    std::vector<double*> jacobian_pointers;
-    for (const Eigen::VectorXd& block : blocks) {
-      jacobians.emplace_back(3, block.size());
-    }
-    for (RowMajor& jacobian : jacobians) {
-      jacobian_pointers.push_back(jacobian.data());
-    }
-    Eigen::VectorXd value(3);
-    cost.Evaluate(pointers.data(), value.data(), jacobian_pointers.data());
-    EXPECT_LT((value - residual(blocks[b])).norm(), 1e-15);
-    worst = std::max(worst,
-                     (jacobians[b] - numericJacobian(residual, blocks[b])).cwiseAbs().maxCoeff());
+    const Eigen::MatrixXd error = jacobians[b] - numericJacobian(residual, blocks[b]);
+    worst = std::max(worst, error.cwiseAbs().maxCoeff());
   }
   return worst;
 }
@@ -54,10 +55,7 @@ Eigen::Matrix3d someWhitening() {
 TEST(OrientationCost, JacobianIsTheDerivativeAlsoFarFromTheSolution) {
   const CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
   scenarios::Generator generator(5);
-  std::vector<Eigen::Vector3d> poses;
-  for (int n = 0; n < 10; ++n) {
-    poses.push_back(scenarios::randomPose(0.6, generator));
-  }
+  std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(10, 0.6, generator);
   // One radian of noise: the residual's own Jacobian J_r⁻¹(y) counts.
   for (const Sample& sample :
        scenarios::orientationSamples(scenarios::paperTruth(), poses, 1.0, 1e-3, generator)) {

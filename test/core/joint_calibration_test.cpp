@@ -17,10 +17,7 @@ class JointCalibration : public testing::Test {
  protected:
   std::vector<Sample> samples(std::size_t poses, double tilt, double noise, std::uint64_t seed) {
     scenarios::Generator generator(seed);
-    std::vector<Eigen::Vector3d> q;
-    for (std::size_t n = 0; n < poses; ++n) {
-      q.push_back(scenarios::randomPose(tilt, generator));
-    }
+    std::vector<Eigen::Vector3d> q = scenarios::randomPoses(poses, tilt, generator);
     return scenarios::orientationSamples(
         truth_, q, noise, scenarios::uniformStddev(kNoise), generator);
   }
@@ -34,7 +31,7 @@ class JointCalibration : public testing::Test {
   const ParameterSpace& space_ = model_.space();
   const Eigen::VectorXd x_true_ = space_.coordinatesOf(truth_);
   const CalibrationState nominal_ = nominalState(space_, ManufacturingTolerance());
-  const EstimationOptions options_;
+  const EstimationOptions options_{};
 };
 
 TEST_F(JointCalibration, RecoversTable3ExactlyFromFiveOrientations) {
@@ -100,10 +97,7 @@ TEST_F(JointCalibration, ConvergesFromHalfARadian) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     scenarios::Generator generator(seed);
     const Actuator far = scenarios::perturbed(scenarios::paperNominal(), 0.5, 0.0, generator);
-    std::vector<Eigen::Vector3d> q;
-    for (int n = 0; n < 10; ++n) {
-      q.push_back(scenarios::randomPose(0.6, generator));
-    }
+    std::vector<Eigen::Vector3d> q = scenarios::randomPoses(10, 0.6, generator);
     const CycleOutcome outcome = run(scenarios::orientationSamples(far, q, 0.0, 1e-3, generator));
     ASSERT_TRUE(outcome.report.success) << outcome.report.message;
     EXPECT_LT((outcome.state.belief.x - space_.coordinatesOf(far)).head(9).norm(), 1e-10);

@@ -26,17 +26,14 @@ class Outliers : public testing::Test {
   const Actuator truth_ = scenarios::paperTruth();
   const CalibrationModel model_{ParameterSpace(scenarios::paperNominal())};
   const ParameterSpace& space_ = model_.space();
-  const EstimationOptions options_;
+  const EstimationOptions options_{};
 };
 
 TEST_F(Outliers, OfOrientationAreFoundAndTheRestFitsAsIfTheyWereAbsent) {
   const CalibrationState nominal = nominalState(space_, ManufacturingTolerance());
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     scenarios::Generator generator(seed);
-    std::vector<Eigen::Vector3d> poses;
-    for (int n = 0; n < 15; ++n) {
-      poses.push_back(scenarios::randomPose(0.6, generator));
-    }
+    std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(15, 0.6, generator);
     std::vector<Sample> data = scenarios::orientationSamples(
         truth_, poses, 1e-3, scenarios::uniformStddev(1e-3), generator);
     std::vector<Sample> clean;
@@ -87,10 +84,7 @@ TEST_F(Outliers, FaultlessGaussianSamplesAreHardlyEverRejected) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     scenarios::Generator generator(200 + seed);
     std::normal_distribution<double> normal(0.0, 1e-3);
-    std::vector<Eigen::Vector3d> poses;
-    for (int n = 0; n < 30; ++n) {
-      poses.push_back(scenarios::randomPose(0.6, generator));
-    }
+    std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(30, 0.6, generator);
     std::vector<Sample> data = scenarios::orientationSamples(truth_, poses, 0.0, 1e-3, generator);
     for (Sample& sample : data) {
       const double x = normal(generator);
@@ -106,10 +100,7 @@ TEST_F(Outliers, FaultlessGaussianSamplesAreHardlyEverRejected) {
 
 TEST_F(Outliers, TooManyMeanContradiction) {
   scenarios::Generator generator(300);
-  std::vector<Eigen::Vector3d> poses;
-  for (int n = 0; n < 20; ++n) {
-    poses.push_back(scenarios::randomPose(0.6, generator));
-  }
+  std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(20, 0.6, generator);
   std::vector<Sample> data = scenarios::orientationSamples(truth_, poses, 1e-3, 6e-4, generator);
   for (std::size_t n = 0; n < 9; ++n) {
     data[n].R_stator_rotor =

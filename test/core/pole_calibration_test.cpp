@@ -55,7 +55,7 @@ class PoleCalibration : public testing::Test {
   const Eigen::VectorXd x_true_ = space_.coordinatesOf(truth_);
   const CalibrationState joints_known_ =
       scenarios::exactJoints(space_, truth_, ManufacturingTolerance());
-  const EstimationOptions options_;
+  const EstimationOptions options_{};
 };
 
 TEST_F(PoleCalibration, RecoversTable5ExactlyFromThirtyOrientations) {

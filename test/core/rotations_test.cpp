@@ -68,9 +68,9 @@ TEST(Rotations, LeftJacobianInverseInverts) {
 TEST(Rotations, MeanMinimisesTheSquaredDistances) {
   scenarios::Generator generator(3);
   const Eigen::Matrix3d center = rotationExp({0.4, -1.0, 2.0});
-  std::vector<Eigen::Matrix3d> rotations;
-  for (int n = 0; n < 20; ++n) {
-    rotations.push_back(rotationExp(scenarios::uniformNoise(0.3, generator)) * center);
+  std::vector<Eigen::Matrix3d> rotations(20);
+  for (Eigen::Matrix3d& R : rotations) {
+    R = rotationExp(scenarios::uniformNoise(0.3, generator)) * center;
   }
   const Eigen::Matrix3d mean = rotationMean(rotations);
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

@@ -12,10 +12,7 @@ class SequentialCalibration : public testing::Test {
  protected:
   std::vector<Sample> session(const Actuator& truth, std::uint64_t seed) const {
     scenarios::Generator generator(seed);
-    std::vector<Eigen::Vector3d> poses;
-    for (int n = 0; n < 10; ++n) {
-      poses.push_back(scenarios::randomPose(0.3, generator));
-    }
+    std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(10, 0.3, generator);
     std::vector<Sample> samples = scenarios::orientationSamples(
         truth, poses, 1e-3, scenarios::uniformStddev(1e-3), generator);
     for (std::size_t coil = 0; coil < truth.coils.size(); ++coil) {
@@ -48,7 +45,7 @@ class SequentialCalibration : public testing::Test {
 
   const CalibrationModel model_{ParameterSpace(scenarios::paperNominal())};
   const ParameterSpace& space_ = model_.space();
-  const EstimationOptions options_;
+  const EstimationOptions options_{};
 };
 
 TEST_F(SequentialCalibration, IntervalsHoldAlthoughEachCycleTrustsTheOneBefore) {

@@ -82,6 +82,12 @@ Eigen::Vector3d randomPose(double tilt, Generator& generator) {
   return {q1, q2, uniform(kPi, generator)};
 }
 
+std::vector<Eigen::Vector3d> randomPoses(std::size_t count, double tilt, Generator& generator) {
+  std::vector<Eigen::Vector3d> poses(count);
+  std::generate(poses.begin(), poses.end(), [&] { return randomPose(tilt, generator); });
+  return poses;
+}
+
 std::vector<Eigen::Vector3d> posesThatSeeEveryPole(const Actuator& actuator,
                                                    std::size_t coil,
                                                    std::size_t count,

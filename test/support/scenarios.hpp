@@ -29,6 +29,8 @@ Actuator perturbed(const Actuator& nominal, double joints, double axes, Generato
 /// Joint angles uniform within ±tilt for joints 1 and 2, ±π for joint 3 [rad].
 Eigen::Vector3d randomPose(double tilt, Generator& generator);
 
+std::vector<Eigen::Vector3d> randomPoses(std::size_t count, double tilt, Generator& generator);
+
 /// Poses of which each pole is seen by coil `coil` (from 0): within its curve's polynomial range.
 std::vector<Eigen::Vector3d> posesThatSeeEveryPole(const Actuator& actuator,
                                                    std::size_t coil,
