@@ -107,7 +107,9 @@ bool readNumber(const YAML::Node& node, Number& number) {
 }
 
 bool readBoolean(const YAML::Node& node, bool& value) {
-  return isPlainScalar(node) && YAML::convert<bool>::decode(node, value);
+  // A lone y or n is a name (of a joint, say), as for other readers; yaml-cpp would take it.
+  return isPlainScalar(node) && node.Scalar().size() > 1 &&
+         YAML::convert<bool>::decode(node, value);
 }
 
 bool isText(const YAML::Node& node) {
@@ -362,7 +364,8 @@ void YamlMap::finish() const {
   for (const auto& [key, entry] : state_->entries) {
     if (state_->asked_for.count(key) == 0) {
       const std::vector<std::string> known(state_->asked_for.begin(), state_->asked_for.end());
-      fail(key, "the key is unknown here; known are: " + join(known) + ".");
+      const std::string hint = known.empty() ? "." : "; known are: " + join(known) + ".";
+      fail(key, "the key is unknown here" + hint);
     }
   }
   for (const std::shared_ptr<State>& item : state_->children) {
