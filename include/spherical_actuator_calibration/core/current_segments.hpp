@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,7 +14,7 @@ namespace spherical_actuator_calibration {
 struct CurrentSegment {
   StampInterval span;       ///< from its first to its last current measurement
   bool excited = false;     ///< a coil's mean current reaches the threshold
-  Eigen::VectorXd current;  ///< mean measured current per coil [A]
+  Eigen::VectorXd current;  ///< mean measured current per coil over the span [A]
 };
 
 /// Cuts a dwell into spans of constant current, in order. A span ends where a coil leaves
@@ -23,5 +24,18 @@ struct CurrentSegment {
 std::vector<CurrentSegment> segmentsOfConstantCurrent(const StreamBuffer& currents,
                                                       const StampInterval& dwell,
                                                       const SampleBuilderOptions& options);
+
+/// Mean current per coil over an interval, and how many measurements it is made of.
+struct MeanCurrent {
+  Eigen::VectorXd current;  ///< [A]
+  std::size_t count = 0;
+};
+
+/// Mean of the measurements in the interval that agree with the segment's mean within twice
+/// `current_tolerance`: those that were passed over stay out.
+MeanCurrent meanCurrent(const StreamBuffer& currents,
+                        const StampInterval& interval,
+                        const CurrentSegment& segment,
+                        const SampleBuilderOptions& options);
 
 }  // namespace spherical_actuator_calibration

@@ -25,9 +25,6 @@ class DwellDetector {
   /// Ends the dwell, if any, and forgets everything before.
   std::optional<StampInterval> close();
 
-  /// The dwell in progress, up to now.
-  const std::optional<StampInterval>& present() const { return dwell_; }
-
   /// No dwell that is reported from now on begins before this stamp. Nothing before the first
   /// measurement.
   std::optional<Stamp> earliestBegin() const;
@@ -41,8 +38,8 @@ class DwellDetector {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
   };
 
-  std::optional<StampInterval> addFiltered(const Reading& reading);
-  void restartWindow();
+  std::optional<StampInterval> addFiltered(Stamp stamp, const Eigen::Vector3d& position);
+  std::optional<StampInterval> endDwell();
   bool windowAtRest(Stamp stamp) const;
 
   Stamp window_;
@@ -51,7 +48,7 @@ class DwellDetector {
   double largest_spread_;
 
   std::array<Reading, 2> recent_;  ///< the last two measurements, older first
-  int recent_count_ = 0;
+  std::size_t recent_count_ = 0;
   std::optional<Stamp> window_begin_;  ///< oldest measurement since the window was restarted
   std::array<SlidingExtremes, 3> extremes_;
   std::optional<StampInterval> dwell_;

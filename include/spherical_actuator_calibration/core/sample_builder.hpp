@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -49,7 +48,7 @@ class SampleBuilder {
   const SampleBuilderReport& report() const { return report_; }
 
  private:
-  /// One stream: what came, what of it was good, what is still needed.
+  /// One stream: what came, what of it was good, and what of that is still needed.
   struct Stream {
     StreamStatistics* statistics;
     StreamBuffer* buffer;
@@ -57,17 +56,15 @@ class SampleBuilder {
     std::optional<Stamp> horizon;  ///< newest accepted stamp
   };
 
-  Stream& joints() { return streams_[0]; }
-
   bool accept(Stream& stream, Stamp stamp, std::optional<DropReason> defect);
-  void push(Stream& stream, Stamp stamp, const double* values);
+  void store(Stream& stream, Stamp stamp, const double* values);
   void endTimeBase();
   void queue(const std::optional<StampInterval>& dwell);
+  void closeDwellOfSilentJoints();
   void evaluateReadyDwells();
   bool isReady(const StampInterval& dwell) const;
-  void evaluate(const StampInterval& dwell);
-  void closeDwellOfSilentJoints();
-  void forgetUnneeded();
+  void evaluateFront();
+  Stamp oldestNeeded() const;
 
   SampleBuilderOptions options_;
   std::size_t coils_;
@@ -76,7 +73,10 @@ class SampleBuilder {
 
   SampleBuilderReport report_;
   MeasurementBuffers buffers_;
-  std::array<Stream, 4> streams_;
+  Stream joints_;
+  Stream orientations_;
+  Stream torques_;
+  Stream currents_;
   DwellDetector detector_;
   std::optional<Stamp> newest_;       ///< of all streams
   std::deque<StampInterval> queued_;  ///< dwells that wait for the other streams

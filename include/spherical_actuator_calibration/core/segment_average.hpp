@@ -22,12 +22,11 @@ struct SegmentAverage {
   std::size_t torque_glitches = 0;
 };
 
-/// Averages what the streams hold of the interval, in which currents are constant. The sample has
-/// id 0, the raw mean torque and the mean measured currents; `measurements` is the smallest number
-/// of measurements among the quantities that it carries. A quantity with fewer than
-/// `smallest_count` measurements is left out and noted. Refused: an interval that is too short, too
-/// few joint measurements, a joint or the measured orientation that moves, and a sample with
-/// neither orientation nor torque.
+/// Averages what the streams hold of an interval in which the currents are constant. The sample has
+/// id 0, no currents, and the raw mean torque; `measurements` is the smallest number averaged among
+/// the quantities that it carries. A quantity with fewer than `smallest_count` measurements is left
+/// out and noted. Refused: an interval that is too short, too few joint measurements, joints or a
+/// measured orientation that move, and a sample with neither orientation nor torque.
 SegmentAverage averageSegment(const MeasurementBuffers& buffers,
                               const StampInterval& interval,
                               const SampleBuilderOptions& options);

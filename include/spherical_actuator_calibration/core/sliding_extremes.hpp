@@ -25,19 +25,20 @@ class SlidingExtremes {
     Stamp stamp;
     double value;
   };
-  /// Queue of entries whose values rise (or fall) strictly from front to back.
+  /// Entries whose values rise strictly from front to back: the front is the smallest.
   struct Queue {
     std::vector<Entry> entries;
-    std::size_t head = 0;
+    std::size_t head = 0;  ///< entries before it are forgotten
 
     bool empty() const { return head == entries.size(); }
-    void dropBefore(Stamp stamp);
+    double front() const { return entries[head].value; }
     void push(const Entry& entry);
+    void dropBefore(Stamp stamp);
     void clear();
   };
 
-  Queue rising_;   ///< front: the smallest value
-  Queue falling_;  ///< front: the largest value
+  Queue smallest_;
+  Queue largest_;  ///< of the negated values
 };
 
 }  // namespace spherical_actuator_calibration

@@ -1,0 +1,213 @@
+#include "spherical_actuator_calibration/core/dwell_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "spherical_actuator_calibration/core/current_segments.hpp"
+#include "spherical_actuator_calibration/core/segment_average.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// A sample before its bias is removed.
+struct Candidate {
+  Sample sample;
+  bool excited = false;
+  std::size_t torque_count = 0;
+};
+
+/// What acts without current: mean over all zero-current spans.
+struct ZeroCurrentPart {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  double torque_variance = 0.0;
+  Eigen::VectorXd current;
+  double weight = 0.0;  ///< torque measurements in it; 0: there is no such part
+};
+
+/// Samples of one dwell; see samplesOfDwell().
+class DwellSampler {
+ public:
+  DwellSampler(const MeasurementBuffers& buffers,
+               const StampInterval& dwell,
+               const SampleBuilderOptions& options,
+               SampleBuilderReport& report)
+      : buffers_(buffers), dwell_(dwell), options_(options), report_(report) {
+    rest_ = {dwell.begin + ticksFromSeconds(options.settle_after_motion),
+             dwell.end - ticksFromSeconds(options.guard_before_motion)};
+  }
+
+  std::vector<Sample> samples() {
+    if (rest_.duration() < options_.smallest_duration) {
+      discard(dwell_, "The rotor rested only for " + tenths(dwell_.duration()) + " s.");
+      return {};
+    }
+    collectCandidates();
+    if (options_.bias_removal == BiasRemoval::kZeroCurrent) {
+      removeBias();
+    }
+    std::vector<Sample> samples;
+    for (Candidate& candidate : candidates_) {
+      if (candidate.sample.has_orientation || candidate.sample.has_torque) {
+        samples.push_back(std::move(candidate.sample));
+      }
+    }
+    report_.samples += samples.size();
+    return samples;
+  }
+
+ private:
+  static std::string tenths(double seconds) {
+    const auto rounded = std::llround(seconds * 10.0);
+    return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10);
+  }
+
+  void discard(const StampInterval& interval, std::string reason) {
+    report_.add({DwellEvent::Kind::kDiscarded, interval.middle(), std::move(reason)});
+  }
+
+  void note(const StampInterval& interval, std::string reason) {
+    report_.add({DwellEvent::Kind::kNote, interval.middle(), std::move(reason)});
+  }
+
+  void collectCandidates() {
+    if (buffers_.currents.within(dwell_).size() == 0) {
+      collectWithoutCurrents();
+      return;
+    }
+    bool any_long_enough = false;
+    for (const CurrentSegment& segment :
+         segmentsOfConstantCurrent(buffers_.currents, dwell_, options_)) {
+      // Shorter ones are the ramps between patterns: nothing is lost with them.
+      if (segment.span.duration() >= options_.smallest_duration) {
+        any_long_enough = true;
+        collect(segment);
+      }
+    }
+    if (!any_long_enough) {
+      discard(
+          dwell_,
+          "The currents never stayed constant for " + tenths(options_.smallest_duration) + " s.");
+    }
+  }
+
+  void collectWithoutCurrents() {
+    std::optional<SegmentAverage> average = averageOf(rest_);
+    if (!average) {
+      return;
+    }
+    Sample sample = *average->sample;
+    if (sample.has_torque) {
+      sample.has_torque = false;
+      sample.torque.setZero();
+      sample.torque_stddev = 0.0;
+      note(rest_, "The torque is left out: no currents were measured.");
+    }
+    candidates_.push_back({sample, false, 0});
+  }
+
+  void collect(const CurrentSegment& segment) {
+    const StampInterval steady = {
+        std::max(rest_.begin,
+                 segment.span.begin + ticksFromSeconds(options_.settle_after_current_change)),
+        std::min(rest_.end,
+                 segment.span.end - ticksFromSeconds(options_.guard_before_current_change))};
+    std::optional<SegmentAverage> average = averageOf(steady);
+    if (!average) {
+      return;
+    }
+    const MeanCurrent current = meanCurrent(buffers_.currents, steady, segment, options_);
+    if (current.count < static_cast<std::size_t>(options_.smallest_count)) {
+      discard(steady, "It has only " + std::to_string(current.count) + " current measurements.");
+      return;
+    }
+    average->sample->current = current.current;
+    average->sample->measurements =
+        std::min(average->sample->measurements, static_cast<std::uint32_t>(current.count));
+    candidates_.push_back({*average->sample, segment.excited, average->torque_count});
+  }
+
+  /// Nothing, and an event, when the interval gives no sample.
+  std::optional<SegmentAverage> averageOf(const StampInterval& interval) {
+    SegmentAverage average = averageSegment(buffers_, interval, options_);
+    report_.joints.glitches += average.joint_glitches;
+    report_.orientations.glitches += average.orientation_glitches;
+    report_.torques.glitches += average.torque_glitches;
+    if (!average.sample) {
+      discard(interval, average.refusal);
+      return std::nullopt;
+    }
+    for (std::string& text : average.notes) {
+      note(interval, std::move(text));
+    }
+    return average;
+  }
+
+  void removeBias() {
+    const auto needs_removal = [](const Candidate& candidate) {
+      return candidate.excited && candidate.sample.has_torque;
+    };
+    if (std::none_of(candidates_.begin(), candidates_.end(), needs_removal)) {
+      return;
+    }
+    const ZeroCurrentPart zero = zeroCurrentPart();
+    if (zero.weight == 0.0) {
+      note(dwell_, "The torque bias is not removed: the dwell has no part without current.");
+      return;
+    }
+    for (Candidate& candidate : candidates_) {
+      Sample& sample = candidate.sample;
+      if (needs_removal(candidate)) {
+        sample.torque -= zero.torque;
+        sample.current -= zero.current;
+        sample.torque_stddev = std::hypot(sample.torque_stddev, std::sqrt(zero.torque_variance));
+      } else if (!candidate.excited) {
+        sample.has_torque = false;
+        sample.torque.setZero();
+        sample.torque_stddev = 0.0;
+      }
+    }
+  }
+
+  /// Mean of the zero-current spans, each weighted by its number of torque measurements.
+  ZeroCurrentPart zeroCurrentPart() const {
+    ZeroCurrentPart part;
+    part.current = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(buffers_.currents.width()));
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.excited || !candidate.sample.has_torque) {
+        continue;
+      }
+      const Sample& sample = candidate.sample;
+      const auto weight = static_cast<double>(candidate.torque_count);
+      part.weight += weight;
+      part.torque += weight * sample.torque;
+      part.current += weight * sample.current;
+      part.torque_variance += weight * weight * sample.torque_stddev * sample.torque_stddev;
+    }
+    if (part.weight > 0.0) {
+      part.torque /= part.weight;
+      part.current /= part.weight;
+      part.torque_variance /= part.weight * part.weight;
+    }
+    return part;
+  }
+
+  const MeasurementBuffers& buffers_;
+  StampInterval dwell_;
+  StampInterval rest_;  ///< the dwell without settling and guard
+  const SampleBuilderOptions& options_;
+  SampleBuilderReport& report_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+std::vector<Sample> samplesOfDwell(const MeasurementBuffers& buffers,
+                                   const StampInterval& dwell,
+                                   const SampleBuilderOptions& options,
+                                   SampleBuilderReport& report) {
+  return DwellSampler(buffers, dwell, options, report).samples();
+}
+
+}  // namespace spherical_actuator_calibration
