@@ -122,15 +122,18 @@ TEST(UrdfFile, WrittenAxesAndOffsetsComeBackExactly) {
   }
 }
 
-TEST(UrdfFile, OffsetsOfARightAngleComeBackExactly) {
-  // Pitch ±π/2, where roll and yaw turn about one axis.
+TEST(UrdfFile, OffsetsComeBackExactlyWhereRollAndYawTurnAboutOneAxis) {
   const TemporaryFolder folder;
   const std::string robot = folder.write("a.urdf", kRobot);
-  for (const double deviation : {0.0, 1e-12, -1e-9, 1e-7, 1e-4}) {
+  for (const double deviation : {0.0, 1e-12, -1e-9, 1e-8, -1e-7, 1e-4}) {
     for (const double sign : {-1.0, 1.0}) {
+      const Eigen::AngleAxisd turn(
+          Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(sign * kPi / 2.0 + deviation, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitX()));
       Actuator calibrated = calibratedActuator();
-      calibrated.joints[1].axis = Eigen::Vector3d(deviation, 1.0, -2.0 * deviation).normalized();
-      calibrated.joints[1].offset = sign * kPi / 2.0 + deviation;
+      calibrated.joints[1].axis = turn.axis().normalized();
+      calibrated.joints[1].offset = turn.angle();
       writeCalibratedUrdf(
           robot, folder.path("b.urdf"), nominalActuator(), calibrated, OverwritePolicy::kReplace);
       EXPECT_LT(difference(readJoints(folder.path("b.urdf"), jointNames()), calibrated.joints),
