@@ -12,20 +12,7 @@ class SequentialCalibration : public testing::Test {
  protected:
   std::vector<Sample> session(const Actuator& truth, std::uint64_t seed) const {
     scenarios::Generator generator(seed);
-    std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(10, 0.3, generator);
-    std::vector<Sample> samples = scenarios::orientationSamples(
-        truth, poses, 1e-3, scenarios::uniformStddev(1e-3), generator);
-    for (std::size_t coil = 0; coil < truth.coils.size(); ++coil) {
-      const auto torque_poses = scenarios::posesThatSeeEveryPole(
-          scenarios::paperNominal(), coil, coil == 0 ? 30 : 4, 0.3, generator);
-      const std::vector<Sample> more = scenarios::torqueSamples(
-          truth, torque_poses, coil, 2.0, 5e-4, scenarios::uniformStddev(5e-4), generator);
-      samples.insert(samples.end(), more.begin(), more.end());
-    }
-    for (std::size_t n = 0; n < samples.size(); ++n) {
-      samples[n].id = static_cast<std::uint32_t>(n + 1);
-    }
-    return samples;
+    return scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
   }
 
   CalibrationState calibrate(const std::vector<Sample>& samples) const {

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kLayerElevation = 0.2618;
+constexpr double kOrientationNoise = 1e-3;  // uniform, per component [rad]
+constexpr double kTorqueNoise = 5e-4;       // uniform, per component [N·m]
 
 double uniform(double half_width, Generator& generator) {
   return std::uniform_real_distribution<double>(-half_width, half_width)(generator);
@@ -184,6 +186,51 @@ std::vector<Sample> torqueSamples(const Actuator& truth,
                     uniformNoise(noise, generator);
     sample.torque_stddev = stddev;
     samples.push_back(sample);
+  }
+  return samples;
+}
+
+Sample mixedTorqueSample(const Actuator& truth,
+                         const Eigen::Vector3d& q,
+                         const std::vector<double>& currents,
+                         Generator& generator) {
+  Sample sample =
+      torqueSamples(truth, {q}, 0, 0.0, kTorqueNoise, uniformStddev(kTorqueNoise), generator)[0];
+  std::uniform_int_distribution<Eigen::Index> coil(0, sample.current.size() - 1);
+  for (const double current : currents) {
+    sample.current[coil(generator)] = current;
+  }
+  sample.torque += rotorTorque(TorqueCurve(*truth.torque_curve),
+                               torqueGeometry(truth),
+                               rotorOrientation(jointGeometry(truth.joints), q),
+                               sample.current);
+  return sample;
+}
+
+std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generator& generator) {
+  constexpr double kTilt = 0.3;
+  constexpr double kCurrent = 2.0;
+  const double orientation_stddev = uniformStddev(kOrientationNoise);
+  std::vector<Sample> samples = orientationSamples(
+      truth, randomPoses(10, kTilt, generator), kOrientationNoise, orientation_stddev, generator);
+  for (std::size_t coil = 0; coil < truth.coils.size(); ++coil) {
+    const std::vector<Eigen::Vector3d> poses =
+        posesThatSeeEveryPole(paperNominal(), coil, coil == 0 ? 30 : 4, kTilt, generator);
+    std::vector<Sample> more = torqueSamples(
+        truth, poses, coil, kCurrent, kTorqueNoise, uniformStddev(kTorqueNoise), generator);
+    if (tracker == Tracker::kEveryPose) {
+      const std::vector<Sample> tracked =
+          orientationSamples(truth, poses, kOrientationNoise, orientation_stddev, generator);
+      for (std::size_t n = 0; n < more.size(); ++n) {
+        more[n].has_orientation = true;
+        more[n].R_stator_rotor = tracked[n].R_stator_rotor;
+        more[n].orientation_stddev = orientation_stddev;
+      }
+    }
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].id = static_cast<std::uint32_t>(n + 1);
   }
   return samples;
 }

@@ -64,6 +64,21 @@ std::vector<Sample> torqueSamples(const Actuator& truth,
                                   double stddev,
                                   Generator& generator);
 
+/// One torque sample with the given currents [A] in as many randomly chosen coils and the noise of
+/// the paper's session.
+Sample mixedTorqueSample(const Actuator& truth,
+                         const Eigen::Vector3d& q,
+                         const std::vector<double>& currents,
+                         Generator& generator);
+
+/// When the orientation tracker measures during a session.
+enum class Tracker { kFirstTenPoses, kEveryPose };
+
+/// The paper's protocol within tilt ±0.3 rad: 10 poses for the joint, 30 with coil 1, 4 with each
+/// other coil, at 2 A; orientation noise uniform ±1 mrad, torque noise uniform ±0.5 mN·m per
+/// component. Ids count from 1.
+std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generator& generator);
+
 /// State of an actuator whose joints are known exactly and the rest is nominal: what the paper
 /// assumes before level 2.
 CalibrationState exactJoints(const ParameterSpace& space,
