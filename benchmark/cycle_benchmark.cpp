@@ -1,0 +1,91 @@
+#include <benchmark/benchmark.h>
+
+#include "cycle_scenarios.hpp"
+#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/core/least_squares.hpp"
+
+namespace spherical_actuator_calibration::benchmarks {
+namespace {
+
+constexpr double kExact = 1e-10;  // what noiseless samples must give [rad]
+
+void tell(benchmark::State& state,
+          const CycleScenario& scenario,
+          bool success,
+          std::size_t iterations,
+          const Eigen::VectorXd& x) {
+  const double error = worstError(scenario, x);
+  if (!success || error > kExact) {
+    state.SkipWithError("the truth was not found");
+  }
+  state.counters["iterations"] = static_cast<double>(iterations);
+  state.counters["worst_error"] = error;
+}
+
+/// A cycle's iteration alone, from the nominal parameters to convergence: what the paper describes.
+void iterate(benchmark::State& state, Cycle cycle) {
+  const CycleScenario scenario = cycleScenario(cycle, static_cast<std::size_t>(state.range(0)));
+  const ParameterSpace& space = scenario.model.space();
+  EstimationProblem problem;
+  problem.model = &scenario.model;
+  problem.samples = &scenario.samples;
+  problem.observations = selectObservations(scenario.samples, scenario.request, {});
+  problem.prior = scenario.state.belief;
+  const EstimationOptions options;
+  LeastSquaresInput input;
+  input.problem = &problem;
+  input.active.assign(problem.observations.size(), true);
+  input.free.assign(static_cast<std::size_t>(space.size()), false);
+  for (const Eigen::Index p :
+       selectCoordinates(space, scenario.samples, scenario.request, options)) {
+    input.free[static_cast<std::size_t>(p)] = true;
+  }
+  input.start = scenario.state.belief.x;
+  const std::vector<Eigen::Matrix3d> whitening(problem.observations.size(),
+                                               Eigen::Matrix3d::Identity());
+  input.whitening = &whitening;
+
+  LeastSquaresResult result;
+  for (auto _ : state) {
+    const ObservationEvaluator evaluator(problem, options);
+    input.evaluator = &evaluator;
+    result = solveLeastSquares(input);
+  }
+  tell(state,
+       scenario,
+       result.termination == Termination::kConverged,
+       result.path.size() - 1,
+       result.solution());
+}
+
+/// A whole cycle as an operator asks for it: weights, iteration, outlier test, observability,
+/// covariance, uncertainty over the workspace, report.
+void runWholeCycle(benchmark::State& state, Cycle cycle) {
+  const CycleScenario scenario = cycleScenario(cycle, static_cast<std::size_t>(state.range(0)));
+  CycleOutcome outcome;
+  for (auto _ : state) {
+    outcome = runCycle(scenario.model, scenario.samples, scenario.state, scenario.request, {});
+  }
+  tell(state, scenario, outcome.report.success, outcome.report.iterations, outcome.state.belief.x);
+}
+
+constexpr int kMany = 100000;
+
+BENCHMARK_CAPTURE(iterate, joint, Cycle::kJoint)->Arg(30)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(iterate, poles, Cycle::kPoles)->Arg(30)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(iterate, coil, Cycle::kCoil)->Arg(4)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(runWholeCycle, joint, Cycle::kJoint)
+    ->Arg(30)
+    ->Arg(kMany)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(runWholeCycle, poles, Cycle::kPoles)
+    ->Arg(30)
+    ->Arg(kMany)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(runWholeCycle, coil, Cycle::kCoil)
+    ->Arg(4)
+    ->Arg(kMany)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace spherical_actuator_calibration::benchmarks

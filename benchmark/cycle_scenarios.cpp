@@ -1,0 +1,182 @@
+#include "cycle_scenarios.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "support/scenarios.hpp"
+
+namespace spherical_actuator_calibration::benchmarks {
+namespace {
+
+constexpr std::uint64_t kSeed = 20;
+constexpr double kTilt = 0.6;                // [rad]
+constexpr double kCurrent = 2.0;             // [A]
+constexpr double kOrientationNoise = 1e-3;   // half width that the stated uncertainty stands for
+constexpr double kTorqueNoise = 5e-4;        // the same [N·m]
+constexpr std::size_t kPolesCycleCoil = 0;   // coil 1 of the paper
+constexpr std::size_t kSingleCycleCoil = 1;  // coil 2 of the paper
+
+std::size_t excitedCoil(Cycle cycle) {
+  return cycle == Cycle::kPoles ? kPolesCycleCoil : kSingleCycleCoil;
+}
+
+std::vector<Sample> makeSamples(Cycle cycle, std::size_t count, const Actuator& truth) {
+  scenarios::Generator generator(kSeed);
+  if (cycle == Cycle::kJoint) {
+    std::vector<Eigen::Vector3d> poses;
+    for (std::size_t n = 0; n < count; ++n) {
+      poses.push_back(scenarios::randomPose(kTilt, generator));
+    }
+    return scenarios::orientationSamples(
+        truth, poses, 0.0, scenarios::uniformStddev(kOrientationNoise), generator);
+  }
+  const std::size_t coil = excitedCoil(cycle);
+  const std::vector<Eigen::Vector3d> poses =
+      scenarios::posesThatSeeEveryPole(truth, coil, count, kTilt, generator);
+  return scenarios::torqueSamples(
+      truth, poses, coil, kCurrent, 0.0, scenarios::uniformStddev(kTorqueNoise), generator);
+}
+
+CalibrationState initialState(Cycle cycle, const ParameterSpace& space, const Actuator& truth) {
+  if (cycle == Cycle::kJoint) {
+    return nominalState(space, {});
+  }
+  CalibrationState state = scenarios::exactJoints(space, truth, {});
+  if (cycle == Cycle::kCoil) {
+    const Eigen::Index known = space.coil(0);
+    state.belief.x.head(known) = space.coordinatesOf(truth).head(known);
+    state.belief.covariance.topRows(known).setZero();
+    state.belief.covariance.leftCols(known).setZero();
+    std::fill(state.identified.begin(), state.identified.begin() + known, true);
+  }
+  return state;
+}
+
+/// Writes numbers so that they are read back to the last bit.
+class JsonWriter {
+ public:
+  JsonWriter() { out_.precision(std::numeric_limits<double>::max_digits10); }
+
+  template <typename Vector>
+  void add(const char* key, const Vector& values) {
+    start(key);
+    out_ << '[';
+    for (Eigen::Index n = 0; n < values.size(); ++n) {
+      out_ << (n == 0 ? "" : ", ") << values[n];
+    }
+    out_ << ']';
+  }
+  /// Elements are objects, already written.
+  void add(const char* key, const std::vector<std::string>& objects) {
+    start(key);
+    out_ << '[';
+    for (std::size_t n = 0; n < objects.size(); ++n) {
+      out_ << (n == 0 ? "" : ",\n") << objects[n];
+    }
+    out_ << ']';
+  }
+  void addObject(const char* key, const std::string& object) {
+    start(key);
+    out_ << object;
+  }
+  void addNumber(const char* key, double value) {
+    start(key);
+    out_ << value;
+  }
+  std::string text() const { return "{" + out_.str() + "}"; }
+
+ private:
+  void start(const char* key) { out_ << (out_.tellp() == 0 ? "" : ", ") << '"' << key << "\": "; }
+
+  std::ostringstream out_;
+};
+
+std::string toJson(const Actuator& actuator) {
+  JsonWriter json;
+  std::vector<std::string> joints;
+  for (const JointAxis& joint : actuator.joints) {
+    JsonWriter entry;
+    entry.add("axis", joint.axis);
+    entry.addNumber("offset", joint.offset);
+    joints.push_back(entry.text());
+  }
+  std::vector<std::string> poles;
+  for (const PoleAxis& pole : actuator.poles) {
+    JsonWriter entry;
+    entry.add("angles", Eigen::Vector2d(pole.polar, pole.azimuth));
+    entry.addNumber("polarity", pole.polarity);
+    poles.push_back(entry.text());
+  }
+  std::vector<std::string> coils;
+  for (const CoilAxis& coil : actuator.coils) {
+    JsonWriter entry;
+    entry.add("angles", Eigen::Vector2d(coil.polar, coil.azimuth));
+    coils.push_back(entry.text());
+  }
+  json.add("joints", joints);
+  json.add("poles", poles);
+  json.add("coils", coils);
+  return json.text();
+}
+
+std::string toJson(const TorqueCurve& curve) {
+  const std::vector<double>& coefficients = curve.coefficientsInRadians();
+  JsonWriter json;
+  json.add("coefficients",
+           Eigen::Map<const Eigen::VectorXd>(coefficients.data(),
+                                             static_cast<Eigen::Index>(coefficients.size())));
+  json.addNumber("blend_start", curve.blendStart());
+  json.addNumber("support_begin", curve.supportBegin());
+  json.addNumber("support_end", curve.supportEnd());
+  json.addNumber("k1", curve.linearCoefficient());
+  json.addNumber("k3", curve.cubicCoefficient());
+  return json.text();
+}
+
+std::string toJson(const Sample& sample) {
+  JsonWriter json;
+  json.add("q", sample.joint_position);
+  json.add("R", Eigen::Matrix<double, 9, 1>(sample.R_stator_rotor.transpose().reshaped()));
+  json.add("torque", sample.torque);
+  json.add("current", sample.current);
+  return json.text();
+}
+
+}  // namespace
+
+CycleScenario cycleScenario(Cycle cycle, std::size_t samples) {
+  const Actuator truth = scenarios::paperTruth();
+  CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
+  CalibrationState state = initialState(cycle, model.space(), truth);
+  const CycleRequest request{cycle, cycle == Cycle::kJoint ? 0 : excitedCoil(cycle) + 1};
+  return {std::move(model), request, makeSamples(cycle, samples, truth), std::move(state), truth};
+}
+
+double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x) {
+  const ParameterSpace& space = scenario.model.space();
+  const Eigen::VectorXd truth = space.coordinatesOf(scenario.truth);
+  double worst = 0.0;
+  for (const Eigen::Index p : selectCoordinates(space, scenario.samples, scenario.request, {})) {
+    worst = std::max(worst, std::abs(x[p] - truth[p]));
+  }
+  return worst;
+}
+
+std::string toJson(const CycleScenario& scenario, const CalibrationState& solution) {
+  const ParameterSpace& space = scenario.model.space();
+  JsonWriter json;
+  json.addNumber("coil", static_cast<double>(scenario.request.coil));
+  json.addObject("initial", toJson(space.actuatorAt(scenario.state.belief.x)));
+  json.addObject("solution", toJson(space.actuatorAt(solution.belief.x)));
+  json.addObject("curve", toJson(scenario.model.curve()));
+  std::vector<std::string> samples;
+  for (const Sample& sample : scenario.samples) {
+    samples.push_back(toJson(sample));
+  }
+  json.add("samples", samples);
+  return json.text();
+}
+
+}  // namespace spherical_actuator_calibration::benchmarks

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+
+namespace spherical_actuator_calibration::benchmarks {
+
+/// Everything that one cycle starts from, and the truth it should find.
+struct CycleScenario {
+  CalibrationModel model;
+  CycleRequest request;
+  std::vector<Sample> samples;
+  CalibrationState state;
+  Actuator truth;
+};
+
+/// The paper's actuator before a cycle, with `samples` noiseless samples of the paper's ranges
+/// (±0.6 rad for orientations, 2 A for torques), the same at every call. What the paper takes as
+/// known is known exactly: the joints before kPoles, and the poles, too, before kCoil (coil 2 of
+/// the paper). Not for kRefine.
+CycleScenario cycleScenario(Cycle cycle, std::size_t samples);
+
+/// Largest difference between coordinates `x` and the truth over those that the cycle estimates
+/// [rad].
+double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x);
+
+/// The scenario and its solution as a JSON object, every number exact, for the reference script.
+std::string toJson(const CycleScenario& scenario, const CalibrationState& solution);
+
+}  // namespace spherical_actuator_calibration::benchmarks

@@ -1,0 +1,150 @@
+#!/usr/bin/python3
+"""Runs all benchmarks of a build folder in one go and prints their ratios beside the aims.
+
+run_benchmarks.py BUILD_DIR. Both sides of a ratio are medians of processor time of the same run on one
+thread. Google Benchmark's own report stays in BUILD_DIR/benchmark/*.json.
+"""
+
+import os
+
+# Before NumPy is loaded: one thread, as the programs that it is compared with.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+os.environ["OMP_NUM_THREADS"] = "1"
+
+# pylint: disable=wrong-import-position
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import paper_iteration
+
+REPETITIONS = 5
+AUTODIFF_AIM = 4.0
+NUMPY_AIM = 50.0
+SAME_RESULT = 1e-10  # [rad]
+CYCLES = {"joint": 30, "poles": 30, "coil": 4}  # samples
+UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+
+
+class Report:
+    """Lines of the closing table; remembers nothing but what it printed."""
+
+    def __init__(self):
+        self.lines = []
+
+    def ratio(self, name, value, aim):
+        """A ratio of which more is better."""
+        verdict = "reached" if value >= aim else f"missed by {100.0 * (1.0 - value / aim):.0f} %"
+        self.lines.append(f"{name:<66} {value:>9.2f}   at least {aim:g}: {verdict}")
+
+    def figure(self, name, text):
+        """A figure without an aim."""
+        self.lines.append(f"{name:<66} {text:>9}")
+
+    def heading(self, text):
+        self.lines.append(f"\n{text}")
+
+
+def run_google_benchmark(program, *options):
+    """Median processor time [s] of one call, by name of the benchmark."""
+    output = program.with_suffix(".json")
+    subprocess.run(
+        [
+            program,
+            f"--benchmark_repetitions={REPETITIONS}",
+            "--benchmark_report_aggregates_only=true",
+            "--benchmark_min_time=0.2",
+            f"--benchmark_out={output}",
+            "--benchmark_out_format=json",
+            *options,
+        ],
+        check=True,
+    )
+    entries = json.loads(output.read_text())["benchmarks"]
+    failed = [entry["name"] for entry in entries if entry.get("error_occurred")]
+    if failed:
+        raise SystemExit(f"run_benchmarks: {', '.join(failed)} failed.")
+    return {
+        entry["run_name"]: entry["cpu_time"] * UNITS[entry["time_unit"]]
+        for entry in entries
+        if entry["aggregate_name"] == "median"
+    }
+
+
+def numpy_time(cycle, scenario):
+    """Median processor time [s] of the reference script, its parameters and iterations."""
+    times = []
+    for _ in range(REPETITIONS):
+        begin = time.process_time()
+        found, iterations = paper_iteration.identify(cycle, scenario)
+        times.append(time.process_time() - begin)
+    return statistics.median(times), found, iterations
+
+
+def compare_costs(times, report):
+    report.heading("Analytic cost functions against Ceres automatic differentiation")
+    for cost, name in (("orientationCost", "orientation"), ("torqueCost", "torque")):
+        ratio = times[f"{cost}/autodiff"] / times[f"{cost}/analytic"]
+        report.ratio(f"{name}, residual and all Jacobians, times faster", ratio, AUTODIFF_AIM)
+
+
+def compare_with_numpy(times, scenarios, report):
+    report.heading("From nominal to converged, against the paper's iteration in NumPy")
+    for cycle, samples in CYCLES.items():
+        scenario = scenarios[cycle]
+        reference, found, iterations = numpy_time(cycle, scenario)
+        expected = paper_iteration.parameters(cycle, scenario, scenario["solution"])
+        difference = np.abs(found - expected).max()
+        if difference > SAME_RESULT:
+            raise SystemExit(
+                f"run_benchmarks: {cycle}: the NumPy script differs by {difference:.1e} rad."
+            )
+        own = times[f"iterate/{cycle}/{samples}"]
+        whole = times[f"runWholeCycle/{cycle}/{samples}"]
+        report.ratio(
+            f"{cycle}, {samples} samples: iteration, {1e3 * own:.3g} ms, times faster",
+            reference / own,
+            NUMPY_AIM,
+        )
+        report.figure(
+            f"    whole cycle with uncertainty and report, {1e3 * whole:.3g} ms, times faster",
+            f"{reference / whole:.2f}",
+        )
+        report.figure(
+            f"    NumPy: {1e3 * reference:.3g} ms, {iterations} iterations; same parameters to [rad]",
+            f"{difference:.0e}",
+        )
+
+
+def list_large_cycles(times, report):
+    report.heading("Whole cycles with 100000 samples")
+    for cycle in CYCLES:
+        report.figure(f"{cycle} [s]", f"{times[f'runWholeCycle/{cycle}/100000']:.2f}")
+
+
+def main():
+    """Returns the exit status: 0 also when an aim is missed, since times depend on the machine."""
+    if len(sys.argv) != 2:
+        print("usage: run_benchmarks.py BUILD_DIR", file=sys.stderr)
+        return 2
+    programs = pathlib.Path(sys.argv[1]).resolve() / "benchmark"
+    scenario_file = programs / "scenarios.json"
+    subprocess.run([programs / "export_scenarios", scenario_file], check=True)
+    scenarios = json.loads(scenario_file.read_text())
+
+    report = Report()
+    times = run_google_benchmark(programs / "calibration_benchmark")
+    compare_costs(times, report)
+    compare_with_numpy(times, scenarios, report)
+    list_large_cycles(times, report)
+    print("\n".join(report.lines))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
