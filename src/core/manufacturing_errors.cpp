@@ -1,0 +1,82 @@
+#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
+
+#include <string>
+
+#include "spherical_actuator_calibration/core/axis_chart.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/noise_source.hpp"
+#include "spherical_actuator_calibration/core/value_range.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr std::uint32_t kPurpose = 100;
+
+/// Errors of the angles may lead over the pole of the coordinates; the axis then comes down on the
+/// other side.
+template <typename PoleOrCoil>
+void disturb(PoleOrCoil& axis, double angle_error, double strength_error, NoiseSource& noise) {
+  const double polar = axis.polar + noise.uniform(angle_error);
+  const double azimuth = axis.azimuth + noise.uniform(angle_error);
+  const AxisAngles angles = anglesFromAxis(axisFromAngles(polar, azimuth), azimuth);
+  axis.polar = angles.polar;
+  axis.azimuth = angles.azimuth;
+  axis.gain *= 1.0 + noise.uniform(strength_error);
+}
+
+void requireSameCount(const std::string& what, std::size_t nominal, std::size_t truth) {
+  if (nominal != truth) {
+    throw ConfigError("The truth has " + std::to_string(truth) + " " + what +
+                      ", the actuator description " + std::to_string(nominal) + ".");
+  }
+}
+
+}  // namespace
+
+void validate(const ManufacturingErrors& errors) {
+  // Beyond, the disturbed actuator has no likeness to the nominal one.
+  const ValueRange angle = ValueRange::closed(0.0, 0.5, "rad");
+  requireInRange("error of joint offsets", errors.joint_offset, angle);
+  requireInRange("error of joint axes", errors.joint_axis, angle);
+  requireInRange("error of pole angles", errors.pole_angle, angle);
+  requireInRange("error of coil angles", errors.coil_angle, angle);
+  requireInRange("error of strength", errors.strength, ValueRange::closed(0.0, 0.5));
+}
+
+Actuator manufacturedActuator(const Actuator& nominal,
+                              const ManufacturingErrors& errors,
+                              std::uint64_t seed) {
+  validate(errors);
+  NoiseSource noise(seed, kPurpose);
+  Actuator made = nominal;
+  for (JointAxis& joint : made.joints) {
+    joint.offset += noise.uniform(errors.joint_offset);
+    const double u = noise.uniform(errors.joint_axis);
+    const double v = noise.uniform(errors.joint_axis);
+    joint.axis = AxisChart::aroundAxis(joint.axis).axis(u, v);
+  }
+  for (PoleAxis& pole : made.poles) {
+    disturb(pole, errors.pole_angle, errors.strength, noise);
+  }
+  for (CoilAxis& coil : made.coils) {
+    disturb(coil, errors.coil_angle, errors.strength, noise);
+  }
+  return made;
+}
+
+void requireSameDesign(const Actuator& nominal, const Actuator& truth) {
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    if (nominal.joints[k].name != truth.joints[k].name) {
+      throw ConfigError("The truth calls joint " + std::to_string(k + 1) + " \"" +
+                        truth.joints[k].name + "\", the actuator description \"" +
+                        nominal.joints[k].name + "\".");
+    }
+  }
+  requireSameCount("poles", nominal.poles.size(), truth.poles.size());
+  requireSameCount("coils", nominal.coils.size(), truth.coils.size());
+  if (nominal.hasTorqueModel() != truth.hasTorqueModel()) {
+    throw ConfigError("Only one of truth and actuator description has a torque curve.");
+  }
+}
+
+}  // namespace spherical_actuator_calibration

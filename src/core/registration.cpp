@@ -1,0 +1,40 @@
+#include "spherical_actuator_calibration/core/registration.hpp"
+
+namespace spherical_actuator_calibration {
+
+OrientationMeasurement orientationFromMarkerPose(const Registration& registration,
+                                                 const MarkerPoseMeasurement& pose) {
+  const Eigen::Quaterniond q_stator_tracker(registration.X_stator_tracker.linear());
+  const Eigen::Quaterniond q_rotor_marker(registration.X_rotor_marker.linear());
+  return {pose.stamp, q_stator_tracker * pose.q_tracker_marker * q_rotor_marker.conjugate()};
+}
+
+MarkerPoseMeasurement markerPoseFromOrientation(const Registration& registration,
+                                                Stamp stamp,
+                                                const Eigen::Matrix3d& R_stator_rotor) {
+  Eigen::Isometry3d X_stator_rotor = Eigen::Isometry3d::Identity();
+  X_stator_rotor.linear() = R_stator_rotor;
+  const Eigen::Isometry3d X_tracker_marker =
+      registration.X_stator_tracker.inverse() * X_stator_rotor * registration.X_rotor_marker;
+  return {stamp, X_tracker_marker.translation(), Eigen::Quaterniond(X_tracker_marker.linear())};
+}
+
+TorqueMeasurement torqueFromWrench(const Registration& registration,
+                                   const WrenchMeasurement& wrench) {
+  const auto R_rotor_sensor = registration.X_rotor_sensor.linear();
+  const Eigen::Vector3d lever_rotor = registration.X_rotor_sensor.translation();
+  const Eigen::Vector3d force_rotor = R_rotor_sensor * wrench.force;
+  return {wrench.stamp, R_rotor_sensor * wrench.torque + lever_rotor.cross(force_rotor)};
+}
+
+WrenchMeasurement wrenchFromTorque(const Registration& registration,
+                                   const TorqueMeasurement& torque,
+                                   const Eigen::Vector3d& force_rotor) {
+  const Eigen::Matrix3d R_sensor_rotor = registration.X_rotor_sensor.linear().transpose();
+  const Eigen::Vector3d lever_rotor = registration.X_rotor_sensor.translation();
+  return {torque.stamp,
+          R_sensor_rotor * force_rotor,
+          R_sensor_rotor * (torque.torque - lever_rotor.cross(force_rotor))};
+}
+
+}  // namespace spherical_actuator_calibration
