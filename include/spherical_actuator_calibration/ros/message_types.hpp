@@ -1,0 +1,21 @@
+#pragma once
+
+/// Generated messages that share their name, in the same namespace, with a type of the core. The
+/// names of messages are fixed by the recordings made with them, and those of the core are what its
+/// users read; a source file that needs both gets the messages from here, as JointAxisMessage and
+/// so on. Only the short names of the generated headers change; the types are the same everywhere.
+
+#define JointAxis JointAxisMessage
+#define PoleAxis PoleAxisMessage
+#define CoilAxis CoilAxisMessage
+#define ParameterEstimate ParameterEstimateMessage
+#define SampleResidual SampleResidualMessage
+
+#include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "spherical_actuator_calibration/CalibrationReport.h"
+
+#undef JointAxis
+#undef PoleAxis
+#undef CoilAxis
+#undef ParameterEstimate
+#undef SampleResidual

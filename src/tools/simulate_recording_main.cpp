@@ -1,0 +1,100 @@
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include "simulate_recording_options.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/core/session_plan.hpp"
+#include "spherical_actuator_calibration/core/session_simulator.hpp"
+#include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
+
+#include <unistd.h>
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr int kSuccess = 0;
+constexpr int kUnusable = 2;
+
+/// Shows the share done on a terminal, and nothing anywhere else.
+std::function<void(double)> terminalProgress() {
+  if (::isatty(STDERR_FILENO) == 0) {
+    return {};
+  }
+  return [](double share) {
+    std::fprintf(stderr, "\rrecording %3.0f %%%s", 100.0 * share, share < 1.0 ? "" : "\n");
+  };
+}
+
+Actuator truthOf(const Actuator& nominal, const SimulateRecordingOptions& options) {
+  if (!options.truth_in_path) {
+    return manufacturedActuator(nominal, options.errors, options.simulation.seed);
+  }
+  Actuator truth = loadActuator(*options.truth_in_path);
+  requireSameDesign(nominal, truth);
+  return truth;
+}
+
+/// Nothing is simulated for a file that could not be written in the end.
+void requireNewFile(const std::string& path, OverwritePolicy policy) {
+  if (policy == OverwritePolicy::kRefuse && std::filesystem::exists(path)) {
+    throw DataError(path + ": the file exists already; choose another name or give --force.");
+  }
+}
+
+void printSummary(const SimulateRecordingOptions& options,
+                  const SimulatedSession& session,
+                  std::uint64_t messages) {
+  const double megabytes =
+      1e-6 * static_cast<double>(std::filesystem::file_size(options.output_path));
+  std::printf("%s: %zu dwells in %.1f s, %llu messages, %.1f MB\n",
+              options.output_path.c_str(),
+              session.dwells.size(),
+              session.duration,
+              static_cast<unsigned long long>(messages),
+              megabytes);
+  if (!session.bad_dwells.empty()) {
+    std::printf("tracker off in the dwells");
+    for (const std::size_t dwell : session.bad_dwells) {
+      std::printf(" %zu", dwell + 1);
+    }
+    std::printf("\n");
+  }
+  std::printf("truth: %s\n", options.truth_path.c_str());
+}
+
+void simulateRecording(const SimulateRecordingOptions& options) {
+  const Actuator nominal = loadActuator(options.actuator_path);
+  const Actuator truth = truthOf(nominal, options);
+  const SessionPlan plan = planSession(nominal, options.plan, options.simulation.seed);
+  requireNewFile(options.output_path, options.bag.overwrite);
+  requireNewFile(options.truth_path, options.bag.overwrite);
+
+  SessionBagWriter writer(options.output_path, nominal, options.bag);
+  const SimulatedSession session =
+      simulateSession(truth, plan, options.simulation, writer, terminalProgress());
+  saveDescription(options.truth_path, {truth}, options.bag.overwrite);
+  writer.close();
+  printSummary(options, session, writer.messages());
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
+
+int main(int argc, char** argv) {
+  namespace sac = spherical_actuator_calibration;
+  try {
+    const auto options = sac::parseSimulateRecordingOptions(argc, argv, std::cout);
+    if (options) {
+      sac::simulateRecording(*options);
+    }
+    return sac::kSuccess;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "simulate_recording: %s\n", error.what());
+    return sac::kUnusable;
+  }
+}

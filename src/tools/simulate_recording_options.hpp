@@ -1,0 +1,33 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include "spherical_actuator_calibration/core/atomic_file.hpp"
+#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/core/session_plan.hpp"
+#include "spherical_actuator_calibration/core/session_simulator.hpp"
+#include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// What the command line of simulate_recording asks for.
+struct SimulateRecordingOptions {
+  std::string actuator_path;
+  std::string output_path;
+  std::string truth_path;                    ///< where the truth is written
+  std::optional<std::string> truth_in_path;  ///< a given truth, instead of a drawn one
+  SessionPlanOptions plan;
+  ManufacturingErrors errors;
+  SimulationOptions simulation;
+  SessionBagOptions bag;
+};
+
+/// Reads the command line. Without a value: help was asked for and has been printed to `out`.
+/// Throws ConfigError, naming the option, when it cannot be understood.
+std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
+                                                                      const char* const* argv,
+                                                                      std::ostream& out);
+
+}  // namespace spherical_actuator_calibration
