@@ -76,20 +76,33 @@ class DwellSampler {
       collectWithoutCurrents();
       return;
     }
-    bool any_long_enough = false;
+    bool any_usable = false;
     for (const CurrentSegment& segment :
          segmentsOfConstantCurrent(buffers_.currents, dwell_, options_)) {
-      // Shorter ones are the ramps between patterns: nothing is lost with them.
-      if (segment.span.duration() >= options_.smallest_duration) {
-        any_long_enough = true;
-        collect(segment);
+      const StampInterval steady = steadyPart(segment);
+      if (isWorthwhile(segment, steady)) {
+        any_usable = true;
+        collect(segment, steady);
       }
     }
-    if (!any_long_enough) {
-      discard(
-          dwell_,
-          "The currents never stayed constant for " + tenths(options_.smallest_duration) + " s.");
+    if (!any_usable) {
+      discard(dwell_, "No part of it with constant current is long enough.");
     }
+  }
+
+  /// The segment without settling and guards.
+  StampInterval steadyPart(const CurrentSegment& segment) const {
+    return {std::max(rest_.begin,
+                     segment.span.begin + ticksFromSeconds(options_.settle_after_current_change)),
+            std::min(rest_.end,
+                     segment.span.end - ticksFromSeconds(options_.guard_before_current_change))};
+  }
+
+  /// Whether the segment is to give a sample, or else a reason. Not the ramps between patterns, and
+  /// not a part without current at the ends of the dwell that settling and guard use up.
+  bool isWorthwhile(const CurrentSegment& segment, const StampInterval& steady) const {
+    const StampInterval& decisive = segment.excited ? segment.span : steady;
+    return decisive.duration() >= options_.smallest_duration;
   }
 
   void collectWithoutCurrents() {
@@ -107,12 +120,7 @@ class DwellSampler {
     candidates_.push_back({sample, false, 0});
   }
 
-  void collect(const CurrentSegment& segment) {
-    const StampInterval steady = {
-        std::max(rest_.begin,
-                 segment.span.begin + ticksFromSeconds(options_.settle_after_current_change)),
-        std::min(rest_.end,
-                 segment.span.end - ticksFromSeconds(options_.guard_before_current_change))};
+  void collect(const CurrentSegment& segment, const StampInterval& steady) {
     std::optional<SegmentAverage> average = averageOf(steady);
     if (!average) {
       return;
