@@ -33,10 +33,12 @@ class DwellSampler {
                const StampInterval& dwell,
                const SampleBuilderOptions& options,
                SampleBuilderReport& report)
-      : buffers_(buffers), dwell_(dwell), options_(options), report_(report) {
-    rest_ = {dwell.begin + ticksFromSeconds(options.settle_after_motion),
-             dwell.end - ticksFromSeconds(options.guard_before_motion)};
-  }
+      : buffers_(buffers),
+        dwell_(dwell),
+        rest_{dwell.begin + ticksFromSeconds(options.settle_after_motion),
+              dwell.end - ticksFromSeconds(options.guard_before_motion)},
+        options_(options),
+        report_(report) {}
 
   std::vector<Sample> samples() {
     if (rest_.duration() < options_.smallest_duration) {

@@ -19,7 +19,7 @@ using synthetic::stampAt;
 using synthetic::Streams;
 using synthetic::timeOf;
 
-const Eigen::Vector3d kPose(0.3, -0.2, 1.0);
+const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
 
 std::vector<StampInterval> dwellsOf(const std::vector<JointMeasurement>& joints,
                                     const SampleBuilderOptions& options = {}) {
@@ -59,7 +59,7 @@ TEST(SlidingExtremes, IsTheSpreadOfTheWindow) {
 }
 
 TEST(DwellDetector, FindsTheRestBetweenTwoMoves) {
-  const Script script = Script(0).moveTo(kPose).rest(2.0).moveTo(-kPose);
+  const Script script = Script(0).moveTo(rest_pose).rest(2.0).moveTo(-rest_pose);
   const std::vector<StampInterval> dwells = dwellsOf(jointsOf(script));
   ASSERT_EQ(dwells.size(), 1U);
   // The ends of a minimum-jerk move are slow: less than the settle time of it is within the limit.
@@ -69,7 +69,8 @@ TEST(DwellDetector, FindsTheRestBetweenTwoMoves) {
 
 TEST(DwellDetector, ARestShorterThanTheWindowIsNone) {
   EXPECT_TRUE(
-      dwellsOf(jointsOf(Script(0).moveTo(kPose, 0.3).rest(0.15).moveTo(-kPose, 0.3))).empty());
+      dwellsOf(jointsOf(Script(0).moveTo(rest_pose, 0.3).rest(0.15).moveTo(-rest_pose, 0.3)))
+          .empty());
 }
 
 TEST(DwellDetector, ASteadyMoveIsNoRest) {

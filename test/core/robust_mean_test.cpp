@@ -10,7 +10,7 @@ namespace {
 
 using Generator = std::mt19937_64;
 
-const RobustMean::Options kOptions{6.0, 0.0};
+constexpr RobustMean::Options kOptions{6.0, 0.0};
 
 Eigen::Vector3d normal(Generator& generator) {
   std::normal_distribution<double> distribution;

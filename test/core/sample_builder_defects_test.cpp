@@ -25,12 +25,12 @@ using synthetic::timeOf;
 constexpr std::size_t kCoils = 2;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const Eigen::Vector3d kPose(0.3, -0.2, 1.0);
+const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
 
 /// At rest from 0.8 s to 4.8 s, excited from 2.8 s on.
 Streams oneDwell() {
   const Script script =
-      Script(kCoils).moveTo(kPose).rest(2.0).excite(0, 2.0, 2.0).moveTo(-kPose).rest(0.1);
+      Script(kCoils).moveTo(rest_pose).rest(2.0).excite(0, 2.0, 2.0).moveTo(-rest_pose).rest(0.1);
   return synthetic::record(script, {}, 21);
 }
 
@@ -40,10 +40,11 @@ void expectUnharmed(const std::vector<Sample>& samples) {
   const Eigen::Vector3d torque = Script::torque(2.0 * Eigen::VectorXd::Unit(kCoils, 0));
   EXPECT_LT((samples[1].torque - torque).norm(), 6e-4);
   for (const Sample& sample : samples) {
-    EXPECT_LT((sample.joint_position - kPose).norm(), 3e-5);
+    EXPECT_LT((sample.joint_position - rest_pose).norm(), 3e-5);
     EXPECT_TRUE(sample.has_orientation);
-    EXPECT_LT(rotationLog(sample.R_stator_rotor * Script::orientation(kPose).transpose()).norm(),
-              2e-4);
+    EXPECT_LT(
+        rotationLog(sample.R_stator_rotor * Script::orientation(rest_pose).transpose()).norm(),
+        2e-4);
   }
 }
 
@@ -188,8 +189,8 @@ TEST(StreamDefects, ATrackerThatMovesAloneIsRefused) {
 TEST(StreamDefects, AResetOfAllClocksSeparatesWhatWasBefore) {
   // The same times twice, the second time in another pose: old data would fit the new stamps.
   const Eigen::Vector3d other_pose(-0.1, 0.4, -0.7);
-  const Script before = Script(kCoils).moveTo(kPose).rest(6.0);
-  const Script after = Script(kCoils).moveTo(other_pose).rest(3.0).moveTo(kPose);
+  const Script before = Script(kCoils).moveTo(rest_pose).rest(6.0);
+  const Script after = Script(kCoils).moveTo(other_pose).rest(3.0).moveTo(rest_pose);
   const Streams old_streams = synthetic::record(before, {}, 1);
   const Streams new_streams = synthetic::record(after, {}, 2);
   SampleBuilder builder({}, kCoils);
@@ -198,7 +199,7 @@ TEST(StreamDefects, AResetOfAllClocksSeparatesWhatWasBefore) {
   builder.finish();
   const std::vector<Sample> samples = builder.takeSamples();
   ASSERT_EQ(samples.size(), 2U);
-  EXPECT_LT((samples[0].joint_position - kPose).norm(), 3e-5);
+  EXPECT_LT((samples[0].joint_position - rest_pose).norm(), 3e-5);
   EXPECT_LT((samples[1].joint_position - other_pose).norm(), 3e-5);
   for (const Sample& sample : samples) {
     const Eigen::Matrix3d R = Script::orientation(sample.joint_position);
@@ -212,7 +213,7 @@ TEST(StreamDefects, AStreamWhoseClockIsBehindDoesNotMixIn) {
   // The joint sensors' clock jumps back by 3 s in another pose: what the others measured in the
   // first pose has the stamps that the joint sensors give now.
   const Eigen::Vector3d other_pose(-0.1, 0.4, -0.7);
-  const Script script = Script(kCoils).moveTo(kPose).rest(4.0).moveTo(other_pose).rest(6.0);
+  const Script script = Script(kCoils).moveTo(rest_pose).rest(4.0).moveTo(other_pose).rest(6.0);
   Streams streams = synthetic::record(script, {}, 3);
   for (JointMeasurement& joint : streams.joints) {
     if (timeOf(joint.stamp) > 5.0) {

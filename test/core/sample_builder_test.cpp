@@ -23,17 +23,17 @@ using synthetic::Streams;
 using synthetic::timeOf;
 
 constexpr std::size_t kCoils = 4;
-const Eigen::Vector3d kPose(0.3, -0.2, 1.0);
+const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
 
 /// Arrives, two patterns after a part without current, leaves.
 Script twoPatterns() {
   return Script(kCoils)
-      .moveTo(kPose)
+      .moveTo(rest_pose)
       .rest(0.8)
       .excite(0, 2.0, 0.8)
       .excite(2, -1.5, 0.8)
       .rest(0.5)
-      .moveTo(-kPose);
+      .moveTo(-rest_pose);
 }
 
 Eigen::VectorXd pattern(Eigen::Index coil, double current) {
@@ -86,9 +86,10 @@ TEST(SampleBuilder, SplitsADwellByCurrentPattern) {
     EXPECT_EQ(sample.id, k + 1);
     EXPECT_TRUE(sample.has_orientation);
     EXPECT_EQ(sample.has_torque, has_torque[k]);
-    EXPECT_LT((sample.joint_position - kPose).norm(), 2e-5);
-    EXPECT_LT(rotationLog(sample.R_stator_rotor * Script::orientation(kPose).transpose()).norm(),
-              5e-4);
+    EXPECT_LT((sample.joint_position - rest_pose).norm(), 2e-5);
+    EXPECT_LT(
+        rotationLog(sample.R_stator_rotor * Script::orientation(rest_pose).transpose()).norm(),
+        5e-4);
   }
   for (std::size_t k = 1; k < 3; ++k) {
     const Eigen::VectorXd current = k == 1 ? pattern(0, 2.0) : pattern(2, -1.5);
@@ -145,7 +146,7 @@ TEST(SampleBuilder, TellsThatTheBiasCouldNotBeRemoved) {
 
 TEST(SampleBuilder, ADwellWithoutExcitationKeepsItsTorque) {
   SampleBuilder builder({}, kCoils);
-  const Script script = Script(kCoils).moveTo(kPose).rest(1.5).moveTo(-kPose);
+  const Script script = Script(kCoils).moveTo(rest_pose).rest(1.5).moveTo(-rest_pose);
   const std::vector<Sample> samples = samplesOf(builder, synthetic::record(script, {}, 1));
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_TRUE(samples[0].has_torque);
@@ -180,8 +181,8 @@ TEST(SampleBuilder, AnActuatorWithoutCoilsGivesOrientationSamples) {
 TEST(SampleBuilder, MeansHoldTheTruthAsOftenAsStated) {
   constexpr int kSeeds = 400;
   const Script script =
-      Script(kCoils).moveTo(kPose).rest(0.7).excite(0, 2.0, 0.6).rest(0.4).moveTo(-kPose);
-  const Eigen::Matrix3d R = Script::orientation(kPose);
+      Script(kCoils).moveTo(rest_pose).rest(0.7).excite(0, 2.0, 0.6).rest(0.4).moveTo(-rest_pose);
+  const Eigen::Matrix3d R = Script::orientation(rest_pose);
   int joints = 0;
   int orientations = 0;
   int torques = 0;
@@ -193,7 +194,7 @@ TEST(SampleBuilder, MeansHoldTheTruthAsOftenAsStated) {
         samplesOf(builder, synthetic::record(script, sensors, static_cast<std::uint64_t>(seed)));
     ASSERT_EQ(samples.size(), 2U);
     const Sample& sample = samples[1];
-    const Eigen::Array3d joint_error = (sample.joint_position - kPose).array().abs();
+    const Eigen::Array3d joint_error = (sample.joint_position - rest_pose).array().abs();
     const Eigen::Array3d orientation_error =
         rotationLog(sample.R_stator_rotor * R.transpose()).array().abs();
     // With the model's torque of the stated current: their errors belong together.
@@ -216,11 +217,11 @@ TEST(SampleBuilder, NothingOfTheMotionEnters) {
     sensors.joint_noise = 1e-7;
     SampleBuilder builder({}, kCoils);
     const Script script =
-        Script(kCoils).moveTo(kPose, move).rest(1.0).moveTo(-kPose, move).rest(1.0);
+        Script(kCoils).moveTo(rest_pose, move).rest(1.0).moveTo(-rest_pose, move).rest(1.0);
     const std::vector<Sample> samples = samplesOf(builder, synthetic::record(script, sensors, 1));
     ASSERT_EQ(samples.size(), 2U) << move;
-    EXPECT_LT((samples[0].joint_position - kPose).cwiseAbs().maxCoeff(), 2e-5) << move;
-    EXPECT_LT((samples[1].joint_position + kPose).cwiseAbs().maxCoeff(), 2e-5) << move;
+    EXPECT_LT((samples[0].joint_position - rest_pose).cwiseAbs().maxCoeff(), 2e-5) << move;
+    EXPECT_LT((samples[1].joint_position + rest_pose).cwiseAbs().maxCoeff(), 2e-5) << move;
   }
 }
 
@@ -251,7 +252,7 @@ TEST(SampleBuilder, DriftIsToldAndNeverADwell) {
 
 TEST(SampleBuilder, TellsOfAShortRest) {
   SampleBuilder builder({}, kCoils);
-  const Script script = Script(kCoils).moveTo(kPose, 0.3).rest(0.4).moveTo(-kPose, 0.3);
+  const Script script = Script(kCoils).moveTo(rest_pose, 0.3).rest(0.4).moveTo(-rest_pose, 0.3);
   EXPECT_TRUE(samplesOf(builder, synthetic::record(script, {}, 1)).empty());
   ASSERT_EQ(builder.report().events.size(), 1U);
   EXPECT_EQ(builder.report().events[0].reason.substr(0, 26), "The rotor rested only for ");
@@ -261,7 +262,7 @@ TEST(SampleBuilder, TellsOfAShortExcitationButNotOfAShortEnd) {
   SampleBuilder builder({}, kCoils);
   // The last 0.3 s without current go with the guard.
   const Script script =
-      Script(kCoils).moveTo(kPose).rest(0.8).excite(0, 2.0, 0.25).rest(0.3).moveTo(-kPose);
+      Script(kCoils).moveTo(rest_pose).rest(0.8).excite(0, 2.0, 0.25).rest(0.3).moveTo(-rest_pose);
   const std::vector<Sample> samples = samplesOf(builder, synthetic::record(script, {}, 1));
   EXPECT_EQ(samples.size(), 1U);
   ASSERT_EQ(reasons(builder).size(), 1U);
@@ -280,7 +281,7 @@ TEST(SampleBuilder, TellsOfADwellWithoutConstantCurrent) {
 TEST(SampleBuilder, TheOrderOfArrivalDoesNotMatter) {
   const Script script = twoPatterns()
                             .rest(1.0)
-                            .moveTo(kPose)
+                            .moveTo(rest_pose)
                             .rest(1.2)
                             .excite(3, 1.0, 1.0)
                             .moveTo(Eigen::Vector3d::Zero());
@@ -315,7 +316,7 @@ TEST(SampleBuilder, TheOrderOfArrivalDoesNotMatter) {
 }
 
 TEST(SampleBuilder, ADwellIsReadyOnceEveryStreamHasPassedIt) {
-  const Script script = Script(kCoils).moveTo(kPose).rest(1.5).moveTo(-kPose, 2.0);
+  const Script script = Script(kCoils).moveTo(rest_pose).rest(1.5).moveTo(-rest_pose, 2.0);
   const Streams streams = synthetic::record(script, {}, 1);
   SampleBuilder builder({}, kCoils);
   synthetic::feed(builder, streams);
@@ -333,7 +334,7 @@ void cutAfter(double time, std::vector<Measurement>& stream) {
 
 TEST(SampleBuilder, WaitsForASilentStreamOnlyUpToTheTimeout) {
   // The dwell ends at 2.4 s.
-  const Script script = Script(kCoils).moveTo(kPose).rest(1.5).moveTo(-kPose, 2.0);
+  const Script script = Script(kCoils).moveTo(rest_pose).rest(1.5).moveTo(-rest_pose, 2.0);
   const Streams streams = synthetic::record(script, {}, 1);
   enum class Silent { kJoints, kOrientations, kTorques, kCurrents };
   for (const Silent silent :

@@ -17,7 +17,7 @@ using synthetic::Sensors;
 using synthetic::stampAt;
 using synthetic::Streams;
 
-const StampInterval kWhole{stampAt(0.0), stampAt(1.0)};
+const StampInterval whole_second{stampAt(0.0), stampAt(1.0)};
 
 MeasurementBuffers buffersOf(const Streams& streams) {
   MeasurementBuffers buffers(0);
@@ -40,7 +40,7 @@ Streams restingStreams(const Sensors& sensors = {}) {
   return synthetic::record(script, sensors, 11);
 }
 
-std::string refusalOf(const Streams& streams, const StampInterval& interval = kWhole) {
+std::string refusalOf(const Streams& streams, const StampInterval& interval = whole_second) {
   return averageSegment(buffersOf(streams), interval, {}).refusal;
 }
 
@@ -54,7 +54,7 @@ TEST(SegmentAverage, AveragesOrientationsAsRotations) {
   for (const OrientationMeasurement& orientation : streams.orientations) {
     rotations.push_back(orientation.q_stator_rotor.toRotationMatrix());
   }
-  const SegmentAverage average = averageSegment(buffersOf(streams), kWhole, {});
+  const SegmentAverage average = averageSegment(buffersOf(streams), whole_second, {});
   ASSERT_TRUE(average.sample);
   EXPECT_TRUE(average.sample->has_orientation);
   const Eigen::Matrix3d difference =
@@ -64,7 +64,7 @@ TEST(SegmentAverage, AveragesOrientationsAsRotations) {
 
 TEST(SegmentAverage, StatesWhatItIsMadeOf) {
   const Streams streams = restingStreams();
-  const SegmentAverage average = averageSegment(buffersOf(streams), kWhole, {});
+  const SegmentAverage average = averageSegment(buffersOf(streams), whole_second, {});
   ASSERT_TRUE(average.sample);
   EXPECT_EQ(average.sample->stamp, stampAt(0.5));
   EXPECT_DOUBLE_EQ(average.sample->duration, 1.0);
@@ -79,7 +79,8 @@ TEST(SegmentAverage, NoUncertaintyIsBelowItsFloor) {
   sensors.joint_noise = 0.0;
   sensors.orientation_noise = 0.0;
   sensors.torque_noise = 0.0;
-  const SegmentAverage average = averageSegment(buffersOf(restingStreams(sensors)), kWhole, {});
+  const SegmentAverage average =
+      averageSegment(buffersOf(restingStreams(sensors)), whole_second, {});
   ASSERT_TRUE(average.sample);
   const SampleBuilderOptions options;
   EXPECT_NEAR(average.sample->joint_stddev.y(), options.joint_stddev_floor, 1e-12);
@@ -89,13 +90,13 @@ TEST(SegmentAverage, NoUncertaintyIsBelowItsFloor) {
 
 TEST(SegmentAverage, LeavesGlitchesOut) {
   Streams streams = restingStreams();
-  const SegmentAverage clean = averageSegment(buffersOf(streams), kWhole, {});
+  const SegmentAverage clean = averageSegment(buffersOf(streams), whole_second, {});
   streams.joints[50].position.x() += 0.5;
   // Half a turn, at the very place where the reference is looked for.
   Eigen::Quaterniond& q = streams.orientations[streams.orientations.size() / 2].q_stator_rotor;
   q = q * Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
   streams.torques[70].torque.z() = 50.0;
-  const SegmentAverage average = averageSegment(buffersOf(streams), kWhole, {});
+  const SegmentAverage average = averageSegment(buffersOf(streams), whole_second, {});
   ASSERT_TRUE(average.sample);
   EXPECT_EQ(average.joint_glitches, 1U);
   EXPECT_EQ(average.orientation_glitches, 1U);
@@ -163,7 +164,7 @@ TEST(SegmentAverage, TellsOfAHoleAndOfTooFew) {
   Streams streams = restingStreams();
   streams.orientations.erase(streams.orientations.begin() + 30, streams.orientations.begin() + 80);
   streams.torques.resize(5);
-  const SegmentAverage average = averageSegment(buffersOf(streams), kWhole, {});
+  const SegmentAverage average = averageSegment(buffersOf(streams), whole_second, {});
   ASSERT_TRUE(average.sample);
   EXPECT_TRUE(average.sample->has_orientation);
   EXPECT_FALSE(average.sample->has_torque);

@@ -50,8 +50,8 @@ class SampleBuilder {
  private:
   /// One stream: what came, what of it was good, and what of that is still needed.
   struct Stream {
-    StreamStatistics* statistics;
-    StreamBuffer* buffer;
+    StreamStatistics* statistics = nullptr;
+    StreamBuffer* buffer = nullptr;
     StampFilter filter;
     std::optional<Stamp> horizon;  ///< newest accepted stamp
   };
