@@ -1,8 +1,6 @@
 #include "spherical_actuator_calibration/core/stream_schedule.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "spherical_actuator_calibration/core/value_range.hpp"
 
@@ -12,10 +10,13 @@ namespace {
 /// Events lie within the first part of a session, so that measurements follow that show them.
 constexpr double kEventShare = 0.95;
 
+/// Random times, one in each of equal parts of the session, latest first.
 std::vector<double> eventTimes(std::size_t count, double duration, NoiseSource& noise) {
-  std::vector<double> times(count);
-  std::generate(times.begin(), times.end(), [&] { return kEventShare * duration * noise.share(); });
-  std::sort(times.begin(), times.end(), std::greater<>());
+  const double part = kEventShare * duration / static_cast<double>(count);
+  std::vector<double> times;
+  for (std::size_t left = count; left > 0; --left) {
+    times.push_back(part * (static_cast<double>(left - 1) + noise.share()));
+  }
   return times;
 }
 

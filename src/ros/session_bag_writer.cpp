@@ -16,7 +16,7 @@
 
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/ros/message_types.hpp"
+#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/time_conversion.hpp"
 
 namespace spherical_actuator_calibration {
@@ -32,23 +32,6 @@ constexpr Stamp kCurrentLatency = 1'500'000;
 /// What the bridge takes to derive measured_* from a raw message [ns].
 constexpr Stamp kBridgeLatency = 300'000;
 
-geometry_msgs::Vector3 vectorMessage(const Eigen::Vector3d& vector) {
-  geometry_msgs::Vector3 message;
-  message.x = vector.x();
-  message.y = vector.y();
-  message.z = vector.z();
-  return message;
-}
-
-geometry_msgs::Quaternion quaternionMessage(const Eigen::Quaterniond& quaternion) {
-  geometry_msgs::Quaternion message;
-  message.x = quaternion.x();
-  message.y = quaternion.y();
-  message.z = quaternion.z();
-  message.w = quaternion.w();
-  return message;
-}
-
 geometry_msgs::TransformStamped transformMessage(const std::string& parent,
                                                  const std::string& child,
                                                  const Eigen::Isometry3d& X_parent_child,
@@ -57,33 +40,8 @@ geometry_msgs::TransformStamped transformMessage(const std::string& parent,
   message.header.stamp = stamp;
   message.header.frame_id = parent;
   message.child_frame_id = child;
-  message.transform.translation = vectorMessage(X_parent_child.translation());
-  message.transform.rotation = quaternionMessage(Eigen::Quaterniond(X_parent_child.linear()));
-  return message;
-}
-
-ActuatorParameters parametersMessage(const Actuator& actuator) {
-  ActuatorParameters message;
-  message.actuator = actuator.name;
-  message.serial = actuator.serial;
-  message.source = ActuatorParameters::NOMINAL;
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    message.joints[k].axis = vectorMessage(actuator.joints[k].axis);
-    message.joints[k].offset = actuator.joints[k].offset;
-  }
-  for (const auto& pole : actuator.poles) {
-    message.poles.emplace_back();
-    message.poles.back().polar = pole.polar;
-    message.poles.back().azimuth = pole.azimuth;
-    message.poles.back().polarity = static_cast<std::int8_t>(pole.polarity);
-    message.poles.back().gain = pole.gain;
-  }
-  for (const auto& coil : actuator.coils) {
-    message.coils.emplace_back();
-    message.coils.back().polar = coil.polar;
-    message.coils.back().azimuth = coil.azimuth;
-    message.coils.back().gain = coil.gain;
-  }
+  message.transform.translation = vectorToRos(X_parent_child.translation());
+  message.transform.rotation = quaternionToRos(Eigen::Quaterniond(X_parent_child.linear()));
   return message;
 }
 
@@ -139,19 +97,19 @@ class SessionBagWriter::Recording {
     pose.position.x = measurement.position.x();
     pose.position.y = measurement.position.y();
     pose.position.z = measurement.position.z();
-    pose.orientation = quaternionMessage(measurement.q_tracker_marker);
+    pose.orientation = quaternionToRos(measurement.q_tracker_marker);
     write(tracker_pose_, measurement.stamp, kTrackerLatency);
-    orientation_.message.quaternion = quaternionMessage(
+    orientation_.message.quaternion = quaternionToRos(
         orientationFromMarkerPose(options_.registration, measurement).q_stator_rotor);
     write(orientation_, measurement.stamp, kTrackerLatency + kBridgeLatency);
   }
 
   void add(const WrenchMeasurement& measurement) {
-    wrench_.message.wrench.force = vectorMessage(measurement.force);
-    wrench_.message.wrench.torque = vectorMessage(measurement.torque);
+    wrench_.message.wrench.force = vectorToRos(measurement.force);
+    wrench_.message.wrench.torque = vectorToRos(measurement.torque);
     write(wrench_, measurement.stamp, kWrenchLatency);
     torque_.message.vector =
-        vectorMessage(torqueFromWrench(options_.registration, measurement).torque);
+        vectorToRos(torqueFromWrench(options_.registration, measurement).torque);
     write(torque_, measurement.stamp, kWrenchLatency + kBridgeLatency);
   }
 
@@ -238,7 +196,8 @@ class SessionBagWriter::Recording {
     writeLatched(transforms, begin);
 
     Topic<ActuatorParameters> parameters{topicPrefix(options_.ns) + "parameters"};
-    parameters.message = parametersMessage(nominal);
+    parameters.message = parametersToRos(nominal);
+    parameters.message.source = ActuatorParameters::NOMINAL;
     parameters.message.header.stamp = begin;
     parameters.message.header.frame_id = frames.stator;
     writeLatched(parameters, begin);
@@ -287,7 +246,6 @@ class SessionBagWriter::Recording {
   Topic<geometry_msgs::QuaternionStamped> orientation_;
   Topic<geometry_msgs::Vector3Stamped> torque_;
   std::uint64_t messages_ = 0;
-  bool closed_ = false;
 };
 
 SessionBagWriter::SessionBagWriter(const std::string& path,

@@ -15,9 +15,9 @@ struct StreamOptions {
   double rate = 100.0;            ///< [Hz]
   double phase = 0.0;             ///< delay of the beat [s]
   double jitter = 0.0;            ///< stamps lie uniform within ± this around the beat [s]
-  std::size_t dropouts = 0;       ///< spans of silence, at random times
+  std::size_t dropouts = 0;       ///< spans of silence, spread at random
   double dropout_duration = 0.5;  ///< of each [s]
-  std::size_t glitches = 0;       ///< single measurements that are far off, at random times
+  std::size_t glitches = 0;       ///< single measurements that are far off, spread at random
   double repeated_share = 0.0;    ///< measurements that are delivered twice
   double nan_share = 0.0;         ///< measurements with a component that is not a number
 };
