@@ -13,7 +13,9 @@
 namespace spherical_actuator_calibration {
 namespace {
 
-const Eigen::Matrix3d kOrientation = rotationExp({0.3, -0.8, 1.9});
+Eigen::Matrix3d someOrientation() {
+  return rotationExp({0.3, -0.8, 1.9});
+}
 
 TEST(Registration, OrientationComesThroughTrackerAndMarker) {
   // Tracker turned a quarter about z, marker a quarter about x: by hand.
@@ -30,17 +32,17 @@ TEST(Registration, OrientationComesThroughTrackerAndMarker) {
 
 TEST(Registration, TrackerPoseOfAnOrientationGivesItBack) {
   const Registration registration = laboratoryRegistration();
-  const MarkerPoseMeasurement pose = markerPoseFromOrientation(registration, 7, kOrientation);
+  const MarkerPoseMeasurement pose = markerPoseFromOrientation(registration, 7, someOrientation());
   const OrientationMeasurement orientation = orientationFromMarkerPose(registration, pose);
-  EXPECT_LT((orientation.q_stator_rotor.toRotationMatrix() - kOrientation).norm(), 1e-14);
+  EXPECT_LT((orientation.q_stator_rotor.toRotationMatrix() - someOrientation()).norm(), 1e-14);
   const Eigen::Vector3d marker_stator = registration.X_stator_tracker * pose.position;
   const Eigen::Vector3d marker_rotor = registration.X_rotor_marker.translation();
-  EXPECT_LT((marker_stator - kOrientation * marker_rotor).norm(), 1e-14);
+  EXPECT_LT((marker_stator - someOrientation() * marker_rotor).norm(), 1e-14);
 }
 
 TEST(Registration, DefectsOfTheMeasuredQuaternionStayVisible) {
   const Registration registration = laboratoryRegistration();
-  MarkerPoseMeasurement pose = markerPoseFromOrientation(registration, 0, kOrientation);
+  MarkerPoseMeasurement pose = markerPoseFromOrientation(registration, 0, someOrientation());
   pose.q_tracker_marker.coeffs() *= 1.01;
   EXPECT_NEAR(orientationFromMarkerPose(registration, pose).q_stator_rotor.norm(), 1.01, 1e-12);
   pose.q_tracker_marker.x() = std::numeric_limits<double>::quiet_NaN();

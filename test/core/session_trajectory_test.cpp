@@ -10,14 +10,19 @@
 namespace spherical_actuator_calibration {
 namespace {
 
-const Eigen::Vector3d kFirst(0.1, -0.2, 0.4);
-const Eigen::Vector3d kSecond(-0.3, 0.2, 3.0);
+Eigen::Vector3d firstPose() {
+  return {0.1, -0.2, 0.4};
+}
+
+Eigen::Vector3d secondPose() {
+  return {-0.3, 0.2, 3.0};
+}
 
 /// One pose without current, one with two patterns.
 SessionPlan twoDwells() {
   SessionPlan plan;
-  plan.dwells.push_back({kFirst, {}});
-  plan.dwells.push_back({kSecond, {Eigen::Vector2d(2.0, 0.0), Eigen::Vector2d(0.0, -1.0)}});
+  plan.dwells.push_back({firstPose(), {}});
+  plan.dwells.push_back({secondPose(), {Eigen::Vector2d(2.0, 0.0), Eigen::Vector2d(0.0, -1.0)}});
   return plan;
 }
 
@@ -32,12 +37,12 @@ TEST(SessionTrajectory, RestsAtEachDwellForItsTime) {
   EXPECT_EQ(trajectory.duration(), second.end);
   EXPECT_EQ(trajectory.at(0.0).joint_position, Eigen::Vector3d::Zero().eval());
   for (const double time : {first.begin, first.end - 1e-9}) {
-    EXPECT_EQ(trajectory.at(time).joint_position, kFirst);
+    EXPECT_EQ(trajectory.at(time).joint_position, firstPose());
     EXPECT_EQ(trajectory.at(time).dwell, std::size_t{0});
   }
   EXPECT_FALSE(trajectory.at(0.5 * (first.end + second.begin)).dwell.has_value());
-  EXPECT_EQ(trajectory.at(second.begin + 1e-9).joint_position, kSecond);
-  EXPECT_EQ(trajectory.at(trajectory.duration() + 5.0).joint_position, kSecond);
+  EXPECT_EQ(trajectory.at(second.begin + 1e-9).joint_position, secondPose());
+  EXPECT_EQ(trajectory.at(trajectory.duration() + 5.0).joint_position, secondPose());
 }
 
 TEST(SessionTrajectory, MovesSmoothlyWithinTheSpeed) {
