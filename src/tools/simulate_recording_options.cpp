@@ -126,10 +126,14 @@ po::options_description planOptions(SimulateRecordingOptions& options, RawValues
 po::options_description sensorOptions(SimulateRecordingOptions& options, RawValues& raw) {
   po::options_description group("Sensors and load");
   SimulationOptions& simulation = options.simulation;
-  group.add_options()("joint-rate", number(simulation.joint_sensor.stream.rate, "HZ"), "");
-  group.add_options()("tracker-rate", number(simulation.tracker.stream.rate, "HZ"), "");
-  group.add_options()("wrench-rate", number(simulation.wrench_sensor.stream.rate, "HZ"), "");
-  group.add_options()("current-rate", number(simulation.current_sensor.stream.rate, "HZ"), "");
+  group.add_options()(
+      "joint-rate", number(simulation.joint_sensor.stream.rate, "HZ"), "of joint states");
+  group.add_options()(
+      "tracker-rate", number(simulation.tracker.stream.rate, "HZ"), "of tracker poses");
+  group.add_options()(
+      "wrench-rate", number(simulation.wrench_sensor.stream.rate, "HZ"), "of wrenches");
+  group.add_options()(
+      "current-rate", number(simulation.current_sensor.stream.rate, "HZ"), "of coil currents");
   group.add_options()(
       "joint-noise", number(simulation.joint_sensor.noise, "RAD"), "standard deviation");
   group.add_options()("joint-quantisation",
