@@ -25,9 +25,17 @@ import paper_iteration
 
 REPETITIONS = 5
 AUTODIFF_AIM = 4.0
+READING_AIM = 0.7
 NUMPY_AIM = 50.0
 SAME_RESULT = 1e-10  # [rad]
 CYCLES = {"joint": 30, "poles": 30, "coil": 4}  # samples
+ACTUATOR = pathlib.Path(__file__).resolve().parent.parent / "config" / "pm_spherical_8x24.yaml"
+PROGRAMS = pathlib.Path("devel", "lib", "spherical_actuator_calibration")
+LONG_SESSION = ("--main-coil-poses", "120", "--coil-poses", "16")
+MEMORY_ROWS = {
+    "barePass": "bare pass: grows by rosbag's own index",
+    "readSamples": "calibrate_bag's reader: flat where it adds the same to both",
+}
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
@@ -50,7 +58,7 @@ class Report:
         self.lines.append(f"\n{text}")
 
 
-def run_google_benchmark(program, *options):
+def run_google_benchmark(program, *arguments):
     """Median processor time [s] of one call, by name of the benchmark."""
     output = program.with_suffix(".json")
     subprocess.run(
@@ -61,7 +69,7 @@ def run_google_benchmark(program, *options):
             "--benchmark_min_time=0.2",
             f"--benchmark_out={output}",
             "--benchmark_out_format=json",
-            *options,
+            *arguments,
         ],
         check=True,
     )
@@ -127,12 +135,57 @@ def list_large_cycles(times, report):
         report.figure(f"{cycle} [s]", f"{times[f'runWholeCycle/{cycle}/100000']:.2f}")
 
 
+def peak_memory(*command):
+    """Largest resident memory [bytes] of a program that must succeed."""
+    quiet = subprocess.DEVNULL
+    with subprocess.Popen(command, stdout=quiet, stderr=quiet) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise SystemExit(f"run_benchmarks: {command[0]} failed.")
+    return 1024.0 * usage.ru_maxrss
+
+
+def record(build, name, *options):
+    """A recording of an emulated session in the build folder."""
+    bag = build / "benchmark" / name
+    subprocess.run(
+        [
+            build / PROGRAMS / "simulate_recording",
+            *("--actuator", ACTUATOR, "--seed", "1", "--output", bag, "--force"),
+            *options,
+        ],
+        check=True,
+        stderr=subprocess.DEVNULL,
+    )
+    return bag
+
+
+def measure_reading(build, report):
+    bags = (record(build, "session.bag"), record(build, "long_session.bag", *LONG_SESSION))
+    program = build / "benchmark" / "recording_benchmark"
+    times = run_google_benchmark(program, ACTUATOR, bags[0])
+    report.heading("Reading a recording, against a bare rosbag::View pass over the same messages")
+    report.ratio(
+        "rate of calibrate_bag's reader over rate of the pass",
+        times["barePass"] / times["readSamples"],
+        READING_AIM,
+    )
+    sizes = " and ".join(f"{bag.stat().st_size / 1e6:.0f} MB" for bag in bags)
+    report.heading(f"Peak memory with recordings of {sizes}")
+    for name in ("barePass", "readSamples"):
+        once = (f"--benchmark_filter={name}", "--benchmark_min_time=0")
+        memory = [peak_memory(program, ACTUATOR, bag, *once) for bag in bags]
+        report.figure(MEMORY_ROWS[name], " and ".join(f"{value / 1e6:.1f} MB" for value in memory))
+
+
 def main():
     """Returns the exit status: 0 also when an aim is missed, since times depend on the machine."""
     if len(sys.argv) != 2:
         print("usage: run_benchmarks.py BUILD_DIR", file=sys.stderr)
         return 2
-    programs = pathlib.Path(sys.argv[1]).resolve() / "benchmark"
+    build = pathlib.Path(sys.argv[1]).resolve()
+    programs = build / "benchmark"
     scenario_file = programs / "scenarios.json"
     subprocess.run([programs / "export_scenarios", scenario_file], check=True)
     scenarios = json.loads(scenario_file.read_text())
@@ -142,6 +195,7 @@ def main():
     compare_costs(times, report)
     compare_with_numpy(times, scenarios, report)
     list_large_cycles(times, report)
+    measure_reading(build, report)
     print("\n".join(report.lines))
     return 0
 
