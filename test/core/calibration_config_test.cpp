@@ -12,7 +12,7 @@
 namespace spherical_actuator_calibration {
 namespace {
 
-const std::string kShippedFile = std::string(SOURCE_DIR) + "/config/calibration.yaml";
+constexpr char kShippedFile[] = SOURCE_DIR "/config/calibration.yaml";
 
 std::string parseError(const std::string& text) {
   return errorMessage<ConfigError>([&] { parseCalibrationConfig(text, "c.yaml"); });

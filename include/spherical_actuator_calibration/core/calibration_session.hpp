@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/calibration_config.hpp"
+#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/core/calibration_model.hpp"
+#include "spherical_actuator_calibration/core/calibration_report.hpp"
+#include "spherical_actuator_calibration/core/calibration_state.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/core/held_out_validation.hpp"
+#include "spherical_actuator_calibration/core/sample.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// Where a calibration comes from; the core can know none of it.
+struct CalibrationOrigin {
+  std::string date;  ///< ISO 8601, with time
+  std::vector<RecordingSource> recordings;
+  std::string software;  ///< version of this package
+};
+
+/// The calibration of one actuator from a fixed set of samples: runs cycles one after the other,
+/// each from the result of those before it.
+class CalibrationSession {
+ public:
+  /// Starts from a description. What a calibrated description states with a standard deviation
+  /// counts as identified by it; all else is uncertain by the manufacturing tolerance. Throws
+  /// ConfigError when description or configuration, DataError when a sample is not valid.
+  CalibrationSession(CalibratedDescription start,
+                     std::vector<Sample> samples,
+                     CalibrationConfig config);
+
+  const CalibrationModel& model() const { return model_; }
+  const CalibrationConfig& config() const { return config_; }
+  const std::vector<Sample>& samples() const { return samples_; }
+  const CalibrationState& state() const { return state_; }
+
+  /// Runs one cycle. Its parameters are in force afterwards if it succeeded.
+  const CycleReport& run(const CycleRequest& request);
+  /// Of all cycles run, in their order.
+  const std::vector<CycleReport>& reports() const { return reports_; }
+
+  /// True when every cycle succeeded and openParameters() is empty.
+  bool isComplete() const;
+  /// Parameters that some cycle was to estimate and none could.
+  std::vector<std::string> openParameters() const;
+
+  /// All parameters as they are in force: `observable` tells whether they are identified, `initial`
+  /// is the nominal value.
+  std::vector<ParameterEstimate> parameters() const;
+
+  /// Judges the samples that were held out; nothing when there are none.
+  std::optional<HeldOutValidation> validation() const;
+
+  /// The calibrated description. Axes and offsets that were not identified are those of the start,
+  /// to the last bit.
+  CalibratedDescription description(const CalibrationOrigin& origin) const;
+
+ private:
+  CalibrationRecord record(const CalibrationOrigin& origin) const;
+
+  CalibratedDescription start_;
+  std::vector<Sample> samples_;
+  CalibrationConfig config_;
+  CalibrationModel model_;
+  CalibrationState state_;
+  std::vector<CycleReport> reports_;
+};
+
+/// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.
+std::string unitOf(ErrorMeasure measure);
+
+/// Root mean square norm of the residuals of one kind that were not rejected; nothing when there
+/// are none.
+std::optional<double> residualRms(const CycleReport& report, Quantity quantity);
+
+}  // namespace spherical_actuator_calibration
