@@ -14,7 +14,8 @@
 namespace spherical_actuator_calibration {
 namespace {
 
-const std::string kExample = std::string(SOURCE_DIR) + "/config/examples/two_axis_positioner/";
+constexpr char kActuatorFile[] = SOURCE_DIR "/config/examples/two_axis_positioner/actuator.yaml";
+constexpr char kSampleFile[] = SOURCE_DIR "/config/examples/two_axis_positioner/samples.yaml";
 
 class SampleFile : public testing::Test {
  protected:
@@ -79,8 +80,8 @@ TEST_F(SampleFile, ATorqueNeedsOneCurrentPerCoil) {
 }
 
 TEST(TwoAxisPositioner, IsFittedAndItsMissingJointIsNamed) {
-  const CalibrationModel model{ParameterSpace(loadActuator(kExample + "actuator.yaml"))};
-  const std::vector<Sample> samples = loadSamples(kExample + "samples.yaml", 0);
+  const CalibrationModel model{ParameterSpace(loadActuator(kActuatorFile))};
+  const std::vector<Sample> samples = loadSamples(kSampleFile, 0);
   ASSERT_EQ(samples.size(), 105u);
   const CalibrationState nominal = nominalState(model.space(), ManufacturingTolerance());
   const CycleOutcome outcome =
