@@ -80,7 +80,8 @@ class Estimator {
   void concludeErrorHistory();
   void concludeChiSquare();
   Eigen::Matrix3d residualCovariance(std::size_t observation,
-                                     const LinearizedObservation& linear) const;
+                                     const LinearizedObservation& linear,
+                                     const std::vector<bool>& held) const;
   std::size_t activeCount() const {
     return static_cast<std::size_t>(std::count(active_.begin(), active_.end(), true));
   }
@@ -100,10 +101,9 @@ class Estimator {
   std::vector<bool> active_;
   std::vector<bool> free_;
   std::vector<Eigen::Index> estimated_;
-  Eigen::MatrixXd inverse_;           ///< F×F: inverse information of estimated_
-  Eigen::MatrixXd noise_covariance_;  ///< F×F: of estimated_, from sensor noise alone
-  Eigen::MatrixXd gain_;              ///< F×P: ∂estimated/∂held
-  Eigen::MatrixXd held_covariance_;   ///< P×P: prior, zero rows and columns for estimated_
+  Eigen::MatrixXd inverse_;         ///< F×F: inverse information of estimated_
+  Eigen::MatrixXd own_covariance_;  ///< F×F: of estimated_, from stated noise and held coordinates
+  Eigen::MatrixXd with_held_;       ///< F×P: between estimated_ and held coordinates
   Eigen::VectorXd x_;
   std::vector<Eigen::VectorXd> path_;
   Estimate result_;
@@ -131,7 +131,7 @@ bool Estimator::updateWeights(const Eigen::VectorXd& x) {
   LinearizedObservation linear;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     evaluator_.linearize(n, x, linear);
-    const Eigen::Matrix3d total = evaluator_.covariance(n, linear, held).total;
+    const Eigen::Matrix3d total = evaluator_.covariance(n, linear, held);
     const Eigen::Matrix3d lower = total.llt().matrixL();
     const Eigen::Matrix3d whitening =
         lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
@@ -143,8 +143,7 @@ bool Estimator::updateWeights(const Eigen::VectorXd& x) {
 
 NormalEquations Estimator::normalEquations(const Eigen::VectorXd& x,
                                            const std::vector<Eigen::Index>& coordinates) const {
-  return accumulateNormalEquations(
-      {&evaluator_, &whitening_, active_, heldCoordinates()}, x, coordinates);
+  return accumulateNormalEquations({&evaluator_, &whitening_, active_}, x, coordinates);
 }
 
 /// Free coordinates of the problem that the active observations leave open at x.
@@ -326,22 +325,22 @@ void Estimator::concludeCovariance() {
   result_.condition_number =
       judgeInformation(normal.information, options_.unobservable_stddev).condition_number;
   inverse_ = normal.information.llt().solve(Eigen::MatrixXd::Identity(count, count));
-  noise_covariance_ = inverse_ * normal.noise * inverse_;
-  gain_ = -inverse_ * normal.others;
-  held_covariance_ = problem_.prior.covariance;
+  const Eigen::MatrixXd noise_covariance = inverse_ * normal.noise * inverse_;
+  Eigen::MatrixXd covariance = problem_.prior.covariance;
   for (const Eigen::Index a : estimated_) {
-    held_covariance_.row(a).setZero();
-    held_covariance_.col(a).setZero();
+    covariance.row(a).setZero();
+    covariance.col(a).setZero();
   }
+  const Eigen::MatrixXd gain = -inverse_ * normal.others;  // F×P: ∂estimated/∂held
+  with_held_ = gain * covariance;
+  own_covariance_ = noise_covariance + with_held_ * gain.transpose();
 
   const double scale = result_.covariance_scale * result_.covariance_scale;
-  const Eigen::MatrixXd with_held = gain_ * held_covariance_;  // F×P
-  const Eigen::MatrixXd own = scale * noise_covariance_ + with_held * gain_.transpose();
-  Eigen::MatrixXd covariance = held_covariance_;
+  const Eigen::MatrixXd own = own_covariance_ + (scale - 1.0) * noise_covariance;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index a = estimated_[static_cast<std::size_t>(k)];
-    covariance.row(a) += with_held.row(k);
-    covariance.col(a) += with_held.row(k).transpose();
+    covariance.row(a) += with_held_.row(k);
+    covariance.col(a) += with_held_.row(k).transpose();
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index m = 0; m < count; ++m) {
@@ -356,20 +355,26 @@ void Estimator::concludeCovariance() {
 /// Covariance of a residual after the solution: smaller than the observation's own for those that
 /// took part in it, larger for those that did not.
 Eigen::Matrix3d Estimator::residualCovariance(std::size_t observation,
-                                              const LinearizedObservation& linear) const {
-  const Eigen::Matrix3d noise = evaluator_.covariance(observation, linear, heldCoordinates()).noise;
+                                              const LinearizedObservation& linear,
+                                              const std::vector<bool>& held) const {
   Eigen::Matrix<double, 3, Eigen::Dynamic> J(3, static_cast<Eigen::Index>(estimated_.size()));
   for (Eigen::Index k = 0; k < J.cols(); ++k) {
     J.col(k) = linear.jacobian.col(estimated_[static_cast<std::size_t>(k)]);
   }
-  Eigen::Matrix3d covariance = noise + J * noise_covariance_ * J.transpose();
-  if (!held_covariance_.isZero(0.0)) {
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> d_held = linear.jacobian + J * gain_;
-    covariance += d_held * held_covariance_ * d_held.transpose();
+  Eigen::Matrix<double, Eigen::Dynamic, 3> with_others(J.cols(), 3);
+  with_others.setZero();
+  for (const Eigen::Index b : linear.columns) {
+    with_others += with_held_.col(b) * linear.jacobian.col(b).transpose();
   }
+  const Eigen::Matrix3d crossed = J.lazyProduct(with_others);
+  Eigen::Matrix3d covariance = evaluator_.covariance(observation, linear, held) + crossed +
+                               crossed.transpose() +
+                               J.lazyProduct(own_covariance_).eval().lazyProduct(J.transpose());
   if (active_[observation]) {
     const Eigen::Matrix3d weight = whitening_[observation].transpose() * whitening_[observation];
-    const Eigen::Matrix3d shared = noise * weight * J * inverse_ * J.transpose();
+    const Eigen::Matrix3d noise = evaluator_.noise(observation, linear);
+    const Eigen::Matrix3d shared =
+        noise * weight * J.lazyProduct(inverse_).eval().lazyProduct(J.transpose());
     covariance -= shared + shared.transpose();
     // A residual that its own parameters absorb wholly has no variance left: keep a floor.
     constexpr double kFloor = 1e-6;
@@ -379,6 +384,7 @@ Eigen::Matrix3d Estimator::residualCovariance(std::size_t observation,
 }
 
 void Estimator::concludeResiduals() {
+  const std::vector<bool> held = heldCoordinates();
   LinearizedObservation linear;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     evaluator_.linearize(n, x_, linear);
@@ -386,7 +392,7 @@ void Estimator::concludeResiduals() {
     entry.observation = problem_.observations[n];
     entry.residual = linear.residual;
     entry.rejected = !active_[n];
-    const Eigen::LDLT<Eigen::Matrix3d> factor(residualCovariance(n, linear));
+    const Eigen::LDLT<Eigen::Matrix3d> factor(residualCovariance(n, linear, held));
     entry.standardized =
         std::sqrt(std::max(0.0, linear.residual.dot(factor.solve(linear.residual))) / kComponents);
     result_.residuals.push_back(entry);

@@ -56,7 +56,7 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     evaluator.linearize(n, belief.x, linear);
-    const Eigen::Matrix3d covariance = evaluator.covariance(n, linear, all_held).total;
+    const Eigen::Matrix3d covariance = evaluator.covariance(n, linear, all_held);
     chi_square += linear.residual.dot(covariance.llt().solve(linear.residual));
     const bool is_orientation = problem.observations[n].quantity == Quantity::kOrientation;
     (is_orientation ? result.orientations : result.torques) += 1;

@@ -11,7 +11,11 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
     : problem_(problem),
       options_(options),
       excitations_(problem.observations.size()),
-      prior_is_exact_(problem.prior.covariance.isZero(0.0)) {
+      uncertain_(static_cast<std::size_t>(problem.prior.covariance.rows())) {
+  for (std::size_t p = 0; p < uncertain_.size(); ++p) {
+    const auto diagonal = static_cast<Eigen::Index>(p);
+    uncertain_[p] = problem.prior.covariance(diagonal, diagonal) > 0.0;
+  }
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     if (problem.observations[n].quantity == Quantity::kTorque) {
       excitations_[n] = excitedCoils((*problem.samples)[problem.observations[n].sample],
@@ -77,9 +81,8 @@ void ObservationEvaluator::linearize(std::size_t observation,
   out.residual = problem_.model->torqueResidual(sample, excitations_[observation], blocks);
 }
 
-ObservationCovariance ObservationEvaluator::covariance(std::size_t observation,
-                                                       const LinearizedObservation& linear,
-                                                       const std::vector<bool>& held) const {
+Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
+                                            const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   const ParameterSpace& space = problem_.model->space();
@@ -88,30 +91,34 @@ ObservationCovariance ObservationEvaluator::covariance(std::size_t observation,
   const double fallback =
       is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
   const double stddev = stated > 0.0 ? stated : fallback;
-
-  ObservationCovariance covariance;
-  covariance.noise = stddev * stddev * Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d noise = stddev * stddev * Eigen::Matrix3d::Identity();
   for (std::size_t k = 0; k < kJoints; ++k) {
     // A joint sensor's error acts as an offset of that joint does.
     const double joint_stddev = sample.joint_stddev[static_cast<Eigen::Index>(k)];
     const Eigen::Vector3d effect = joint_stddev * linear.jacobian.col(space.joint(k));
-    covariance.noise += effect * effect.transpose();
+    noise += effect * effect.transpose();
   }
-  covariance.total = covariance.noise;
-  if (prior_is_exact_) {
-    return covariance;
-  }
+  return noise;
+}
+
+Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
+                                                 const LinearizedObservation& linear,
+                                                 const std::vector<bool>& held) const {
+  // Most poles are out of reach of a coil: their columns are zero.
+  boost::container::small_vector<Eigen::Index, 32> columns;
   for (const Eigen::Index a : linear.columns) {
-    if (!held[static_cast<std::size_t>(a)]) {
-      continue;
+    const auto place = static_cast<std::size_t>(a);
+    if (held[place] && uncertain_[place] && !linear.jacobian.col(a).isZero(0.0)) {
+      columns.push_back(a);
     }
+  }
+  Eigen::Matrix3d covariance = noise(observation, linear);
+  for (const Eigen::Index a : columns) {
     Eigen::Vector3d effect = Eigen::Vector3d::Zero();
-    for (const Eigen::Index b : linear.columns) {
-      if (held[static_cast<std::size_t>(b)]) {
-        effect += linear.jacobian.col(b) * problem_.prior.covariance(b, a);
-      }
+    for (const Eigen::Index b : columns) {
+      effect += linear.jacobian.col(b) * problem_.prior.covariance(b, a);
     }
-    covariance.total += linear.jacobian.col(a) * effect.transpose();
+    covariance += linear.jacobian.col(a) * effect.transpose();
   }
   return covariance;
 }

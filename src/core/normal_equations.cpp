@@ -49,8 +49,7 @@ NormalEquations accumulateNormalEquations(const NormalEquationsInput& input,
     }
     input.evaluator->linearize(n, x, linear);
     const Eigen::Matrix3d weight = (*input.whitening)[n].transpose() * (*input.whitening)[n];
-    accumulate(
-        linear, weight, input.evaluator->covariance(n, linear, input.held).noise, slot, normal);
+    accumulate(linear, weight, input.evaluator->noise(n, linear), slot, normal);
   }
   return normal;
 }

@@ -4,7 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include <boost/container/small_vector.hpp>
+
+#include "spherical_actuator_calibration/core/rotations.hpp"
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
+#include "spherical_actuator_calibration/core/torque_model.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -31,47 +35,121 @@ double percentile95(std::vector<double>& values) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-/// √tr(J Σ Jᵀ) with J given by two column ranges of the coordinates, joined in `columns`.
-double expectedError(const Eigen::Matrix3Xd& J,
-                     const std::vector<Eigen::Index>& columns,
-                     const Eigen::MatrixXd& covariance) {
-  double trace = 0.0;
-  for (Eigen::Index a = 0; a < J.cols(); ++a) {
-    for (Eigen::Index b = 0; b < J.cols(); ++b) {
-      trace += J.col(a).dot(J.col(b)) * covariance(columns[static_cast<std::size_t>(a)],
-                                                   columns[static_cast<std::size_t>(b)]);
-    }
+/// √tr(J Σ Jᵀ), the columns of J given with their places in Σ.
+class ExpectedError {
+ public:
+  void add(const Eigen::Vector3d& column, Eigen::Index place) {
+    columns_.push_back({column, place});
   }
-  return std::sqrt(std::max(0.0, trace));
+  double value(const Eigen::MatrixXd& covariance) const {
+    double trace = 0.0;
+    for (const Column& a : columns_) {
+      for (const Column& b : columns_) {
+        trace += a.derivative.dot(b.derivative) * covariance(a.place, b.place);
+      }
+    }
+    return std::sqrt(std::max(0.0, trace));
+  }
+
+ private:
+  struct Column {
+    Eigen::Vector3d derivative;
+    Eigen::Index place;
+  };
+  boost::container::small_vector<Column, 32> columns_;
+};
+
+/// A pole or coil axis, rotor or stator frame, with ∂axis/∂(u, v).
+struct AxisPoint {
+  Eigen::Vector3d axis;
+  Eigen::Matrix<double, 3, 2> d_axis;
+};
+
+AxisPoint axisPoint(const AxisChart& chart, const double* uv) {
+  AxisPoint point;
+  chart.evaluate(uv[0], uv[1], point.axis, point.d_axis);
+  return point;
 }
 
-/// ∂T/∂coordinates [N·m/(A·rad)] of one coil at unit current, for joints, poles and that coil.
-double torqueError(const CalibrationModel& model,
-                   const ParameterBelief& belief,
-                   const Sample& pose,
-                   std::size_t coil) {
-  const ParameterSpace& space = model.space();
-  const Eigen::Index common = space.coil(0);
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> J(3, common + 2);
-  J.setZero();
-  const double* coil_block = belief.x.data() + space.coil(coil);
-  const JacobianBlock d_coil{J.data() + common, J.cols()};
-  CalibrationModel::TorqueBlocks blocks;
-  blocks.joints = belief.x.data();
-  blocks.poles = belief.x.data() + space.pole(0);
-  blocks.coils = &coil_block;
-  blocks.d_joints = {J.data(), J.cols()};
-  blocks.d_poles = {J.data() + space.pole(0), J.cols()};
-  blocks.d_coils = &d_coil;
-  model.torqueResidual(pose, {{coil, 1.0}}, blocks);
-  std::vector<Eigen::Index> columns;
-  for (Eigen::Index c = 0; c < common; ++c) {
-    columns.push_back(c);
+/// Expected errors at single poses. The joint coordinates are condensed into the rotation error ξ
+/// that they imply at the pose, since the torque depends on them through it alone; the
+/// covariance then is that of (ξ, poles, coils).
+class PoseUncertainty {
+ public:
+  PoseUncertainty(const CalibrationModel& model, const ParameterBelief& belief)
+      : model_(model),
+        belief_(belief),
+        moved_covariance_(moved(space().size()), moved(space().size())) {
+    const Eigen::Index axes = space().size() - space().pole(0);
+    moved_covariance_.bottomRightCorner(axes, axes) =
+        belief.covariance.bottomRightCorner(axes, axes);
+    for (std::size_t i = 0; i < space().poles(); ++i) {
+      poles_.push_back(axisPoint(space().poleChart(i), belief.x.data() + space().pole(i)));
+    }
+    for (std::size_t j = 0; j < space().coils(); ++j) {
+      coils_.push_back(axisPoint(space().coilChart(j), belief.x.data() + space().coil(j)));
+    }
   }
-  columns.push_back(space.coil(coil));
-  columns.push_back(space.coil(coil) + 1);
-  return expectedError(J, columns, belief.covariance);
-}
+
+  /// Goes to a pose, R_stator_rotor where the model puts it; returns the orientation error [rad].
+  double moveTo(const Sample& pose) {
+    const Eigen::Index joints = space().pole(0);
+    const Eigen::Index axes = space().size() - joints;
+    R_rotor_stator_ = pose.R_stator_rotor.transpose();
+    // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
+    Eigen::Matrix<double, 3, 9, Eigen::RowMajor> J;
+    model_.orientationResidual(pose, belief_.x.data(), {J.data(), J.cols()});
+    const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
+    const Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
+    moved_covariance_.topLeftCorner<3, 3>() = own;
+    moved_covariance_.topRightCorner(3, axes) = with_all.rightCols(axes);
+    moved_covariance_.bottomLeftCorner(axes, 3) = with_all.rightCols(axes).transpose();
+    return std::sqrt(std::max(0.0, own.trace()));
+  }
+
+  /// Torque error of one coil at unit current, at the pose [N·m/A].
+  double torque(std::size_t coil) const {
+    const AxisPoint& axis = coils_[coil];
+    const Eigen::Vector3d coil_rotor = R_rotor_stator_ * axis.axis;
+    const double coil_gain = space().nominal().coils[coil].gain;
+    ExpectedError error;
+    Eigen::Matrix3d d_coil = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < poles_.size(); ++i) {
+      if (!interacts(model_.curve(), poles_[i].axis, coil_rotor)) {
+        continue;
+      }
+      const PoleAxis& pole = space().nominal().poles[i];
+      const double weight = coil_gain * pole.polarity * pole.gain;
+      const PairTorque pair = linearizePairTorque(model_.curve(), poles_[i].axis, coil_rotor);
+      d_coil += weight * pair.d_coil;
+      const Eigen::Matrix<double, 3, 2> d_pole = weight * pair.d_pole * poles_[i].d_axis;
+      error.add(d_pole.col(0), moved(space().pole(i)));
+      error.add(d_pole.col(1), moved(space().pole(i)) + 1);
+    }
+    // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰.
+    const Eigen::Matrix3d d_stator = d_coil * R_rotor_stator_;
+    const Eigen::Matrix3d d_rotation = d_stator * skew(axis.axis);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      error.add(d_rotation.col(c), c);
+    }
+    const Eigen::Matrix<double, 3, 2> d_axis = d_stator * axis.d_axis;
+    error.add(d_axis.col(0), moved(space().coil(coil)));
+    error.add(d_axis.col(1), moved(space().coil(coil)) + 1);
+    return error.value(moved_covariance_);
+  }
+
+ private:
+  const ParameterSpace& space() const { return model_.space(); }
+  /// Place of a pole or coil coordinate behind the three of ξ.
+  Eigen::Index moved(Eigen::Index parameter) const { return parameter - space().pole(0) + 3; }
+
+  const CalibrationModel& model_;
+  const ParameterBelief& belief_;
+  std::vector<AxisPoint> poles_;
+  std::vector<AxisPoint> coils_;
+  Eigen::Matrix3d R_rotor_stator_ = Eigen::Matrix3d::Identity();
+  Eigen::MatrixXd moved_covariance_;
+};
 
 }  // namespace
 
@@ -81,20 +159,17 @@ WorkspaceUncertainty workspaceUncertainty(const CalibrationModel& model,
   const ParameterSpace& space = model.space();
   const double tilt = space.nominal().workspace.tilt_limit;
   const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x).joints);
+  PoseUncertainty uncertainty(model, belief);
   std::vector<double> orientation_errors;
   std::vector<double> torque_errors;
-  Eigen::Matrix<double, 3, 9, Eigen::RowMajor> J;
-  const std::vector<Eigen::Index> joint_columns{0, 1, 2, 3, 4, 5, 6, 7, 8};
   for (int n = 1; n <= poses; ++n) {
     Sample pose;
     pose.joint_position << tilt * (2.0 * vanDerCorput(n, 2) - 1.0),
         tilt * (2.0 * vanDerCorput(n, 3) - 1.0), kPi * (2.0 * vanDerCorput(n, 5) - 1.0);
-    // Measured where the model puts it, so that the residual's Jacobian is minus the orientation's.
     pose.R_stator_rotor = rotorOrientation(joints, pose.joint_position);
-    model.orientationResidual(pose, belief.x.data(), {J.data(), 9});
-    orientation_errors.push_back(expectedError(J, joint_columns, belief.covariance));
+    orientation_errors.push_back(uncertainty.moveTo(pose));
     for (std::size_t j = 0; model.hasTorqueModel() && j < space.coils(); ++j) {
-      torque_errors.push_back(torqueError(model, belief, pose, j));
+      torque_errors.push_back(uncertainty.torque(j));
     }
   }
   return {percentile95(orientation_errors), percentile95(torque_errors)};

@@ -15,12 +15,6 @@ struct LinearizedObservation {
   std::vector<Eigen::Index> columns;  ///< coordinates that can be nonzero, ascending
 };
 
-/// Noise of an observation and what the uncertainty of coordinates that are not free adds to it.
-struct ObservationCovariance {
-  Eigen::Matrix3d noise;  ///< sensor noise of the sample, joint sensors included
-  Eigen::Matrix3d total;  ///< noise plus the share of held coordinates
-};
-
 /// Evaluates the observations of one problem: residuals, Jacobians and covariances.
 class ObservationEvaluator {
  public:
@@ -38,16 +32,19 @@ class ObservationEvaluator {
                  const Eigen::VectorXd& x,
                  LinearizedObservation& out) const;
 
-  /// Covariance of an observation; `held` are the coordinates whose prior uncertainty counts.
-  ObservationCovariance covariance(std::size_t observation,
-                                   const LinearizedObservation& linear,
-                                   const std::vector<bool>& held) const;
+  /// Covariance of an observation from the sensors' noise alone, joint sensors included.
+  Eigen::Matrix3d noise(std::size_t observation, const LinearizedObservation& linear) const;
+
+  /// noise() plus what the prior uncertainty of the coordinates marked in `held` adds to it.
+  Eigen::Matrix3d covariance(std::size_t observation,
+                             const LinearizedObservation& linear,
+                             const std::vector<bool>& held) const;
 
  private:
   const EstimationProblem& problem_;
   const EstimationOptions& options_;
   std::vector<std::vector<Excitation>> excitations_;
-  bool prior_is_exact_;
+  std::vector<bool> uncertain_;  ///< per coordinate: its prior variance is not zero
 };
 
 }  // namespace spherical_actuator_calibration

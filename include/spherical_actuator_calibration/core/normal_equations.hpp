@@ -13,7 +13,6 @@ struct NormalEquationsInput {
   const ObservationEvaluator* evaluator = nullptr;
   const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< W per observation, S⁻¹ = WᵀW
   std::vector<bool> active;                                 ///< per observation
-  std::vector<bool> held;  ///< per coordinate: its prior uncertainty counts
 };
 
 /// Sums over the active observations at one point, for F chosen coordinates out of P.
