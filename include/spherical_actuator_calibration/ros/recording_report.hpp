@@ -37,4 +37,7 @@ struct RecordingReport {
   std::vector<std::string> notes;  ///< what an operator should know, one sentence each
 };
 
+/// All of it for people, one line each: counts of every stream, what was dropped and why, notes.
+std::vector<std::string> describe(const RecordingReport& report);
+
 }  // namespace spherical_actuator_calibration

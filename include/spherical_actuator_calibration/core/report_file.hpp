@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// All figures of a calibration as YAML, for programs: origin, configuration, every cycle with its
+/// estimates and residuals, validation, parameters in force. Angles in rad, torques in N·m.
+/// `recording` tells in words what became of the recordings, one line each.
+std::string renderReport(const CalibrationSession& session,
+                         const CalibrationOrigin& origin,
+                         const std::vector<std::string>& recording);
+
+}  // namespace spherical_actuator_calibration

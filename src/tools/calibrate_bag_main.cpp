@@ -1,0 +1,236 @@
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "calibrate_bag_options.hpp"
+#include "calibration_text.hpp"
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/core/report_file.hpp"
+#include "spherical_actuator_calibration/core/urdf_file.hpp"
+#include "spherical_actuator_calibration/ros/file_checksum.hpp"
+#include "spherical_actuator_calibration/ros/recording_reader.hpp"
+
+#include <unistd.h>
+
+namespace spherical_actuator_calibration {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kComplete = 0;
+constexpr int kIncomplete = 1;
+constexpr int kUnusable = 2;
+
+/// Shows the share done on a terminal, and nothing anywhere else.
+std::function<void(double)> terminalProgress() {
+  if (::isatty(STDERR_FILENO) == 0) {
+    return {};
+  }
+  return [](double share) {
+    std::fprintf(stderr, "\rreading %3.0f %%%s", 100.0 * share, share < 1.0 ? "" : "\n");
+  };
+}
+
+/// The robot description that is shipped for an actuator: share/ lies beside the lib/ that holds
+/// this program, in a build as in an installation.
+std::string shippedUrdf(const std::string& actuator) {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  const fs::path prefix = program.parent_path().parent_path().parent_path();
+  const fs::path urdf =
+      prefix / "share" / program.parent_path().filename() / "urdf" / (actuator + ".urdf");
+  if (!fs::exists(urdf)) {
+    throw ConfigError("--urdf: no robot description is shipped for the actuator " + actuator +
+                      "; name one by --urdf-template.");
+  }
+  return urdf.string();
+}
+
+/// Files that a run reads and writes besides the recordings.
+struct Files {
+  std::string description;
+  std::string urdf_template;  ///< empty: no URDF is wanted
+  std::string urdf;
+  std::string report;  ///< empty: no report is wanted
+};
+
+/// Nothing is read for a result that could not be written in the end.
+void requireNew(const std::string& path, OverwritePolicy policy) {
+  if (!path.empty() && policy == OverwritePolicy::kRefuse && fs::exists(path)) {
+    throw DataError(path + ": the file exists already; choose another name or give --force.");
+  }
+}
+
+Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) {
+  Files files;
+  files.description = options.output_path;
+  if (options.urdf_path) {
+    files.urdf = *options.urdf_path;
+    files.urdf_template =
+        options.urdf_template_path ? *options.urdf_template_path : shippedUrdf(nominal.name);
+    readJoints(files.urdf_template,
+               {nominal.joints[0].name, nominal.joints[1].name, nominal.joints[2].name});
+  }
+  if (options.report_folder) {
+    files.report = (fs::path(*options.report_folder) / "report.yaml").string();
+  }
+  for (const std::string& path : {files.description, files.urdf, files.report}) {
+    requireNew(path, options.overwrite);
+  }
+  if (options.report_folder) {
+    std::error_code error;
+    fs::create_directories(*options.report_folder, error);
+    if (error) {
+      throw DataError(*options.report_folder + ": the folder cannot be made: " + error.message() +
+                      ".");
+    }
+  }
+  return files;
+}
+
+std::string nowInUtc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc = {};
+  ::gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+CalibrationOrigin originOf(const CalibrateBagOptions& options) {
+  CalibrationOrigin origin;
+  origin.date = options.date ? *options.date : nowInUtc();
+  for (const std::string& bag : options.bags) {
+    origin.recordings.push_back({fs::path(bag).filename().string(), fileChecksum(bag)});
+  }
+  origin.software = PACKAGE_VERSION;
+  return origin;
+}
+
+std::optional<Actuator> truthOf(const CalibrateBagOptions& options, const Actuator& nominal) {
+  if (!options.truth_path) {
+    return std::nullopt;
+  }
+  Actuator truth = loadActuator(*options.truth_path);
+  requireSameDesign(nominal, truth);
+  return truth;
+}
+
+Recording readBags(const CalibrateBagOptions& options,
+                   const Actuator& nominal,
+                   const CalibrationConfig& config) {
+  RecordingOptions reading;
+  reading.ns = options.ns;
+  reading.frames = config.frames;
+  reading.samples = config.samples;
+  reading.progress = terminalProgress();
+  return readRecordings(options.bags, nominal, reading);
+}
+
+void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {
+  const EstimationOptions& estimation = session.config().estimation;
+  const std::vector<CycleRequest> requests =
+      options.cycles ? expandCoils(*options.cycles, session.model(), session.samples(), estimation)
+                     : possibleCycles(session.model(), session.samples(), estimation);
+  for (const CycleRequest& request : requests) {
+    std::cout << cycleParagraph(session.run(request)) << std::flush;
+  }
+}
+
+bool hasResult(const CalibrationSession& session) {
+  for (const CycleReport& report : session.reports()) {
+    if (report.success) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void printResult(const CalibrationSession& session, const std::optional<Actuator>& truth) {
+  if (const auto validation = session.validation()) {
+    std::cout << validationParagraph(*validation);
+  }
+  std::cout << "\n" << parameterTable(session, truth);
+  const std::vector<std::string> open = session.openParameters();
+  if (!open.empty()) {
+    std::cout << "Not observable, left as they were:";
+    for (const std::string& name : open) {
+      std::cout << " " << name;
+    }
+    std::cout << "\n";
+  }
+}
+
+void writeResult(const CalibrationSession& session,
+                 const CalibrationOrigin& origin,
+                 const Files& files,
+                 OverwritePolicy policy) {
+  const CalibratedDescription result = session.description(origin);
+  saveDescription(files.description, result, policy);
+  std::cout << "Calibrated description: " << files.description << "\n";
+  if (!files.urdf.empty()) {
+    writeCalibratedUrdf(files.urdf_template,
+                        files.urdf,
+                        session.model().space().nominal(),
+                        result.actuator,
+                        policy);
+    std::cout << "Calibrated URDF: " << files.urdf << "\n";
+  }
+}
+
+int calibrateBag(const CalibrateBagOptions& options) {
+  const CalibratedDescription start = loadDescription(options.actuator_path);
+  const CalibrationConfig config =
+      options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
+  const std::optional<Actuator> truth = truthOf(options, start.actuator);
+  const Files files = prepareFiles(options, start.actuator);
+
+  Recording recording = readBags(options, start.actuator, config);
+  const std::vector<std::string> lines = describe(recording.report);
+  for (const std::string& line : lines) {
+    std::cout << line << "\n";
+  }
+  CalibrationSession session(start, std::move(recording.samples), config);
+  if (session.samples().empty()) {
+    std::cout << "No sample was found: let the rotor rest longer, or see above what was dropped.\n";
+  }
+  runCycles(session, options);
+  const bool has_result = hasResult(session);
+  if (has_result) {
+    printResult(session, truth);
+  }
+  const CalibrationOrigin origin = originOf(options);
+  if (!files.report.empty()) {
+    writeFileAtomically(files.report, renderReport(session, origin, lines), options.overwrite);
+    std::cout << "All figures: " << files.report << "\n";
+  }
+  if (!has_result) {
+    std::cout << "No cycle succeeded: " << files.description << " is not written.\n";
+    return kIncomplete;
+  }
+  writeResult(session, origin, files, options.overwrite);
+  return session.isComplete() ? kComplete : kIncomplete;
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
+
+int main(int argc, char** argv) {
+  namespace sac = spherical_actuator_calibration;
+  try {
+    const auto options = sac::parseCalibrateBagOptions(argc, argv, std::cout);
+    return options ? sac::calibrateBag(*options) : sac::kComplete;
+  } catch (const std::exception& error) {
+    std::cout.flush();
+    std::fprintf(stderr, "calibrate_bag: %s\n", error.what());
+    return sac::kUnusable;
+  }
+}

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/atomic_file.hpp"
+#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// What the command line of calibrate_bag asks for.
+struct CalibrateBagOptions {
+  std::string actuator_path;
+  std::optional<std::string> config_path;
+  std::string ns = "/actuator";
+  std::vector<std::string> bags;
+  /// In the order wanted, kCoil with coil 0 for all others; nothing: all that the data allow.
+  std::optional<std::vector<CycleRequest>> cycles;
+  std::optional<std::string> truth_path;
+  std::string output_path;
+  std::optional<std::string> urdf_path;
+  std::optional<std::string> urdf_template_path;
+  std::optional<std::string> report_folder;
+  std::optional<std::string> date;  ///< of the calibration; nothing: now
+  OverwritePolicy overwrite = OverwritePolicy::kRefuse;
+};
+
+/// Reads the command line. Without a value: help was asked for and has been printed to `out`.
+/// Throws ConfigError, naming the option, when it cannot be understood.
+std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
+                                                            const char* const* argv,
+                                                            std::ostream& out);
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,174 @@
+#include "calibration_text.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// Half width of the 95 % interval of a normal distribution, in standard deviations.
+constexpr double kInterval95 = 1.959963984540054;
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+/// Errors in thousandths of their unit, "[mrad]"; standardized ones as they are.
+std::string errorHistory(const CycleReport& report) {
+  const bool standardized = report.error_measure == ErrorMeasure::kStandardized;
+  std::string text;
+  switch (report.error_measure) {
+    case ErrorMeasure::kOrientation:
+      text = "mean orientation error [mrad]:";
+      break;
+    case ErrorMeasure::kTorque:
+      text = "rms torque error [mN.m]:";
+      break;
+    case ErrorMeasure::kStandardized:
+      text = "rms standardized error [1]:";
+      break;
+  }
+  for (const double error : report.error_history) {
+    text += format(" %.4g", standardized ? error : 1e3 * error);
+  }
+  return text;
+}
+
+std::string rms(const CycleReport& report) {
+  std::string text;
+  if (const auto orientation = residualRms(report, Quantity::kOrientation)) {
+    text += format(", orientation rms %.4g mrad", 1e3 * *orientation);
+  }
+  if (const auto torque = residualRms(report, Quantity::kTorque)) {
+    text += format(", torque rms %.4g mN.m", 1e3 * *torque);
+  }
+  return text;
+}
+
+std::string rejectedLine(const SampleResidual& residual) {
+  return format("  rejected: sample %u, ", residual.id) +
+         (residual.quantity == Quantity::kOrientation ? "orientation" : "torque") + ": " +
+         residual.reason + "\n";
+}
+
+struct Row {
+  ParameterEstimate parameter;
+  std::optional<double> truth;
+};
+
+std::vector<Row> rowsOf(const CalibrationSession& session, const std::optional<Actuator>& truth) {
+  std::vector<Row> rows;
+  for (const ParameterEstimate& parameter : session.parameters()) {
+    rows.push_back({parameter, std::nullopt});
+  }
+  if (truth) {
+    const ParameterSpace& space = session.model().space();
+    const Eigen::VectorXd values = space.reportedValues(space.coordinatesOf(*truth));
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+      rows[p].truth = values[static_cast<Eigen::Index>(p)];
+    }
+  }
+  return rows;
+}
+
+/// Azimuths of the same direction may differ by whole turns.
+double errorOf(const Row& row) {
+  const double difference = row.parameter.value - *row.truth;
+  const bool is_azimuth = row.parameter.name.find("/azimuth") != std::string::npos;
+  return is_azimuth ? std::remainder(difference, 2.0 * M_PI) : difference;
+}
+
+std::string rowText(const Row& row) {
+  const ParameterEstimate& p = row.parameter;
+  std::string text = format("%-18s %12.6f", p.name.c_str(), p.nominal);
+  if (!p.observable) {
+    text += format(" %16s %13s %11s", "not identified", "-", "-");
+  } else {
+    text += format(" %16.6f %13.3f %11.3f", p.value, 1e3 * (p.value - p.nominal), 1e3 * p.stddev);
+  }
+  if (!row.truth) {
+    return text + "\n";
+  }
+  text += format(" %12.6f", *row.truth);
+  if (!p.observable) {
+    return text + format(" %13s %10s\n", "-", "-");
+  }
+  return text + format(" %13.3f %10.2f\n", 1e3 * errorOf(row), errorOf(row) / p.stddev);
+}
+
+std::string coverageLine(const std::vector<Row>& rows) {
+  int identified = 0;
+  int covered = 0;
+  for (const Row& row : rows) {
+    if (row.parameter.observable) {
+      ++identified;
+      covered += std::abs(errorOf(row)) <= kInterval95 * row.parameter.stddev ? 1 : 0;
+    }
+  }
+  if (identified == 0) {
+    return "No parameter is identified.\n";
+  }
+  return format(
+      "The 95 %% interval holds the truth for %d of %d identified parameters (%.1f %%).\n",
+      covered,
+      identified,
+      100.0 * covered / identified);
+}
+
+}  // namespace
+
+std::string cycleParagraph(const CycleReport& report) {
+  std::string text = cycleText({report.cycle, report.coil}) +
+                     (report.success ? ": " : ": FAILED. ") + report.message + "\n";
+  if (!report.success) {
+    return text;
+  }
+  text += "  " + errorHistory(report) + "\n";
+  text += format("  reduced chi-square %.3g, condition number %.3g",
+                 report.reduced_chi_square,
+                 report.condition_number) +
+          rms(report) + "\n";
+  for (const SampleResidual& residual : report.residuals) {
+    if (residual.rejected) {
+      text += rejectedLine(residual);
+    }
+  }
+  return text;
+}
+
+std::string validationParagraph(const HeldOutValidation& validation) {
+  std::string text = format("Validation with %zu held-out samples:", validation.samples);
+  if (validation.orientations > 0) {
+    text += format(" orientation rms %.4g mrad (%zu),",
+                   1e3 * validation.orientation_rms,
+                   validation.orientations);
+  }
+  if (validation.torques > 0) {
+    text += format(" torque rms %.4g mN.m (%zu),", 1e3 * validation.torque_rms, validation.torques);
+  }
+  return text + format(" reduced chi-square %.3g.\n", validation.reduced_chi_square);
+}
+
+std::string parameterTable(const CalibrationSession& session,
+                           const std::optional<Actuator>& truth) {
+  std::string text = format("%-18s %12s %16s %13s %11s",
+                            "parameter",
+                            "nominal[rad]",
+                            "identified[rad]",
+                            "change[mrad]",
+                            "std[mrad]");
+  text += truth ? format(" %12s %13s %10s\n", "truth[rad]", "error[mrad]", "error/std") : "\n";
+  const std::vector<Row> rows = rowsOf(session, truth);
+  for (const Row& row : rows) {
+    text += rowText(row);
+  }
+  return truth ? text + coverageLine(rows) : text;
+}
+
+}  // namespace spherical_actuator_calibration
