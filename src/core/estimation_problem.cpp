@@ -74,6 +74,7 @@ class Estimator {
   std::vector<double> whitenedSquares(const Eigen::VectorXd& x) const;
   bool solveWithoutOutliers();
   bool solveReweighted();
+  double outlierLimit() const;
   bool rejectOutliers();
   void concludeCovariance();
   void concludeResiduals();
@@ -169,6 +170,8 @@ LeastSquaresResult Estimator::solve(const Eigen::VectorXd& start, Loss loss, dou
   input.loss = loss;
   input.loss_transition = transition;
   input.max_iterations = options_.max_iterations;
+  // A robust pass only sorts the observations: the last digits are the plain solution's.
+  input.parameter_tolerance = loss == Loss::kSquared ? 1e-12 : 1e-6;
   LeastSquaresResult result = solveLeastSquares(input);
   result_.solve_time += result.solve_time;
   path_.insert(path_.end(), result.path.begin() + (path_.empty() ? 0 : 1), result.path.end());
@@ -195,12 +198,17 @@ bool Estimator::solveReweighted() {
   return result_.termination == Termination::kConverged;
 }
 
+/// Squared whitened norm beyond which an observation is an outlier.
+double Estimator::outlierLimit() const {
+  return chiSquareLimit(kComponents,
+                        options_.false_alarm_probability / static_cast<double>(active_.size()));
+}
+
 /// Marks as inactive what does not fit the present solution, and as active again what does. Returns
 /// whether the set changed.
 bool Estimator::rejectOutliers() {
   constexpr double kMedianOfThree = 2.366;  // of the χ² distribution with three degrees of freedom
-  const double limit = chiSquareLimit(
-      kComponents, options_.false_alarm_probability / static_cast<double>(active_.size()));
+  const double limit = outlierLimit();
   std::vector<double> squares = whitenedSquares(x_);
   std::vector<double> sorted = squares;
   std::nth_element(sorted.begin(),
@@ -221,8 +229,10 @@ bool Estimator::rejectOutliers() {
 /// A plain solution where all observations fit it; otherwise a robust pass from the prior finds the
 /// outliers and a plain solution runs without them. Returns whether it converged.
 bool Estimator::solveWithoutOutliers() {
-  constexpr double kTransition = 4.0;  // exceeded by one faultless observation in a thousand
   constexpr int kMaxRounds = 5;
+  // The robust losses take over somewhat below the limit, where faultless observations are rare.
+  constexpr double kTransitionShare = 0.75;
+  const double transition = std::sqrt(kTransitionShare * outlierLimit());
   std::fill(active_.begin(), active_.end(), true);
   path_.clear();
   x_ = problem_.prior.x;
@@ -234,18 +244,18 @@ bool Estimator::solveWithoutOutliers() {
   const bool plain_converged = solveReweighted();
   std::vector<double> squares = whitenedSquares(x_);
   if (plain_converged &&
-      *std::max_element(squares.begin(), squares.end()) <= kTransition * kTransition) {
+      *std::max_element(squares.begin(), squares.end()) <= transition * transition) {
     return true;  // within the quadratic part of the robust loss: it has the same minimum
   }
   path_.clear();
-  solve(problem_.prior.x, Loss::kHuber, kTransition);
+  solve(problem_.prior.x, Loss::kHuber, transition);
   updateWeights(x_);
   squares = whitenedSquares(x_);
   std::nth_element(squares.begin(),
                    squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2),
                    squares.end());
   const double scatter = std::max(1.0, std::sqrt(squares[squares.size() / 2] / kComponents));
-  solve(x_, Loss::kCauchy, kTransition * scatter);
+  solve(x_, Loss::kCauchy, transition * scatter);
   for (int round = 0; round < kMaxRounds && (rejectOutliers() || round == 0); ++round) {
     if (!hasEnoughObservations()) {
       result_.termination = Termination::kTooFewObservations;

@@ -91,19 +91,19 @@ void addObservations(const LeastSquaresInput& input,
   }
 }
 
-ceres::Solver::Options solverOptions(int max_iterations, int residuals) {
+ceres::Solver::Options solverOptions(const LeastSquaresInput& input, int residuals) {
   // Above this many rows the orthogonal factorisation costs more time than it saves digits.
   constexpr int kLargestOrthogonal = 3000;
   ceres::Solver::Options options;
   options.linear_solver_type =
       residuals > kLargestOrthogonal ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
-  options.max_num_iterations = max_iterations;
+  options.max_num_iterations = input.max_iterations;
   // Close to Gauss–Newton from the first step: the prior lies within the basin as a rule, and the
   // trust region shrinks by itself where it does not.
   options.initial_trust_region_radius = 1e8;
   options.function_tolerance = 1e-15;
   options.gradient_tolerance = 0.0;
-  options.parameter_tolerance = 1e-12;
+  options.parameter_tolerance = input.parameter_tolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   options.update_state_every_iteration = true;
@@ -132,7 +132,7 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   }
 
   PathRecorder recorder(x, result.path);
-  ceres::Solver::Options options = solverOptions(input.max_iterations, problem.NumResiduals());
+  ceres::Solver::Options options = solverOptions(input, problem.NumResiduals());
   options.callbacks.push_back(&recorder);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

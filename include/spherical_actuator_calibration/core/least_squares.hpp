@@ -27,6 +27,7 @@ struct LeastSquaresInput {
   Loss loss = Loss::kSquared;
   double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
   int max_iterations = 50;
+  double parameter_tolerance = 1e-12;  ///< of a step, relative to the norm of the coordinates
 };
 
 struct LeastSquaresResult {
