@@ -76,7 +76,7 @@ const ParameterEstimate& parameter(const std::vector<ParameterEstimate>& all,
 TEST(CalibrationSession, EachCycleStartsFromTheResultOfThoseBefore) {
   CalibrationSession session = paperSession(1);
   runAll(session);
-  ASSERT_EQ(session.reports().size(), 3U);
+  ASSERT_EQ(session.reports().size(), 4U);  // and the refinement
   EXPECT_TRUE(session.isComplete());
   const CycleReport& coil = session.reports()[2];
   EXPECT_EQ(coil.cycle, Cycle::kCoil);
@@ -119,7 +119,7 @@ TEST(CalibrationSession, RecordTellsCyclesOriginAndWhatIsOpen) {
   EXPECT_EQ(record.software, "0.1.0");
   ASSERT_EQ(record.source.size(), 1U);
   EXPECT_EQ(record.source[0].checksum, "sha256:00ff");
-  ASSERT_EQ(record.cycles.size(), 3U);
+  ASSERT_EQ(record.cycles.size(), 4U);
   EXPECT_EQ(record.cycles[0].cycle, "joint");
   EXPECT_EQ(record.cycles[0].unit, "rad");
   EXPECT_EQ(record.cycles[0].samples_used, 10U);
@@ -127,6 +127,8 @@ TEST(CalibrationSession, RecordTellsCyclesOriginAndWhatIsOpen) {
   EXPECT_EQ(record.cycles[1].cycle, "poles");
   EXPECT_EQ(record.cycles[1].coil, 1U);
   EXPECT_EQ(record.cycles[1].unit, "N·m");
+  EXPECT_EQ(record.cycles[3].cycle, "refine");
+  EXPECT_EQ(record.cycles[3].unit, "1");
   EXPECT_EQ(record.unidentified.size(), 2U * 22U);
   EXPECT_EQ(record.unidentified.front(), "coil_3/polar");
   EXPECT_GT(record.orientation_uncertainty.value(), 0.0);

@@ -82,7 +82,8 @@ TEST(CycleSelection, PolesGoWithTheCoilThatHasMostSamples) {
   std::vector<Sample> samples = samplesWithCoils({2, 2, 3, 3, 3, 5});
   EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "poles:3,coil:2,coil:5");
   samples.push_back(orientationSample());
-  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "joint,poles:3,coil:2,coil:5");
+  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})),
+            "joint,poles:3,coil:2,coil:5,refine");
 }
 
 TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {

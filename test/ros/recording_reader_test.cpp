@@ -26,6 +26,60 @@
 #include "support/temporary_folder.hpp"
 
 namespace spherical_actuator_calibration {
+
+/// CoilCurrents as another version of this package may have had it: without header.
+struct HeadlessCurrents {
+  std::vector<double> current;
+};
+
+}  // namespace spherical_actuator_calibration
+
+namespace ros {
+namespace message_traits {
+
+template <>
+struct DataType<spherical_actuator_calibration::HeadlessCurrents> {
+  template <typename Message>
+  static const char* value(const Message& /*message*/) {
+    return value();
+  }
+  static const char* value() { return "spherical_actuator_calibration/CoilCurrents"; }
+};
+
+template <>
+struct MD5Sum<spherical_actuator_calibration::HeadlessCurrents> {
+  template <typename Message>
+  static const char* value(const Message& /*message*/) {
+    return value();
+  }
+  static const char* value() { return "0123456789abcdef0123456789abcdef"; }
+};
+
+template <>
+struct Definition<spherical_actuator_calibration::HeadlessCurrents> {
+  template <typename Message>
+  static const char* value(const Message& /*message*/) {
+    return "float64[] current";
+  }
+};
+
+}  // namespace message_traits
+
+namespace serialization {
+
+template <>
+struct Serializer<spherical_actuator_calibration::HeadlessCurrents> {
+  template <typename Stream>
+  static void allInOne(Stream& stream, const spherical_actuator_calibration::HeadlessCurrents& m) {
+    stream.next(m.current);
+  }
+  ROS_DECLARE_ALLINONE_SERIALIZER
+};
+
+}  // namespace serialization
+}  // namespace ros
+
+namespace spherical_actuator_calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -456,6 +510,17 @@ TEST_F(RecordingReader, RefusesTopicsOfAnotherType) {
     }
   });
   expectError(bag, "/actuator/measured_torque is recorded as std_msgs/String");
+}
+
+TEST_F(RecordingReader, RefusesTopicsOfAnotherVersionOfTheirType) {
+  const std::string bag = edited([](const auto& message, auto& out) {
+    if (message.getTopic() == kCurrents) {
+      out.write(kCurrents, message.getTime(), HeadlessCurrents());
+    } else {
+      bags::keep(message, out);
+    }
+  });
+  expectError(bag, "/actuator/coil_currents was recorded with another version of");
 }
 
 TEST_F(RecordingReader, WithoutATorqueModelOnlyTheJointIsRead) {
