@@ -83,12 +83,14 @@ inline Editor without(const std::vector<std::string>& topics) {
   };
 }
 
-/// Writes messages of /actuator/samples, one a second, and the parameters of the actuator.
+/// Writes messages of /actuator/samples, one a second from `begin` [s], and the parameters of the
+/// actuator.
 inline void writeSamples(const std::string& path,
                          const Actuator& actuator,
-                         const std::vector<CalibrationSample>& samples) {
+                         const std::vector<CalibrationSample>& samples,
+                         double begin = 1000.0) {
   rosbag::Bag bag(path, rosbag::bagmode::Write);
-  ros::Time stamp(1000.0);
+  ros::Time stamp(begin);
   bag.write("/actuator/parameters", stamp, parametersToRos(actuator));
   for (const CalibrationSample& sample : samples) {
     bag.write("/actuator/samples", stamp, sample);

@@ -69,9 +69,9 @@ namespace serialization {
 
 template <>
 struct Serializer<spherical_actuator_calibration::HeadlessCurrents> {
-  template <typename Stream>
-  static void allInOne(Stream& stream, const spherical_actuator_calibration::HeadlessCurrents& m) {
-    stream.next(m.current);
+  template <typename Stream, typename Message>
+  static void allInOne(Stream& stream, Message message) {
+    stream.next(message.current);
   }
   ROS_DECLARE_ALLINONE_SERIALIZER
 };
@@ -291,6 +291,15 @@ TEST_F(RecordingReader, SamplesOfSeveralSessionsGetNumbersOfTheirOwn) {
   EXPECT_EQ(recording.samples[5].id, 6U);
   ASSERT_EQ(recording.report.notes.size(), 1U);
   EXPECT_NE(recording.report.notes[0].find("3 samples"), std::string::npos);
+}
+
+TEST_F(RecordingReader, OrderOfTheFilesDoesNotMatter) {
+  const std::vector<Sample> samples = read({session()}).samples;
+  bags::writeSamples(path("a.bag"), unit(), bags::messagesOf({samples[0], samples[1]}), 1000.0);
+  bags::writeSamples(path("b.bag"), unit(), bags::messagesOf({samples[2], samples[3]}), 1000.2);
+  bags::writeSamples(path("c.bag"), unit(), bags::messagesOf({samples[4], samples[5]}), 2000.0);
+  expectSame(read({path("c.bag"), path("a.bag"), path("b.bag")}).samples,
+             read({path("a.bag"), path("b.bag"), path("c.bag")}).samples);
 }
 
 TEST_F(RecordingReader, DropsAndTellsSamplesWithNaNInAnyField) {
