@@ -11,7 +11,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostDraws = 2000;
 
 // Angles at which a pair is informative, and margins around the joints of the curve where its true
-// shape is uncertain (METHOD section 3).
+// shape is uncertain (doc/method.md, Torque curve).
 constexpr double kInformativeBlends = 2.0;
 constexpr double kInformativeSupport = 0.85;
 constexpr double kUncertainBlends = 1.5;

@@ -40,7 +40,8 @@ class CalibrationModel {
   /// Precondition: hasTorqueModel().
   const TorqueCurve& curve() const { return *curve_; }
 
-  /// y = ln(R_a R(q)ᵀ)^∨ [rad], stator frame (METHOD (12–14)); ∂y/∂joints = −J_r⁻¹(y) ∂ξ/∂joints.
+  /// y = ln(R_a R(q)ᵀ)^∨ [rad], stator frame (doc/method.md, Joint (12–14)); ∂y/∂joints = −J_r⁻¹(y)
+  /// ∂ξ/∂joints.
   Eigen::Vector3d orientationResidual(const Sample& sample,
                                       const double* joints,
                                       JacobianBlock d_joints = {}) const;
@@ -55,8 +56,8 @@ class CalibrationModel {
     const JacobianBlock* d_coils = nullptr;  ///< null when none is wanted
   };
 
-  /// T_measured − T_model [N·m], rotor frame (paper (21), METHOD section 3). Precondition:
-  /// hasTorqueModel().
+  /// T_measured − T_model [N·m], rotor frame (paper (21), doc/method.md, Torque curve).
+  /// Precondition: hasTorqueModel().
   Eigen::Vector3d torqueResidual(const Sample& sample,
                                  const std::vector<Excitation>& excitations,
                                  const TorqueBlocks& blocks) const;

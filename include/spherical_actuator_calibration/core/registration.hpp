@@ -43,7 +43,7 @@ MarkerPoseMeasurement markerPoseFromOrientation(const Registration& registration
 
 /// Torque about the rotor centre, in the rotor frame, of a wrench measured away from it:
 /// T_c = R (T_s + p × F) with p the sensor's origin from the rotor centre, in the sensor frame
-/// (METHOD section 5). A plain rotation of the wrench would lose the lever arm.
+/// (doc/method.md, Laboratory). A plain rotation of the wrench would lose the lever arm.
 TorqueMeasurement torqueFromWrench(const Registration& registration,
                                    const WrenchMeasurement& wrench);
 

@@ -17,7 +17,7 @@ Eigen::Matrix3d rotationExp(const Eigen::Vector3d& v);
 /// rotation matrix. At an angle of exactly π either of the two signs may be returned.
 Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R);
 
-/// Left Jacobian J_l(v) of SO(3): e^{(v+δ)^} ≈ e^{(J_l(v) δ)^} e^{v̂} (METHOD section 2, below (8)).
+/// Left Jacobian J_l(v) of SO(3): e^{(v+δ)^} ≈ e^{(J_l(v) δ)^} e^{v̂} (doc/method.md, Joint).
 Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& v);
 
 /// Inverse of leftJacobian(v), for ‖v‖ < 2π.

@@ -42,8 +42,8 @@ void validate(const SessionPlanOptions& options, const Actuator& nominal);
 /// the tilt, joint 3 within ±π. Torque poses are drawn until the coil has the wanted pole (each in
 /// turn for the main coil, any for the others) where the curve is steep and certain, between twice
 /// its blend angle and 0.85 times the begin of its support, and no pole where the curve is
-/// uncertain (METHOD section 3); if bounded trying finds none, the best pose drawn serves. Without
-/// a torque model only the joint poses are planned.
+/// uncertain (doc/method.md, Torque curve); if bounded trying finds none, the best pose drawn
+/// serves. Without a torque model only the joint poses are planned.
 SessionPlan planSession(const Actuator& nominal,
                         const SessionPlanOptions& options,
                         std::uint64_t seed);

@@ -20,7 +20,7 @@ namespace spherical_actuator_calibration {
 struct RotorLoad {
   double weight = 8.0;  ///< of rotor and load, seen by the force/torque sensor [N]
   /// Weight times the position of the centre of gravity, rotor frame [N·m]: T_g = unbalance ×
-  /// Rᵀ(−z) (METHOD section 5).
+  /// Rᵀ(−z) (doc/method.md, Laboratory).
   Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
 };
 

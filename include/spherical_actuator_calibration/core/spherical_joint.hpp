@@ -25,13 +25,13 @@ Eigen::Matrix3d rotorOrientation(const JointGeometry& joints, const Eigen::Vecto
 /// e^{ξ̂}R.
 struct JointLinearization {
   Eigen::Matrix3d R_stator_rotor;
-  /// Column k: ∂ξ/∂δq_k = ∂ξ/∂q_k = A_k ω_k (METHOD (12–14)).
+  /// Column k: ∂ξ/∂δq_k = ∂ξ/∂q_k = A_k ω_k (doc/method.md, Joint (12–14)).
   Eigen::Matrix3d d_offset;
   /// ∂ξ/∂ω_k = q_k A_k J_l(ω_k q_k), q_k with its offset.
   std::array<Eigen::Matrix3d, kJoints> d_axis;
 };
 
-/// Linearises rotorOrientation() at `q` [rad] (METHOD (8), (12–14)).
+/// Linearises rotorOrientation() at `q` [rad] (doc/method.md, Joint (8), (12–14)).
 JointLinearization linearizeRotorOrientation(const JointGeometry& joints, const Eigen::Vector3d& q);
 
 }  // namespace spherical_actuator_calibration

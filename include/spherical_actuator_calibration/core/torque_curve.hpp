@@ -23,7 +23,7 @@ struct TorqueCurveDescription {
 void validate(const TorqueCurveDescription& description);
 
 /// Torque per ampere between one pole and one coil as a function of the angle ψ between their axes,
-/// continuous with its first derivative everywhere (METHOD section 3, *smooth* curve):
+/// continuous with its first derivative everywhere (doc/method.md, Torque curve):
 /// odd cubic near zero, polynomial on the support, cubic Hermite to zero, zero beyond.
 class TorqueCurve {
  public:

@@ -19,7 +19,7 @@ struct TorqueGeometry {
 TorqueGeometry torqueGeometry(const Actuator& actuator);
 
 /// Torque of one pole–coil pair per ampere and unit strength, and its derivatives, rotor frame
-/// (METHOD section 3, safe form): τ = h(κ) (r×s), κ = r·s.
+/// (doc/method.md, Torque): τ = h(κ) (r×s), κ = r·s.
 struct PairTorque {
   Eigen::Vector3d torque;  ///< [N·m/A]
   Eigen::Matrix3d d_pole;  ///< ∂τ/∂r = −h ŝ + h′ (r×s) sᵀ
