@@ -77,11 +77,8 @@ std::vector<Row> rowsOf(const CalibrationSession& session, const std::optional<A
   return rows;
 }
 
-/// Azimuths of the same direction may differ by whole turns.
 double errorOf(const Row& row) {
-  const double difference = row.parameter.value - *row.truth;
-  const bool is_azimuth = row.parameter.name.find("/azimuth") != std::string::npos;
-  return is_azimuth ? std::remainder(difference, 2.0 * M_PI) : difference;
+  return row.parameter.value - *row.truth;
 }
 
 std::string rowText(const Row& row) {

@@ -128,6 +128,18 @@ TEST_F(CalibrateBag, FindsTheTruthOfAnEmulatedSession) {
   EXPECT_GE(std::stoi(covered[1]), 24);
 }
 
+TEST_F(CalibrateBag, TruthMayCountItsAzimuthsFromAnotherTurn) {
+  Actuator turned = trueUnit();
+  turned.poles[1].azimuth += 2.0 * M_PI;
+  turned.coils[0].azimuth -= 2.0 * M_PI;
+  saveDescription(path("turned.yaml"), {turned}, OverwritePolicy::kRefuse);
+  const auto table = [](const Outcome& outcome) {
+    return outcome.output.substr(outcome.output.find("\nparameter "));
+  };
+  EXPECT_EQ(table(calibrate("--force --truth " + path("turned.yaml"))),
+            table(calibrate("--force --truth " + truth())));
+}
+
 TEST_F(CalibrateBag, PrintsWhatAnOperatorWantsToKnow) {
   const std::string text = calibrate("").output;
   for (const std::string part : {"joint_states: ",
@@ -272,6 +284,7 @@ TEST_F(CalibrateBag, ReplacesFilesOnlyWhenForced) {
   const Outcome refused = calibrate("--cycles joint");
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.errors.find("exists already"), std::string::npos);
+  EXPECT_EQ(refused.output, "") << "refused before the recording is read";
   EXPECT_EQ(contentOf(output()), "precious");
   EXPECT_EQ(calibrate("--cycles joint --force").status, 0);
   EXPECT_NE(contentOf(output()), "precious");
