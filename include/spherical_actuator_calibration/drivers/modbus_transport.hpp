@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace spherical_actuator_calibration {
+
+/// The two register tables of a Modbus device that hold 16-bit words.
+enum class RegisterTable {
+  kHolding,  ///< read and written (functions 3, 6, 16)
+  kInput,    ///< only read (function 4)
+};
+
+/// A Modbus bus as its master sees it. One request at a time; not thread-safe.
+///
+/// Addresses count from 0, as in the protocol. Every request throws TransportError, at the latest
+/// after the response timeout. After kUnreachable, kTimeout and kGarbled the link is closed: open()
+/// makes a new one, so that a late answer cannot be taken for the next one.
+class ModbusTransport {
+ public:
+  ModbusTransport() = default;
+  ModbusTransport(const ModbusTransport&) = delete;
+  ModbusTransport& operator=(const ModbusTransport&) = delete;
+  virtual ~ModbusTransport() = default;
+
+  /// Does nothing when the link is open. Throws TransportError (kUnreachable).
+  virtual void open() = 0;
+  virtual void close() = 0;
+  virtual bool isOpen() const = 0;
+
+  /// `count` words from `address` on, 1 ≤ count ≤ 125.
+  virtual std::vector<std::uint16_t> read(int unit,
+                                          RegisterTable table,
+                                          int address,
+                                          int count) = 0;
+
+  /// Writes holding registers from `address` on, 1 to 123 words, in one request.
+  virtual void write(int unit, int address, const std::vector<std::uint16_t>& words) = 0;
+};
+
+}  // namespace spherical_actuator_calibration

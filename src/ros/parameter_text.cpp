@@ -1,0 +1,76 @@
+#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/yaml_writer.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+std::string quoted(const std::string& text) {
+  const std::string plain = yamlText(text);
+  return plain.front() == '"' || plain.front() == '\'' ? plain : '"' + plain + '"';
+}
+
+std::string sequenceText(const XmlRpcValue& value, const std::string& key) {
+  std::string text;
+  for (int n = 0; n < value.size(); ++n) {
+    text += (n == 0 ? "" : ", ") + yamlOfParameter(value[n], key + "[" + std::to_string(n) + "]");
+  }
+  return "[" + text + "]";
+}
+
+std::string mapText(const XmlRpcValue& value, const std::string& key) {
+  std::string text;
+  for (const auto& [name, entry] : value) {
+    text +=
+        (text.empty() ? "" : ", ") + quoted(name) + ": " + yamlOfParameter(entry, key + "/" + name);
+  }
+  return "{" + text + "}";
+}
+
+}  // namespace
+
+std::string yamlOfParameter(const XmlRpcValue& value, const std::string& key) {
+  switch (value.getType()) {
+    case XmlRpcValue::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case XmlRpcValue::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case XmlRpcValue::TypeDouble:
+      return yamlNumber(static_cast<double>(value));
+    case XmlRpcValue::TypeString:
+      return quoted(static_cast<std::string>(value));
+    case XmlRpcValue::TypeArray:
+      return sequenceText(value, key);
+    case XmlRpcValue::TypeStruct:
+      return mapText(value, key);
+    default:
+      throw ConfigError("The parameter " + key +
+                        " is of a type that is not used here: no number, truth value, text, list "
+                        "or map.");
+  }
+}
+
+std::string requiredParameterText(const ros::NodeHandle& node, const std::string& key) {
+  XmlRpcValue value;
+  if (!node.getParam(key, value)) {
+    throw ConfigError("The parameter " + node.resolveName(key) +
+                      " is missing: load the description with rosparam, or start the node by a "
+                      "launch file of this package.");
+  }
+  return quoted(key) + ": " + yamlOfParameter(value, node.resolveName(key)) + "\n";
+}
+
+std::string privateParameterText(const ros::NodeHandle& private_node) {
+  XmlRpcValue value;
+  const std::string& key = private_node.getNamespace();
+  return private_node.getParam(key, value) && value.getType() == XmlRpcValue::TypeStruct
+             ? yamlOfParameter(value, key) + "\n"
+             : "{}\n";
+}
+
+}  // namespace spherical_actuator_calibration
