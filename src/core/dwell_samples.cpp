@@ -26,7 +26,7 @@ struct ZeroCurrentPart {
   double weight = 0.0;  ///< torque measurements in it; 0: there is no such part
 };
 
-/// Samples of one dwell; see samplesOfDwell().
+/// Samples of one dwell; see samplesOfDwell() and sampleOfSpan().
 class DwellSampler {
  public:
   DwellSampler(const MeasurementBuffers& buffers,
@@ -59,6 +59,33 @@ class DwellSampler {
     return samples;
   }
 
+  std::optional<Sample> sampleOf(const StampInterval& span) {
+    std::optional<std::size_t> wanted;
+    if (buffers_.currents.within(dwell_).size() == 0) {
+      collectWithoutCurrents(span);
+      wanted = 0;
+    }
+    for (const CurrentSegment& segment :
+         segmentsOfConstantCurrent(buffers_.currents, dwell_, options_)) {
+      if (segment.span.begin <= span.begin && span.end <= segment.span.end) {
+        wanted = candidates_.size();
+        collect(segment, span);
+      } else if (!segment.excited && isWorthwhile(segment, steadyPart(segment))) {
+        collect(segment, steadyPart(segment));
+      }
+    }
+    if (!wanted) {
+      discard(span, "The currents changed.");
+    }
+    if (!wanted || *wanted >= candidates_.size()) {
+      return std::nullopt;
+    }
+    if (options_.bias_removal == BiasRemoval::kZeroCurrent) {
+      removeBias();
+    }
+    return candidates_[*wanted].sample;
+  }
+
  private:
   static std::string tenths(double seconds) {
     const auto rounded = std::llround(seconds * 10.0);
@@ -75,7 +102,7 @@ class DwellSampler {
 
   void collectCandidates() {
     if (buffers_.currents.within(dwell_).size() == 0) {
-      collectWithoutCurrents();
+      collectWithoutCurrents(rest_);
       return;
     }
     bool any_usable = false;
@@ -107,8 +134,8 @@ class DwellSampler {
     return decisive.duration() >= options_.smallest_duration;
   }
 
-  void collectWithoutCurrents() {
-    std::optional<SegmentAverage> average = averageOf(rest_);
+  void collectWithoutCurrents(const StampInterval& span) {
+    std::optional<SegmentAverage> average = averageOf(span);
     if (!average) {
       return;
     }
@@ -117,7 +144,7 @@ class DwellSampler {
       sample.has_torque = false;
       sample.torque.setZero();
       sample.torque_stddev = 0.0;
-      note(rest_, "The torque is left out: no currents were measured.");
+      note(span, "The torque is left out: no currents were measured.");
     }
     candidates_.push_back({sample, false, 0});
   }
@@ -218,6 +245,14 @@ std::vector<Sample> samplesOfDwell(const MeasurementBuffers& buffers,
                                    const SampleBuilderOptions& options,
                                    SampleBuilderReport& report) {
   return DwellSampler(buffers, dwell, options, report).samples();
+}
+
+std::optional<Sample> sampleOfSpan(const MeasurementBuffers& buffers,
+                                   const StampInterval& dwell,
+                                   const StampInterval& span,
+                                   const SampleBuilderOptions& options,
+                                   SampleBuilderReport& report) {
+  return DwellSampler(buffers, dwell, options, report).sampleOf(span);
 }
 
 }  // namespace spherical_actuator_calibration

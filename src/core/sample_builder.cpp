@@ -1,9 +1,12 @@
 #include "spherical_actuator_calibration/core/sample_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
+#include "spherical_actuator_calibration/core/current_segments.hpp"
 #include "spherical_actuator_calibration/core/dwell_samples.hpp"
 
 namespace spherical_actuator_calibration {
@@ -11,6 +14,17 @@ namespace {
 
 /// Quaternions whose norm is further from 1 are wrong, not just rounded.
 constexpr double kUnitTolerance = 1e-3;
+
+/// A stream that is silent for longer was switched off on purpose: a tracker that is only needed
+/// for some poses [s].
+constexpr double kSwitchedOff = 30.0;
+
+std::string decimals(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
 
 std::optional<DropReason> defectOf(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return values.allFinite() ? std::nullopt : std::optional(DropReason::kNotFinite);
@@ -85,8 +99,97 @@ void SampleBuilder::finish() {
   }
 }
 
+CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
+  using State = CaptureProgress::State;
+  if (!(duration >= options_.smallest_duration && duration <= options_.largest_dwell / 2.0)) {
+    return {State::kRefused,
+            std::nullopt,
+            "The duration must lie between " + decimals(options_.smallest_duration) + " and " +
+                decimals(options_.largest_dwell / 2.0) + " s."};
+  }
+  const std::string silent = silentStream();
+  if (!silent.empty()) {
+    return {State::kRefused, std::nullopt, silent};
+  }
+  const bool too_late = newest_ && secondsBetween(from, *newest_) >
+                                       duration + kPatience + options_.guard_before_motion;
+  const State unfinished = too_late ? State::kRefused : State::kWaiting;
+  const std::optional<StampInterval>& dwell = detector_.present();
+  if (!dwell) {
+    return {unfinished, std::nullopt, "The rotor moves: let it rest."};
+  }
+  const Stamp begin = std::max(from, settledSince(*dwell));
+  const StampInterval span{begin, begin + ticksFromSeconds(duration)};
+  if (dwell->end < span.end + ticksFromSeconds(options_.guard_before_motion) ||
+      !allPassed(span.end)) {
+    return {unfinished,
+            std::nullopt,
+            "Rotor and currents were not steady for " + decimals(duration) + " s."};
+  }
+  return captured(span);
+}
+
 std::vector<Sample> SampleBuilder::takeSamples() {
   return std::exchange(samples_, {});
+}
+
+// A stream that was there and is silent now; without it the sample would lack a quantity by
+// accident.
+std::string SampleBuilder::silentStream() const {
+  if (!joints_.horizon) {
+    return "No joint measurement has come: is joint_states published?";
+  }
+  const std::array<std::pair<const Stream*, const char*>, 4> streams = {{
+      {&joints_, "joint_states"},
+      {&orientations_, "measured_orientation"},
+      {&torques_, "measured_torque"},
+      {&currents_, "coil_currents"},
+  }};
+  for (const auto& [stream, name] : streams) {
+    if (!stream->horizon) {
+      continue;
+    }
+    const double silence = secondsBetween(*stream->horizon, *newest_);
+    if (silence > options_.largest_gap && (stream == &joints_ || silence < kSwitchedOff)) {
+      return std::string("The stream ") + name + " is silent for " + decimals(silence) +
+             " s: check its node (one that is switched off on purpose counts as absent after " +
+             decimals(kSwitchedOff) + " s).";
+    }
+  }
+  return {};
+}
+
+Stamp SampleBuilder::settledSince(const StampInterval& dwell) const {
+  const Stamp rest = dwell.begin + ticksFromSeconds(options_.settle_after_motion);
+  const std::vector<CurrentSegment> segments =
+      segmentsOfConstantCurrent(buffers_.currents, {dwell.begin, *newest_}, options_);
+  if (segments.empty()) {
+    return rest;
+  }
+  return std::max(
+      rest, segments.back().span.begin + ticksFromSeconds(options_.settle_after_current_change));
+}
+
+bool SampleBuilder::allPassed(Stamp stamp) const {
+  const auto has_passed = [&](const Stream& stream) {
+    return !stream.horizon || *stream.horizon >= stamp ||
+           secondsBetween(*stream.horizon, *newest_) > kSwitchedOff;
+  };
+  return has_passed(joints_) && has_passed(orientations_) && has_passed(torques_) &&
+         has_passed(currents_);
+}
+
+CaptureProgress SampleBuilder::captured(const StampInterval& span) const {
+  SampleBuilderReport report;
+  CaptureProgress progress;
+  progress.sample =
+      sampleOfSpan(buffers_, {detector_.present()->begin, *newest_}, span, options_, report);
+  progress.state =
+      progress.sample ? CaptureProgress::State::kDone : CaptureProgress::State::kRefused;
+  for (const DwellEvent& event : report.events) {
+    progress.message += (progress.message.empty() ? "" : " ") + event.reason;
+  }
+  return progress;
 }
 
 bool SampleBuilder::accept(Stream& stream, Stamp stamp, std::optional<DropReason> defect) {

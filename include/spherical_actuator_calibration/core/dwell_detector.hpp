@@ -29,6 +29,9 @@ class DwellDetector {
   /// measurement.
   std::optional<Stamp> earliestBegin() const;
 
+  /// The dwell that has not ended yet, up to the newest measurement known to belong to it.
+  const std::optional<StampInterval>& present() const { return dwell_; }
+
   /// Stamp of the newest measurement.
   std::optional<Stamp> newest() const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/sample.hpp"
@@ -21,6 +22,15 @@ namespace spherical_actuator_calibration {
 /// Appends to the events and counts glitches and samples in `report`.
 std::vector<Sample> samplesOfDwell(const MeasurementBuffers& buffers,
                                    const StampInterval& dwell,
+                                   const SampleBuilderOptions& options,
+                                   SampleBuilderReport& report);
+
+/// Sample of one span of constant current within a dwell, id 0, averaged over all of the span. The
+/// bias is taken from the zero-current spans of the dwell up to its end. Nothing, and an event with
+/// the reason, when the span gives none.
+std::optional<Sample> sampleOfSpan(const MeasurementBuffers& buffers,
+                                   const StampInterval& dwell,
+                                   const StampInterval& span,
                                    const SampleBuilderOptions& options,
                                    SampleBuilderReport& report);
 

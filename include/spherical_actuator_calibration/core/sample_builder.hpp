@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/dwell_detector.hpp"
@@ -15,6 +16,18 @@
 #include "spherical_actuator_calibration/core/stream_buffer.hpp"
 
 namespace spherical_actuator_calibration {
+
+/// Where a capture on demand stands.
+struct CaptureProgress {
+  enum class State {
+    kWaiting,  ///< more measurements are needed; `message` says what is missing
+    kDone,
+    kRefused,  ///< there will be none; `message` says why
+  };
+  State state = State::kWaiting;
+  std::optional<Sample> sample;  ///< with kDone, id 0
+  std::string message;           ///< a sentence; with kDone what limits the sample, or empty
+};
 
 /// Makes samples out of streams of stamped measurements: one per dwell and current pattern.
 ///
@@ -41,6 +54,16 @@ class SampleBuilder {
   /// another base of time.
   void finish();
 
+  /// One sample of the present dwell, averaged over `duration` seconds from stamp `from` on, or
+  /// from where rotor and currents have settled. Ask again while it waits; it waits no longer than
+  /// the rotor may need to come to rest (kPatience) and refuses then. Changes nothing.
+  CaptureProgress capture(Stamp from, double duration) const;
+  /// How long a capture waits for rest and for steady currents, in seconds of stamps.
+  static constexpr double kPatience = 2.0;
+
+  /// Newest accepted stamp of all streams, since the last reset of a clock.
+  std::optional<Stamp> newest() const { return newest_; }
+
   /// Samples made since the last call, ids counted from 1 in the order of their stamps.
   std::vector<Sample> takeSamples();
 
@@ -63,6 +86,10 @@ class SampleBuilder {
   void closeDwellOfSilentJoints();
   void evaluateReadyDwells();
   bool isReady(const StampInterval& dwell) const;
+  std::string silentStream() const;
+  Stamp settledSince(const StampInterval& dwell) const;
+  bool allPassed(Stamp stamp) const;
+  CaptureProgress captured(const StampInterval& span) const;
   void evaluateFront();
   Stamp oldestNeeded() const;
 
