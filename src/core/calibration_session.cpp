@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "spherical_actuator_calibration/core/error.hpp"
+
 namespace spherical_actuator_calibration {
 namespace {
 
@@ -14,15 +16,18 @@ const CalibrationConfig& validated(const CalibrationConfig& config) {
   return config;
 }
 
+/// Whether the sample with this index, from 0, is held out by its turn.
+bool isHeldOut(std::size_t index, const CalibrationConfig& config) {
+  const auto every = static_cast<std::size_t>(config.hold_out_every);
+  return every > 0 && index % every == every - 1;
+}
+
 std::vector<Sample> prepared(std::vector<Sample> samples,
                              const Actuator& actuator,
                              const CalibrationConfig& config) {
-  const auto every = static_cast<std::size_t>(config.hold_out_every);
   for (std::size_t n = 0; n < samples.size(); ++n) {
     validate(samples[n], actuator.coils.size());
-    if (every > 0 && n % every == every - 1) {
-      samples[n].validation = true;
-    }
+    samples[n].validation = samples[n].validation || isHeldOut(n, config);
   }
   return samples;
 }
@@ -104,10 +109,57 @@ CalibrationSession::CalibrationSession(CalibratedDescription start,
                                        std::vector<Sample> samples,
                                        CalibrationConfig config)
     : start_(std::move(start)),
-      samples_(prepared(std::move(samples), start_.actuator, validated(config))),
+      samples_(spherical_actuator_calibration::prepared(
+          std::move(samples), start_.actuator, validated(config))),
       config_(std::move(config)),
       model_(ParameterSpace(start_.actuator)),
-      state_(startState(model_.space(), start_.stddevs, config_.tolerance)) {}
+      state_(spherical_actuator_calibration::startState(
+          model_.space(), start_.stddevs, config_.tolerance)) {}
+
+CalibrationSession::CalibrationSession(CalibratedDescription start,
+                                       std::vector<Sample> samples,
+                                       CalibrationConfig config,
+                                       CalibrationState state,
+                                       std::vector<CycleReport> reports)
+    : CalibrationSession(std::move(start), {}, std::move(config)) {
+  for (const Sample& sample : samples) {
+    validate(sample, start_.actuator.coils.size());
+  }
+  samples_ = std::move(samples);
+  resume(std::move(state), std::move(reports));
+}
+
+Sample CalibrationSession::prepared(Sample sample) const {
+  validate(sample, start_.actuator.coils.size());
+  sample.validation = sample.validation || isHeldOut(samples_.size(), config_);
+  return sample;
+}
+
+bool CalibrationSession::remove(std::uint32_t id) {
+  const auto place = std::find_if(
+      samples_.begin(), samples_.end(), [id](const Sample& sample) { return sample.id == id; });
+  if (place == samples_.end()) {
+    return false;
+  }
+  samples_.erase(place);
+  return true;
+}
+
+CalibrationState CalibrationSession::startState() const {
+  return spherical_actuator_calibration::startState(
+      model_.space(), start_.stddevs, config_.tolerance);
+}
+
+void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport> reports) {
+  const Eigen::Index size = model_.space().size();
+  if (state.belief.x.size() != size || state.belief.covariance.rows() != size ||
+      state.belief.covariance.cols() != size ||
+      state.identified.size() != static_cast<std::size_t>(size)) {
+    throw DataError("The stored parameters are of an actuator with other poles or coils.");
+  }
+  state_ = std::move(state);
+  reports_ = std::move(reports);
+}
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
   CycleOutcome outcome = runCycle(model_, samples_, state_, request, config_.estimation);
@@ -206,7 +258,8 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
 CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) const {
   CalibrationRecord record;
   record.date = origin.date;
-  record.revision = start_.calibration ? start_.calibration->revision + 1 : 1;
+  record.revision =
+      origin.revision.value_or(start_.calibration ? start_.calibration->revision + 1 : 1);
   record.source = origin.recordings;
   record.software = origin.software;
   for (const CycleReport& report : reports_) {

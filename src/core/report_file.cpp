@@ -110,6 +110,7 @@ void writeValidation(ReportWriter& writer, const HeldOutValidation& validation) 
   line.add("torques", std::to_string(validation.torques));
   line.add("torque_rms", yamlNumber(validation.torque_rms));
   line.add("reduced_chi_square", yamlNumber(validation.reduced_chi_square));
+  line.add("probability", yamlNumber(validation.probability));
   writer.entry(1, "validation", line.text());
 }
 

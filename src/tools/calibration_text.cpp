@@ -140,16 +140,7 @@ std::string cycleParagraph(const CycleReport& report) {
 }
 
 std::string validationParagraph(const HeldOutValidation& validation) {
-  std::string text = format("Validation with %zu held-out samples:", validation.samples);
-  if (validation.orientations > 0) {
-    text += format(" orientation rms %.4g mrad (%zu),",
-                   1e3 * validation.orientation_rms,
-                   validation.orientations);
-  }
-  if (validation.torques > 0) {
-    text += format(" torque rms %.4g mN.m (%zu),", 1e3 * validation.torque_rms, validation.torques);
-  }
-  return text + format(" reduced chi-square %.3g.\n", validation.reduced_chi_square);
+  return "Validation: " + verdict(validation) + "\n";
 }
 
 std::string parameterTable(const CalibrationSession& session,

@@ -154,6 +154,7 @@ TEST(CalibrationSession, FailedCyclesChangeNothing) {
 
 TEST(CalibrationSession, HeldOutSamplesFitWithinTheirUncertainty) {
   double sum = 0.0;
+  int agreeing = 0;
   constexpr int kSessions = 20;
   for (unsigned seed = 10; seed < 10 + kSessions; ++seed) {
     CalibrationSession session = paperSession(seed);
@@ -165,8 +166,13 @@ TEST(CalibrationSession, HeldOutSamplesFitWithinTheirUncertainty) {
     EXPECT_LT(validation.orientation_rms, 5e-3);
     EXPECT_LT(validation.torque_rms, 1e-2);
     sum += validation.reduced_chi_square;
+    agreeing += validation.probability > 0.05 ? 1 : 0;
+    ASSERT_EQ(validation.residuals.size(), 6U);
+    EXPECT_EQ(validation.residuals[0].id, 11U);
+    EXPECT_NE(verdict(validation).find("agree"), std::string::npos) << verdict(validation);
   }
-  EXPECT_NEAR(sum / kSessions, 1.0, 0.3);
+  EXPECT_NEAR(sum / kSessions, 1.0, 0.25);
+  EXPECT_GE(agreeing, kSessions - 4);
 }
 
 TEST(CalibrationSession, HeldOutSamplesShowWrongParameters) {
@@ -174,6 +180,22 @@ TEST(CalibrationSession, HeldOutSamplesShowWrongParameters) {
   const HeldOutValidation nominal = session.validation().value();
   EXPECT_GT(nominal.orientation_rms, 20e-3);
   EXPECT_GT(nominal.torque_rms, 20e-3);
+}
+
+TEST(CalibrationSession, HeldOutSamplesThatLieContradictTheParameters) {
+  scenarios::Generator generator(9);
+  std::vector<Sample> samples = sessionSamples(scenarios::paperTruth(), generator);
+  samples[43].torque.x() += 20.0 * kTorqueNoise;
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  runAll(session);
+  const HeldOutValidation validation = session.validation().value();
+  EXPECT_LT(validation.probability, kLeastProbability);
+  EXPECT_NE(verdict(validation).find("contradict"), std::string::npos);
+  const auto worst = std::max_element(
+      validation.residuals.begin(), validation.residuals.end(), [](const auto& a, const auto& b) {
+        return a.standardized < b.standardized;
+      });
+  EXPECT_EQ(worst->id, 44U);
 }
 
 TEST(CalibrationSession, WithoutHeldOutSamplesThereIsNoValidation) {
@@ -190,6 +212,62 @@ TEST(CalibrationSession, WithoutHeldOutSamplesThereIsNoValidation) {
   EXPECT_EQ(session.validation()->samples, samples.size() / 5);
   EXPECT_FALSE(session.samples()[0].validation);
   EXPECT_TRUE(session.samples()[4].validation);
+}
+
+TEST(CalibrationSession, GrowsSampleBySampleToTheSameResult) {
+  scenarios::Generator generator(11);
+  const std::vector<Sample> samples = sessionSamples(scenarios::paperTruth(), generator);
+  CalibrationConfig config;
+  config.hold_out_every = 7;
+  CalibrationSession whole({scenarios::paperNominal()}, samples, config);
+  CalibrationSession growing({scenarios::paperNominal()}, {}, config);
+  for (const Sample& sample : samples) {
+    growing.add(growing.prepared(sample));
+  }
+  runAll(whole);
+  runAll(growing);
+  EXPECT_EQ(growing.state().belief.x, whole.state().belief.x);
+  EXPECT_EQ(growing.validation()->samples, whole.validation()->samples);
+}
+
+TEST(CalibrationSession, TakesSamplesAway) {
+  CalibrationSession session = paperSession(12);
+  const std::size_t count = session.samples().size();
+  EXPECT_TRUE(session.remove(5));
+  EXPECT_FALSE(session.remove(5));
+  EXPECT_EQ(session.samples().size(), count - 1);
+  session.clearSamples();
+  EXPECT_FALSE(session.run({Cycle::kJoint, 0}).success);
+}
+
+TEST(CalibrationSession, RefusesASampleThatCannotBeUsed) {
+  const CalibrationSession session = paperSession(13);
+  Sample sample = session.samples()[20];
+  sample.current.resize(3);
+  EXPECT_THROW(session.prepared(sample), DataError);
+}
+
+TEST(CalibrationSession, TakenUpAgainItGoesOnAsBefore) {
+  CalibrationSession session = paperSession(14);
+  session.run({Cycle::kJoint, 0});
+  CalibrationSession resumed({scenarios::paperNominal()},
+                             session.samples(),
+                             session.config(),
+                             session.state(),
+                             session.reports());
+  session.run({Cycle::kPoles, 1});
+  resumed.run({Cycle::kPoles, 1});
+  EXPECT_EQ(resumed.state().belief.x, session.state().belief.x);
+  EXPECT_EQ(renderDescription(resumed.description(exampleOrigin()), "c.yaml"),
+            renderDescription(session.description(exampleOrigin()), "c.yaml"));
+
+  resumed.resume(resumed.startState(), {});
+  EXPECT_TRUE(resumed.state().belief.x.isZero(0.0));
+  EXPECT_TRUE(resumed.reports().empty());
+
+  CalibrationState other = session.state();
+  other.identified.pop_back();
+  EXPECT_THROW(resumed.resume(other, {}), DataError);
 }
 
 TEST(CalibrationSession, ContinuesACalibratedDescription) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/calibration_config.hpp"
@@ -20,10 +22,12 @@ struct CalibrationOrigin {
   std::string date;  ///< ISO 8601, with time
   std::vector<RecordingSource> recordings;
   std::string software;  ///< version of this package
+  /// Of the result; without it one more than that of the description at the start.
+  std::optional<std::uint32_t> revision = std::nullopt;
 };
 
-/// The calibration of one actuator from a fixed set of samples: runs cycles one after the other,
-/// each from the result of those before it.
+/// The calibration of one actuator from its samples: runs cycles one after the other, each from the
+/// result of those before it. Samples may come and go between cycles.
 class CalibrationSession {
  public:
   /// Starts from a description. What a calibrated description states with a standard deviation
@@ -33,10 +37,34 @@ class CalibrationSession {
                      std::vector<Sample> samples,
                      CalibrationConfig config);
 
+  /// Takes up a session again: samples (with what is held out as it was) and parameters in force,
+  /// with the reports of the cycles that led to them. Throws as above, and DataError when the state
+  /// does not belong to the description.
+  CalibrationSession(CalibratedDescription start,
+                     std::vector<Sample> samples,
+                     CalibrationConfig config,
+                     CalibrationState state,
+                     std::vector<CycleReport> reports);
+
+  const CalibratedDescription& start() const { return start_; }
   const CalibrationModel& model() const { return model_; }
   const CalibrationConfig& config() const { return config_; }
   const std::vector<Sample>& samples() const { return samples_; }
   const CalibrationState& state() const { return state_; }
+
+  /// The sample as it would be taken: checked, and held out when it is its turn
+  /// (CalibrationConfig::hold_out_every). Throws DataError when it cannot be used.
+  Sample prepared(Sample sample) const;
+  /// Takes a prepared sample.
+  void add(Sample sample) { samples_.push_back(std::move(sample)); }
+  /// False when there is no sample with this id.
+  bool remove(std::uint32_t id);
+  void clearSamples() { samples_.clear(); }
+
+  /// Parameters of the description at the start, as if no cycle had run.
+  CalibrationState startState() const;
+  /// Puts other parameters in force. Throws DataError when they do not belong to the description.
+  void resume(CalibrationState state, std::vector<CycleReport> reports);
 
   /// Runs one cycle. Its parameters are in force afterwards if it succeeded.
   const CycleReport& run(const CycleRequest& request);

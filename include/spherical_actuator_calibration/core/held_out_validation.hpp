@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/calibration_model.hpp"
+#include "spherical_actuator_calibration/core/calibration_report.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
 #include "spherical_actuator_calibration/core/sample.hpp"
 
@@ -16,15 +18,27 @@ struct HeldOutValidation {
   double orientation_rms = 0.0;  ///< root mean square norm of the rotation error [rad]
   std::size_t torques = 0;
   double torque_rms = 0.0;  ///< root mean square norm of the torque error [N·m]
-  /// Near 1 when the misfits are what the uncertainty of samples and parameters explains.
+  /// Squared Mahalanobis norm of all misfits over their number, with the noise of the samples and
+  /// the common uncertainty of the parameters: 1 on average when both are as stated.
   double reduced_chi_square = 0.0;
+  /// Probability of misfits at least this large when the stated uncertainties hold.
+  double probability = 1.0;
+  /// One per observation; `standardized` with its own covariance, `rejected` never.
+  std::vector<SampleResidual> residuals;
 };
 
 /// Judges the held-out samples under `belief`. Orientations always count, torques where some coil
-/// is excited and the model has torque. Throws DataError on malformed samples.
+/// is excited and the model has torque. Misfits share the uncertainty of the parameters; the test
+/// accounts for it. Throws DataError on malformed samples.
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const ParameterBelief& belief,
                                   const EstimationOptions& options);
+
+/// Smaller probabilities mean that the held-out samples contradict the parameters.
+inline constexpr double kLeastProbability = 1e-3;
+
+/// The verdict in a sentence that an operator can act on.
+std::string verdict(const HeldOutValidation& validation);
 
 }  // namespace spherical_actuator_calibration
