@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -26,13 +27,14 @@ constexpr double kAngleTolerance = 1e-6;
 class RobotDescription {
  public:
   explicit RobotDescription(const std::string& path) : path_(path) {
-    if (xml_.LoadFile(path.c_str()) != tinyxml2::XML_SUCCESS) {
-      throw ConfigError(path + ": cannot be read as XML: " + xml_.ErrorStr() + ".");
-    }
-    model_ = urdf::parseURDFFile(path);
-    if (!model_) {
-      throw ConfigError(path + ": this is not a robot description (URDF); check_urdf tells why.");
-    }
+    require(xml_.LoadFile(path.c_str()));
+    understand(urdf::parseURDFFile(path));
+  }
+
+  /// From its text; `name` stands for the file in messages.
+  RobotDescription(const std::string& text, const std::string& name) : path_(name) {
+    require(xml_.Parse(text.c_str(), text.size()));
+    understand(urdf::parseURDF(text));
   }
 
   const urdf::Joint& joint(const std::string& name) const {
@@ -66,6 +68,19 @@ class RobotDescription {
   }
 
  private:
+  void require(tinyxml2::XMLError error) const {
+    if (error != tinyxml2::XML_SUCCESS) {
+      throw ConfigError(path_ + ": cannot be read as XML: " + xml_.ErrorStr() + ".");
+    }
+  }
+
+  void understand(urdf::ModelInterfaceSharedPtr model) {
+    if (!model) {
+      throw ConfigError(path_ + ": this is not a robot description (URDF); check_urdf tells why.");
+    }
+    model_ = std::move(model);
+  }
+
   std::string path_;
   tinyxml2::XMLDocument xml_;
   urdf::ModelInterfaceSharedPtr model_;
@@ -172,6 +187,19 @@ void writeJoint(tinyxml2::XMLElement& element, const JointAxis& joint) {
       .SetAttribute("rpy", triple(rollPitchYaw(rotationExp(axis * joint.offset))).c_str());
 }
 
+std::string calibratedText(RobotDescription& robot,
+                           const Actuator& nominal,
+                           const Actuator& calibrated) {
+  validate(nominal);
+  validate(calibrated);
+  requireChain(robot, namesOf(nominal));
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    requireNominal(robot, nominal.joints[k]);
+    writeJoint(robot.element(nominal.joints[k].name), calibrated.joints[k]);
+  }
+  return robot.text();
+}
+
 }  // namespace
 
 std::array<JointAxis, kJoints> readJoints(const std::string& path, const JointNames& names) {
@@ -189,15 +217,16 @@ void writeCalibratedUrdf(const std::string& template_path,
                          const Actuator& nominal,
                          const Actuator& calibrated,
                          OverwritePolicy policy) {
-  validate(nominal);
-  validate(calibrated);
   RobotDescription robot(template_path);
-  requireChain(robot, namesOf(nominal));
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    requireNominal(robot, nominal.joints[k]);
-    writeJoint(robot.element(nominal.joints[k].name), calibrated.joints[k]);
-  }
-  writeFileAtomically(output_path, robot.text(), policy);
+  writeFileAtomically(output_path, calibratedText(robot, nominal, calibrated), policy);
+}
+
+std::string renderCalibratedUrdf(const std::string& template_text,
+                                 const std::string& name,
+                                 const Actuator& nominal,
+                                 const Actuator& calibrated) {
+  RobotDescription robot(template_text, name);
+  return calibratedText(robot, nominal, calibrated);
 }
 
 }  // namespace spherical_actuator_calibration

@@ -143,6 +143,20 @@ TEST(UrdfFile, OffsetsComeBackExactlyWhereRollAndYawTurnAboutOneAxis) {
   }
 }
 
+TEST(UrdfFile, RendersTheSameFromTextAsFromAFile) {
+  const TemporaryFolder folder;
+  writeCalibratedUrdf(folder.write("a.urdf", kRobot),
+                      folder.path("b.urdf"),
+                      nominalActuator(),
+                      calibratedActuator(),
+                      OverwritePolicy::kRefuse);
+  EXPECT_EQ(
+      renderCalibratedUrdf(kRobot, "robot_description", nominalActuator(), calibratedActuator()),
+      contentOf(folder.path("b.urdf")));
+  EXPECT_THROW(renderCalibratedUrdf("<robot", "x", nominalActuator(), calibratedActuator()),
+               ConfigError);
+}
+
 TEST(UrdfFile, LosesNothingOfTheOriginal) {
   const TemporaryFolder folder;
   const std::string robot = folder.write("a.urdf", kRobot);

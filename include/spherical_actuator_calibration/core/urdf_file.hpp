@@ -33,4 +33,10 @@ void writeCalibratedUrdf(const std::string& template_path,
                          const Actuator& calibrated,
                          OverwritePolicy policy);
 
+/// The same from text to text; `name` stands for the template in messages.
+std::string renderCalibratedUrdf(const std::string& template_text,
+                                 const std::string& name,
+                                 const Actuator& nominal,
+                                 const Actuator& calibrated);
+
 }  // namespace spherical_actuator_calibration
