@@ -166,17 +166,9 @@ class OptionWriter {
   std::string text_;
 };
 
-CalibrationConfig readConfig(const YamlMap& file, const std::string& name) {
-  CalibrationConfig config;
-  OptionReader reader(file);
-  visitOptions(config, reader);
+CalibrationConfig readWholeConfig(const YamlMap& file, const std::string& name) {
+  const CalibrationConfig config = readCalibrationConfig(file, name);
   file.finish();
-  config.estimation.current_threshold = config.samples.current_threshold;
-  try {
-    validate(config);
-  } catch (const ConfigError& error) {
-    throw ConfigError(name + ": " + error.what());
-  }
   return config;
 }
 
@@ -197,12 +189,25 @@ void validate(const CalibrationConfig& config) {
   }
 }
 
+CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& name) {
+  CalibrationConfig config;
+  OptionReader reader(file);
+  visitOptions(config, reader);
+  config.estimation.current_threshold = config.samples.current_threshold;
+  try {
+    validate(config);
+  } catch (const ConfigError& error) {
+    throw ConfigError(name + ": " + error.what());
+  }
+  return config;
+}
+
 CalibrationConfig loadCalibrationConfig(const std::string& path) {
-  return readConfig(YamlMap::load(path), path);
+  return readWholeConfig(YamlMap::load(path), path);
 }
 
 CalibrationConfig parseCalibrationConfig(const std::string& text, const std::string& name) {
-  return readConfig(YamlMap::parse(text, name), name);
+  return readWholeConfig(YamlMap::parse(text, name), name);
 }
 
 std::string renderCalibrationConfig(const CalibrationConfig& config) {

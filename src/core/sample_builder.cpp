@@ -111,6 +111,9 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   if (!silent.empty()) {
     return {State::kRefused, std::nullopt, silent};
   }
+  if (*newest_ < from - stream_timeout_) {
+    return {State::kRefused, std::nullopt, "The clock of the measurements was set back."};
+  }
   const bool too_late = newest_ && secondsBetween(from, *newest_) >
                                        duration + kPatience + options_.guard_before_motion;
   const State unfinished = too_late ? State::kRefused : State::kWaiting;

@@ -43,6 +43,10 @@ std::string dropText(const StreamStatistics& statistics) {
 
 }  // namespace
 
+const char* describe(DropReason reason) {
+  return kDropTexts[static_cast<std::size_t>(reason)];
+}
+
 std::uint64_t StreamStatistics::droppedInAll() const {
   return std::accumulate(dropped.begin(), dropped.end(), std::uint64_t{0});
 }

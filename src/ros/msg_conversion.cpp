@@ -205,4 +205,19 @@ CalibrationReport reportToRos(const CycleReport& report) {
   return message;
 }
 
+CalibrationReport validationToRos(const HeldOutValidation& validation) {
+  CalibrationReport message;
+  message.cycle = "validate";
+  message.success = static_cast<std::uint8_t>(!validation.residuals.empty() &&
+                                              validation.probability >= kLeastProbability);
+  message.message = verdict(validation);
+  message.samples_used = static_cast<std::uint32_t>(validation.samples);
+  message.reduced_chi_square = validation.reduced_chi_square;
+  std::transform(validation.residuals.begin(),
+                 validation.residuals.end(),
+                 std::back_inserter(message.residuals),
+                 residualToRos);
+  return message;
+}
+
 }  // namespace spherical_actuator_calibration

@@ -14,6 +14,9 @@ void requestTermination(int /*signal*/) {
   g_termination_requested = 1;
 }
 
+// How long a signal may wait when no callback is due [s].
+constexpr double kPatience = 0.02;
+
 }  // namespace
 
 void handleTerminationSignals() {
@@ -29,10 +32,14 @@ bool terminationRequested() {
 }
 
 void spinUntilTermination() {
-  // How long a signal may wait when no callback is due [s].
-  constexpr double kPatience = 0.02;
   while (ros::ok() && !terminationRequested()) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kPatience));
+  }
+}
+
+void waitForTermination() {
+  while (ros::ok() && !terminationRequested()) {
+    ros::WallDuration(kPatience).sleep();
   }
 }
 

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -18,6 +17,7 @@
 #include "spherical_actuator_calibration/core/urdf_file.hpp"
 #include "spherical_actuator_calibration/ros/file_checksum.hpp"
 #include "spherical_actuator_calibration/ros/recording_reader.hpp"
+#include "spherical_actuator_calibration/ros/utc_date.hpp"
 
 #include <unistd.h>
 
@@ -96,18 +96,9 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
   return files;
 }
 
-std::string nowInUtc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc = {};
-  ::gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 CalibrationOrigin originOf(const CalibrateBagOptions& options) {
   CalibrationOrigin origin;
-  origin.date = options.date ? *options.date : nowInUtc();
+  origin.date = options.date ? *options.date : utcDate();
   for (const std::string& bag : options.bags) {
     origin.recordings.push_back({fs::path(bag).filename().string(), fileChecksum(bag)});
   }

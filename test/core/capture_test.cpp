@@ -161,6 +161,13 @@ TEST_F(Capture, RefusesWhatIsNoDuration) {
   }
 }
 
+TEST_F(Capture, EndsWhenTheClockIsSetBack) {
+  feedUntil(3.5);
+  const CaptureProgress progress = builder_.capture(synthetic::stampAt(100.0), 1.0);
+  EXPECT_EQ(progress.state, State::kRefused);
+  EXPECT_NE(progress.message.find("set back"), std::string::npos) << progress.message;
+}
+
 TEST(CaptureWithoutStreams, NamesWhatIsMissing) {
   const SampleBuilder builder({}, kCoils);
   const CaptureProgress progress = builder.capture(0, 1.0);

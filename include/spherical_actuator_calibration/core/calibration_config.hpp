@@ -5,6 +5,7 @@
 #include "spherical_actuator_calibration/core/calibration_state.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
 #include "spherical_actuator_calibration/core/sample_builder_options.hpp"
+#include "spherical_actuator_calibration/core/yaml_reader.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -34,6 +35,10 @@ void validate(const CalibrationConfig& config);
 CalibrationConfig loadCalibrationConfig(const std::string& path);
 /// The same for text in memory; `name` stands for the file in messages.
 CalibrationConfig parseCalibrationConfig(const std::string& text, const std::string& name);
+
+/// The same for a map that may hold further keys: its user reads those, and calls finish(). `name`
+/// stands for the file in messages.
+CalibrationConfig readCalibrationConfig(const YamlMap& map, const std::string& name);
 
 /// Text of a configuration file with every key. Loading gives back the configuration to the last
 /// bit.

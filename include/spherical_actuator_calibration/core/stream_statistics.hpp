@@ -20,6 +20,9 @@ enum class DropReason {
 };
 inline constexpr std::size_t kDropReasons = 8;
 
+/// "not finite", "late" and so on.
+const char* describe(DropReason reason);
+
 /// What became of the measurements of one stream.
 struct StreamStatistics {
   std::uint64_t received = 0;

@@ -19,6 +19,7 @@
 
 #include "spherical_actuator_calibration/core/actuator.hpp"
 #include "spherical_actuator_calibration/core/calibration_report.hpp"
+#include "spherical_actuator_calibration/core/held_out_validation.hpp"
 #include "spherical_actuator_calibration/core/measurements.hpp"
 #include "spherical_actuator_calibration/core/sample.hpp"
 #include "spherical_actuator_calibration/ros/message_types.hpp"
@@ -68,5 +69,9 @@ ActuatorParameters parametersToRos(const Actuator& actuator);
 
 /// The header stays empty. The standard deviation of what is not observable is infinite.
 CalibrationReport reportToRos(const CycleReport& report);
+
+/// A validation in the form of a report: cycle "validate", residuals of the held-out samples.
+/// `success` tells whether they agree. The header stays empty.
+CalibrationReport validationToRos(const HeldOutValidation& validation);
 
 }  // namespace spherical_actuator_calibration

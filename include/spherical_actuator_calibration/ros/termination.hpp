@@ -14,4 +14,7 @@ bool terminationRequested();
 /// itself still runs afterwards in the first case, so that last messages can be sent.
 void spinUntilTermination();
 
+/// The same for a node whose callbacks are served by spinners: only waits.
+void waitForTermination();
+
 }  // namespace spherical_actuator_calibration

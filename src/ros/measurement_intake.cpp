@@ -1,0 +1,153 @@
+#include "spherical_actuator_calibration/ros/measurement_intake.hpp"
+
+#include "spherical_actuator_calibration/ros/recorded_streams.hpp"
+#include "spherical_actuator_calibration/ros/time_conversion.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// Messages that may wait while the receiving thread is held up: seconds at the highest rates.
+constexpr std::uint32_t kQueueLength = 20000;
+
+/// A stream that is absent, such as a tracker which is switched off, is told but is no error of the
+/// calibration; what is too old or too slow for a dwell is.
+constexpr StreamLimits kLimits = {20.0, 0.5};
+
+std::string otherFrame(const std::string& frame_id, const std::string& frame) {
+  return "it is in the frame \"" + frame_id + "\", not in \"" + frame + "\"";
+}
+
+}  // namespace
+
+MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
+                                     const Actuator& nominal,
+                                     const CalibrationConfig& config)
+    : frames_(config.frames),
+      builder_(config.samples, modelledCoils(nominal)),
+      joint_reader_({nominal.joints[0].name, nominal.joints[1].name, nominal.joints[2].name}),
+      joints_("joint_states", kLimits),
+      orientations_("measured_orientation", kLimits),
+      torques_("measured_torque", kLimits),
+      currents_("coil_currents", kLimits),
+      node_(node),
+      receiver_(1, &queue_) {
+  node_.setCallbackQueue(&queue_);
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  const auto subscribe = [&](const char* topic, auto callback) {
+    subscribers_.push_back(node_.subscribe(topic, kQueueLength, callback, this, hints));
+  };
+  using Self = MeasurementIntake;
+  subscribe("joint_states",
+            static_cast<void (Self::*)(const sensor_msgs::JointState::ConstPtr&)>(&Self::receive));
+  subscribe("measured_orientation",
+            static_cast<void (Self::*)(const geometry_msgs::QuaternionStamped::ConstPtr&)>(
+                &Self::receive));
+  subscribe(
+      "measured_torque",
+      static_cast<void (Self::*)(const geometry_msgs::Vector3Stamped::ConstPtr&)>(&Self::receive));
+  subscribe("coil_currents",
+            static_cast<void (Self::*)(const CoilCurrents::ConstPtr&)>(&Self::receive));
+  receiver_.start();
+}
+
+MeasurementIntake::~MeasurementIntake() {
+  receiver_.stop();
+}
+
+std::vector<Sample> MeasurementIntake::takeSamples() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return builder_.takeSamples();
+}
+
+CaptureProgress MeasurementIntake::capture(Stamp from, double duration) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return builder_.capture(from, duration);
+}
+
+std::optional<Stamp> MeasurementIntake::newest() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return builder_.newest();
+}
+
+void MeasurementIntake::finish() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  builder_.finish();
+}
+
+void MeasurementIntake::addDiagnostics(diagnostic_updater::Updater& updater) {
+  for (StreamMonitor* monitor : {&joints_, &orientations_, &torques_, &currents_}) {
+    updater.add(*monitor);
+  }
+  updater.add("dwells", this, &MeasurementIntake::diagnoseDwells);
+}
+
+void MeasurementIntake::receive(const sensor_msgs::JointState::ConstPtr& message) {
+  ++received_;
+  if (const auto measurement = joint_reader_.read(*message)) {
+    add(*measurement, builder_.report().joints, joints_);
+    return;
+  }
+  joints_.refuse("it lacks a joint of the description, or its position");
+}
+
+void MeasurementIntake::receive(const geometry_msgs::QuaternionStamped::ConstPtr& message) {
+  ++received_;
+  if (!isFrame(message->header.frame_id, frames_.stator)) {
+    orientations_.refuse(otherFrame(message->header.frame_id, frames_.stator));
+    return;
+  }
+  add(orientationFromRos(*message), builder_.report().orientations, orientations_);
+}
+
+void MeasurementIntake::receive(const geometry_msgs::Vector3Stamped::ConstPtr& message) {
+  ++received_;
+  if (!isFrame(message->header.frame_id, frames_.rotor)) {
+    torques_.refuse(otherFrame(message->header.frame_id, frames_.rotor));
+    return;
+  }
+  add(torqueFromRos(*message), builder_.report().torques, torques_);
+}
+
+void MeasurementIntake::receive(const CoilCurrents::ConstPtr& message) {
+  ++received_;
+  currentFromRos(*message, current_);
+  add(current_, builder_.report().currents, currents_);
+}
+
+template <typename Measurement>
+void MeasurementIntake::add(const Measurement& measurement,
+                            const StreamStatistics& statistics,
+                            StreamMonitor& monitor) {
+  std::array<std::uint64_t, kDropReasons> dropped_before = {};
+  std::array<std::uint64_t, kDropReasons> dropped = {};
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    dropped_before = statistics.dropped;
+    builder_.add(measurement);
+    dropped = statistics.dropped;
+  }
+  for (std::size_t k = 0; k < kDropReasons; ++k) {
+    if (dropped[k] != dropped_before[k]) {
+      monitor.refuse(std::string("it is ") + describe(static_cast<DropReason>(k)));
+      return;
+    }
+  }
+  monitor.accept(stampToRos(measurement.stamp));
+}
+
+void MeasurementIntake::diagnoseDwells(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const SampleBuilderReport& report = builder_.report();
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "good");
+  status.add("dwells seen", report.dwells);
+  status.add("samples made", report.samples);
+  status.add("discarded", report.discarded);
+  for (auto event = report.events.rbegin(); event != report.events.rend(); ++event) {
+    if (event->kind == DwellEvent::Kind::kDiscarded) {
+      status.add("last discarded", event->reason);
+      break;
+    }
+  }
+}
+
+}  // namespace spherical_actuator_calibration
