@@ -1,0 +1,316 @@
+#!/usr/bin/python3
+"""What goes wrong in a laboratory: the node says so in a sentence, keeps what it has and lives on."""
+
+import math
+import os
+import resource
+import sys
+import tempfile
+import threading
+import unittest
+
+import rospy
+import rostest
+from calibration_client import (
+    PACKAGE,
+    CalibrationClient,
+    CalibrationNode,
+    values_of,
+    wait_for,
+)
+from emulated_streams import EmulatedStreams, rotation
+
+POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.0, 0.1, 0.5))
+DURATION = 0.3  # [s] of a capture
+
+
+class BadDay(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.directory = os.path.join(self.folder.name, "calibration")
+        self.client = CalibrationClient()
+        self.node = CalibrationNode(self.directory, diagnostic_period=0.1)
+        self.addCleanup(self.node.stop)
+        self.client.start(self.node)
+        self.streams = EmulatedStreams()
+        self.addCleanup(self.streams.stop)
+        self.capture_at(POSES[0])
+
+    # -- steps ---------------------------------------------------------------------------------------
+
+    def capture(self):
+        return self.client.call("capture", duration=DURATION)
+
+    def captured(self):
+        """Captures, and asks again while the streams have just come back."""
+        return wait_for(self.successful_capture, "a sample").sample
+
+    def successful_capture(self):
+        answer = self.capture()
+        return answer if answer.success else None
+
+    def capture_at(self, pose):
+        self.streams.move_to(pose)
+        sample = self.captured()
+        # A capture that began before the move refuses; one that succeeded is of this pose.
+        for found, wanted in zip(sample.joint_position, pose):
+            self.assertAlmostEqual(found, wanted, delta=1e-3)
+        return sample
+
+    def capture_all(self):
+        for pose in POSES[1:]:
+            self.capture_at(pose)
+
+    def refused(self, answer, *words):
+        """The answer is a refusal in one sentence that holds these words."""
+        self.assertFalse(answer.success, answer.message)
+        self.assertTrue(answer.message.endswith("."), answer.message)
+        for word in words:
+            self.assertIn(word, answer.message)
+
+    def wait_for_count(self, stream, key, least=1):
+        def is_reached():
+            return int(self.client.diagnostic(stream).get(key, 0)) >= least
+
+        wait_for(is_reached, f"{key} >= {least} of {stream}")
+
+    def wait_for_refusal(self, stream, word):
+        def is_told():
+            return word in self.client.diagnostic(stream).get("last refusal", "")
+
+        wait_for(is_told, f"{stream}: {word}")
+
+    def nothing_changed(self, revision, held):
+        self.assertEqual(self.client.held(), held)
+        self.assertEqual(self.client.revision(), revision)
+        self.assertTrue(self.node.alive())
+
+    # -- streams -------------------------------------------------------------------------------------
+
+    def test_silent_tracker_is_named_and_the_next_capture_works(self):
+        self.streams.silent.add("measured_orientation")
+        self.wait_for_age("measured_orientation", 2.0)
+        self.refused(self.capture(), "measured_orientation", "silent")
+        self.streams.silent.clear()
+        self.assertTrue(self.captured().has_orientation)
+
+    def wait_for_age(self, stream, age):
+        def is_reached():
+            return float(self.client.diagnostic(stream).get("age [s]", 0.0)) > age
+
+        wait_for(is_reached, f"{stream} silent for {age} s")
+
+    def test_automatic_capture_goes_on_after_a_silent_tracker(self):
+        self.assertTrue(self.client.call("set_auto_capture", data=True).success)
+        self.streams.silent.add("measured_orientation")
+        self.wait_for_age("measured_orientation", 2.0)
+        self.streams.silent.clear()
+        for pose in POSES[1:4]:
+            before = len(self.client.samples)
+            self.rest_at(pose)
+            self.streams.move_to(POSES[0])
+            wait_for(lambda: len(self.client.samples) > before, "a sample of the dwell")
+        last = self.client.samples[-1]
+        self.assertTrue(last.has_orientation)
+        self.assertAlmostEqual(last.joint_position[0], POSES[3][0], delta=1e-3)
+
+    def rest_at(self, pose):
+        """Rests long enough for an automatic sample, by the count of measurements."""
+        self.streams.move_to(pose)
+        so_far = int(self.client.diagnostic("joint_states").get("accepted", 0))
+        self.wait_for_count("joint_states", "accepted", so_far + 150)
+
+    def test_stamps_may_jump_backwards_and_forwards_again(self):
+        held = self.client.held()
+        self.streams.stamp_offset = -100.0
+        early = self.captured()
+        self.streams.stamp_offset = 0.0
+        late = self.captured()
+        self.assertLess(early.header.stamp, held[1].header.stamp)
+        self.assertGreater(late.header.stamp, held[1].header.stamp)
+        self.assertEqual(self.client.held()[1], held[1])
+
+    def test_nan_is_refused_and_the_rest_is_used(self):
+        seen = {"count": 0}
+
+        def spoil_some(message):
+            seen["count"] += 1
+            if seen["count"] % 5 == 0:
+                message.quaternion.x = math.nan
+
+        self.streams.spoil["measured_orientation"] = spoil_some
+        self.wait_for_refusal("measured_orientation", "finite")
+        sample = self.captured()
+        self.assertTrue(sample.has_orientation)
+        q = rotation(POSES[0])
+        self.assertAlmostEqual(abs(sample.orientation.x), abs(q[0]), delta=1e-3)
+
+    def test_a_stream_of_nan_counts_as_silent(self):
+        def spoil(message):
+            message.vector.z = math.nan
+
+        self.streams.spoil["measured_torque"] = spoil
+        self.wait_for_refusal("measured_torque", "finite")
+        self.wait_for_age("measured_torque", 0.5)
+        held = self.client.held()
+        self.refused(self.capture(), "measured_torque")
+        self.nothing_changed(0, held)
+
+    def test_a_rotor_that_never_settles_gives_no_sample(self):
+        self.assertTrue(self.client.call("set_auto_capture", data=True).success)
+        self.streams.tremble = 0.01
+        held = self.client.held()
+        self.refused(self.capture(), "moves")
+        self.nothing_changed(0, held)
+
+    def test_wrong_number_of_coils_is_refused(self):
+        def drop_last(message):
+            message.current = message.current[:-1]
+
+        self.streams.spoil["coil_currents"] = drop_last
+        self.wait_for_refusal("coil_currents", "size")
+        self.wait_for_age("coil_currents", 0.5)
+        self.refused(self.capture(), "coil_currents")
+        self.streams.spoil.clear()
+        self.assertEqual(len(self.captured().current), 24)
+
+    def test_foreign_frame_is_refused(self):
+        def mislabel(message):
+            message.header.frame_id = "tracker"
+
+        self.streams.spoil["measured_orientation"] = mislabel
+        self.wait_for_refusal("measured_orientation", "tracker")
+        self.wait_for_age("measured_orientation", 0.5)
+        self.refused(self.capture(), "measured_orientation")
+
+    # -- requests ------------------------------------------------------------------------------------
+
+    def test_services_in_the_wrong_order_are_refused(self):
+        self.capture_all()
+        before = values_of(self.client.latest("parameters"))
+        held = self.client.held()
+        self.refused(self.client.call("calibrate_coil", coil=2), "pole")
+        self.refused(self.client.call("calibrate_poles", coil=1))
+        for coil in (0, 25, 4294967295):
+            self.refused(self.client.call("calibrate_coil", coil=coil), "coil")
+            self.refused(self.client.call("calibrate_poles", coil=coil), "coil")
+        self.refused(self.client.call("refine"))
+        self.refused(self.client.call("remove_sample", id=4711), "4711")
+        self.refused(self.client.call("restore", revision=4711), "4711")
+        for duration in (-1.0, 1e9, math.nan):
+            self.refused(self.client.call("capture", duration=duration))
+        self.nothing_changed(0, held)
+        self.assertEqual(values_of(self.client.latest("parameters")), before)
+
+    def test_a_failed_cycle_changes_no_parameter(self):
+        self.capture_all()
+        self.assertTrue(self.client.call("calibrate_joint").success)
+        wait_for(lambda: self.client.revision() == 1, "the identified parameters")
+        before = values_of(self.client.latest("parameters"))
+        # One sample tells too little.
+        self.assertTrue(self.client.call("clear_samples").success)
+        self.captured()
+        held = self.client.held()
+        self.refused(self.client.call("calibrate_joint"))
+        wait_for(lambda: not self.client.latest("report").success, "the report of the failure")
+        self.nothing_changed(1, held)
+        self.assertEqual(values_of(self.client.latest("parameters")), before)
+        # The failure stays in the past when the node starts again.
+        self.assertEqual(self.node.stop(), 0)
+        self.client.start(self.node)
+        self.nothing_changed(1, held)
+        self.assertEqual(values_of(self.client.latest("parameters")), before)
+
+    def test_two_clients_at_once_are_both_answered(self):
+        self.capture_all()
+        for service, fields in (("capture", {"duration": DURATION}), ("calibrate_joint", {})):
+            answers = self.at_once(service, fields)
+            self.assertEqual([answer.success for answer in answers], [True, True], service)
+        wait_for(lambda: self.client.revision() == 2, "one revision per cycle")
+        self.assertEqual(len(self.client.held()), len(POSES) + 2)
+
+    def at_once(self, service, fields):
+        answers = []
+        clients = [
+            threading.Thread(target=lambda: answers.append(self.client.call(service, **fields)))
+            for _ in range(2)
+        ]
+        for client in clients:
+            client.start()
+        for client in clients:
+            client.join()
+        return answers
+
+    # -- disk ----------------------------------------------------------------------------------------
+
+    def test_a_full_disk_fails_the_service_and_the_node_goes_on_afterwards(self):
+        self.capture_all()
+        self.assertTrue(self.client.call("calibrate_joint").success)
+        wait_for(lambda: self.client.revision() == 1, "the identified parameters")
+        held = self.client.held()
+        unlimited = resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE)
+        # Files can grow no more: what a full disk is to the node.
+        resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE, (0, unlimited[1]))
+        self.refused(self.capture())
+        self.refused(self.client.call("calibrate_joint"))
+        self.refused(self.client.call("reset"))
+        self.refused(self.client.call("save"))
+        self.refused(self.client.call("clear_samples"))
+        self.nothing_changed(1, held)
+        self.assertEqual([name for name in os.listdir(self.directory) if "revision" in name], [])
+
+        resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE, unlimited)
+        answer = self.client.call("save")
+        self.assertTrue(answer.success, answer.message)
+        self.assertTrue(self.client.call("calibrate_joint").success)
+        self.captured()
+        held = self.client.held()
+        self.assertEqual(len(held), len(POSES) + 1)
+        self.assertEqual(self.node.stop(), 0)
+        self.client.start(self.node)
+        self.nothing_changed(2, held)
+
+    def test_automatic_samples_wait_for_a_full_disk(self):
+        self.assertTrue(self.client.call("set_auto_capture", data=True).success)
+        unlimited = resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE)
+        resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE, (0, unlimited[1]))
+        self.rest_at(POSES[1])
+        self.streams.move_to(POSES[2])
+
+        def is_told():
+            error = self.client.diagnostic("session").get("last error", "none")
+            return error != "none"
+
+        wait_for(is_told, "the failure on diagnostics")
+        resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE, unlimited)
+
+        def is_held():
+            samples = self.client.held().values()
+            return any(abs(s.joint_position[1] - POSES[1][1]) < 1e-3 for s in samples)
+
+        wait_for(is_held, "the sample of the dwell")
+
+    def test_a_directory_that_cannot_be_made_ends_the_node_with_the_reason(self):
+        obstacle = os.path.join(self.folder.name, "file")
+        with open(obstacle, "w", encoding="utf-8"):
+            pass
+        # It takes the name of the running node, which ends that one.
+        self.node.stop()
+        node = CalibrationNode(os.path.join(obstacle, "calibration")).start()
+        self.assertEqual(node.process.wait(timeout=60), 1)
+        self.assertIn(obstacle, node.stderr())
+
+    def test_a_second_node_on_the_same_directory_is_refused(self):
+        held = self.client.held()
+        node = CalibrationNode(self.directory, environment={"ROS_NAMESPACE": "/other"})
+        rospy.set_param("/other/actuator", rospy.get_param("/actuator/actuator"))
+        node.start()
+        self.assertEqual(node.process.wait(timeout=60), 1)
+        self.assertIn(self.directory, node.stderr())
+        self.nothing_changed(0, held)
+
+
+if __name__ == "__main__":
+    rospy.init_node("calibration_bad_day")
+    rostest.rosrun(PACKAGE, "calibration_bad_day", BadDay, sys.argv)

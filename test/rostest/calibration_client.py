@@ -1,0 +1,205 @@
+"""What the tests of the calibration node share: the node's program, and a client of its interface."""
+
+import os
+import signal
+import subprocess
+import threading
+import time
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from roslib.packages import find_node
+from spherical_actuator_calibration.msg import (
+    ActuatorParameters,
+    CalibrationReport,
+    CalibrationSample,
+    CalibrationStatus,
+)
+from spherical_actuator_calibration.srv import (
+    Calibrate,
+    Capture,
+    ListSamples,
+    RemoveSample,
+    Restore,
+)
+from std_srvs.srv import SetBool, Trigger
+
+PACKAGE = "spherical_actuator_calibration"
+NAMESPACE = "/actuator"
+NODE = NAMESPACE + "/calibration"
+DEADLINE = 60.0  # [s] for what takes a moment; only a failing test waits so long
+
+SERVICES = {
+    "calibrate_coil": Calibrate,
+    "calibrate_joint": Calibrate,
+    "calibrate_poles": Calibrate,
+    "capture": Capture,
+    "clear_samples": Trigger,
+    "list_samples": ListSamples,
+    "refine": Calibrate,
+    "remove_sample": RemoveSample,
+    "reset": Trigger,
+    "restore": Restore,
+    "save": Trigger,
+    "set_auto_capture": SetBool,
+    "validate": Calibrate,
+}
+LATCHED = {
+    "parameters": ActuatorParameters,
+    "report": CalibrationReport,
+    "status": CalibrationStatus,
+}
+
+
+def wait_for(condition, what, deadline=DEADLINE):
+    """Polls until the condition gives something true, and returns that."""
+    end = time.monotonic() + deadline
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {deadline} s: {what}")
+        time.sleep(0.005)
+
+
+def program(name, package=PACKAGE):
+    """Path of an executable of a package."""
+    paths = find_node(package, name)
+    if not paths:
+        raise AssertionError(f"{package} has no program {name}")
+    return paths[0]
+
+
+class CalibrationNode:
+    """The node's program on one calibration directory, started and ended by the test."""
+
+    def __init__(self, directory, environment=None, **private_parameters):
+        self.directory = directory
+        self._arguments = [f"_directory:={directory}"]
+        self._arguments += [f"_{key}:={value}" for key, value in private_parameters.items()]
+        self._environment = dict(os.environ, ROS_NAMESPACE=NAMESPACE, **(environment or {}))
+        self.process = None
+
+    def start(self):
+        # SIGXFSZ stays ignored, as in this process: a limit of the file size then acts as a full disk.
+        self.process = subprocess.Popen(
+            [program("calibration"), "__name:=calibration"] + self._arguments,
+            env=self._environment,
+            stderr=subprocess.PIPE,
+            text=True,
+            restore_signals=False,
+        )
+        self._stderr = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        return self
+
+    def _read(self):
+        for line in self.process.stderr:
+            self._stderr.append(line)
+
+    def stderr(self):
+        """What an ended node wrote to its standard error."""
+        self._reader.join()
+        return "".join(self._stderr)
+
+    def alive(self):
+        return self.process is not None and self.process.poll() is None
+
+    def kill(self):
+        """As a power failure would: nothing is flushed or closed."""
+        self.process.kill()
+        self.process.wait()
+
+    def stop(self):
+        """Asks the node to end, and returns its exit status."""
+        if self.alive():
+            self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=DEADLINE)
+
+    def cpu_seconds(self):
+        """Processor time that the node has used."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class CalibrationClient:
+    """Calls the services of the node, and keeps the last message of each of its topics."""
+
+    def __init__(self):
+        self.samples = []
+        self._latest = {}
+        self._diagnostics = {}
+        self._subscribers = [
+            rospy.Subscriber(f"{NAMESPACE}/{topic}", message, self._keep, topic)
+            for topic, message in LATCHED.items()
+        ]
+        self._subscribers += [
+            rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, self.samples.append),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
+        ]
+
+    def _keep(self, message, topic):
+        self._latest[topic] = message
+
+    def _keep_diagnostics(self, message):
+        for status in message.status:
+            self._diagnostics[status.name] = status
+
+    def forget(self):
+        """What comes from now on is of a node that is started after this."""
+        self._latest.clear()
+        self._diagnostics.clear()
+        del self.samples[:]
+
+    def latest(self, topic):
+        return self._latest.get(topic)
+
+    def diagnostic(self, task):
+        """Values of the node's diagnostic task, by key; empty before the first."""
+        for name, status in list(self._diagnostics.items()):
+            if name.endswith(f"calibration: {task}"):
+                return {value.key: value.value for value in status.values}
+        return {}
+
+    def call(self, service, **fields):
+        proxy = rospy.ServiceProxy(f"{NODE}/{service}", SERVICES[service])
+        return proxy(**fields)
+
+    def wait_until_up(self, node):
+        """Until a node that was just started has published everything and answers."""
+
+        def is_up():
+            if not node.alive():
+                raise AssertionError("the node ended: " + node.stderr())
+            return self.latest("status") and self.latest("parameters")
+
+        wait_for(is_up, "status and parameters of the node")
+        # Of all services the last to be advertised.
+        rospy.wait_for_service(f"{NODE}/save", DEADLINE)
+
+    def start(self, node):
+        self.forget()
+        node.start()
+        self.wait_until_up(node)
+
+    def held(self):
+        """Samples in use by id."""
+        return {sample.id: sample for sample in self.call("list_samples").samples}
+
+    def revision(self):
+        return self.latest("parameters").revision
+
+
+def values_of(parameters):
+    """All numbers of an ActuatorParameters message, in a fixed order."""
+    numbers = []
+    for joint in parameters.joints:
+        numbers += [joint.axis.x, joint.axis.y, joint.axis.z, joint.offset]
+    for pole in parameters.poles:
+        numbers += [pole.polar, pole.azimuth, float(pole.polarity), pole.gain]
+    for coil in parameters.coils:
+        numbers += [coil.polar, coil.azimuth, coil.gain]
+    return numbers
