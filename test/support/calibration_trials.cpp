@@ -2,42 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
-
-#include "spherical_actuator_calibration/core/linearization.hpp"
-
 namespace spherical_actuator_calibration {
-
-Eigen::MatrixXd cramerRaoBound(const CalibrationModel& model,
-                               const std::vector<Sample>& samples,
-                               const CycleRequest& request,
-                               const std::vector<Eigen::Index>& free,
-                               const Eigen::VectorXd& truth) {
-  const EstimationOptions options;
-  EstimationProblem problem;
-  problem.model = &model;
-  problem.samples = &samples;
-  problem.observations = selectObservations(samples, request, options);
-  problem.prior.x = truth;
-  problem.prior.covariance = Eigen::MatrixXd::Zero(truth.size(), truth.size());
-  const ObservationEvaluator evaluator(problem, options);
-  const auto count = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-  LinearizedObservation linear;
-  for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    evaluator.linearize(n, truth, linear);
-    const Sample& sample = samples[problem.observations[n].sample];
-    const double stddev = problem.observations[n].quantity == Quantity::kOrientation
-                              ? sample.orientation_stddev
-                              : sample.torque_stddev;
-    Eigen::MatrixXd J(3, count);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      J.col(k) = linear.jacobian.col(free[static_cast<std::size_t>(k)]);
-    }
-    information += J.transpose() * J / (stddev * stddev);
-  }
-  return information.inverse();
-}
 
 void TrialStatistics::add(const ParameterBelief& estimated,
                           const Eigen::VectorXd& truth,

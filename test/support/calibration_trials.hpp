@@ -4,17 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/core/cramer_rao_bound.hpp"
 
 namespace spherical_actuator_calibration {
-
-/// Covariance at the Cramér–Rao bound of the coordinates `free`: inverse of Σ JᵀJ/σ² at the truth,
-/// the other coordinates known, with the samples' stated noise and exact joint sensors.
-Eigen::MatrixXd cramerRaoBound(const CalibrationModel& model,
-                               const std::vector<Sample>& samples,
-                               const CycleRequest& request,
-                               const std::vector<Eigen::Index>& free,
-                               const Eigen::VectorXd& truth);
 
 /// Errors of many seeded trials against the bound and against their own intervals.
 class TrialStatistics {
