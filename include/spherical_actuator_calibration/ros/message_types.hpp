@@ -12,7 +12,9 @@
 #define SampleResidual SampleResidualMessage
 
 #include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
+#include "spherical_actuator_calibration/PlanPoses.h"
 
 #undef JointAxis
 #undef PoleAxis

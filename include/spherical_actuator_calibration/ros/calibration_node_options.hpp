@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include <ros/node_handle.h>
+
+#include "spherical_actuator_calibration/core/calibration_config.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// Everything about the calibration node that is a matter of choice. Defaults are those of the
+/// members.
+struct CalibrationNodeOptions {
+  CalibrationConfig calibration;  ///< keys of config/calibration.yaml
+  /// Calibration directory; empty: $ROS_HOME/spherical_actuator_calibration/<serial>.
+  std::string directory;
+  bool auto_capture = false;      ///< at start: every dwell is captured by itself
+  double capture_duration = 1.0;  ///< of a capture that asks for none [s]
+};
+
+/// Reads the private parameters of a node. Throws ConfigError that names the key for anything
+/// unknown, of the wrong type or out of range.
+CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node);
+
+/// Reads the actuator description from the parameter `actuator` in the namespace of `node`. Throws
+/// ConfigError when it is missing, or as parseDescription().
+CalibratedDescription loadDescriptionParameter(const ros::NodeHandle& node);
+
+}  // namespace spherical_actuator_calibration

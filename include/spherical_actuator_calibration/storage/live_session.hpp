@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "spherical_actuator_calibration/core/calibration_config.hpp"
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+#include "spherical_actuator_calibration/core/session_guidance.hpp"
+#include "spherical_actuator_calibration/storage/session_database.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// The calibration of one unit as it grows: samples, cycles and revisions of the parameters. What a
+/// function acknowledges by returning is in the session database; when it throws, nothing has
+/// changed. Dates are ISO 8601 with time, given by the caller. Not thread-safe.
+class LiveSession {
+ public:
+  /// Opens the database of the unit, or makes it, and goes on where it ended: samples in use,
+  /// parameters in force. Throws ConfigError and DataError as CalibrationSession and
+  /// SessionDatabase.
+  LiveSession(const CalibratedDescription& start,
+              const CalibrationConfig& config,
+              const std::string& database_path,
+              const std::string& software);
+
+  const CalibrationSession& calibration() const { return session_; }
+  const SessionDatabase& database() const { return database_; }
+  /// The parameters in force.
+  const Revision& revision() const { return revision_; }
+  /// Actuator with the parameters in force.
+  Actuator actuator() const;
+
+  /// Stores a sample under a new id and takes it. Returns it as stored. Throws DataError when it
+  /// cannot be used or stored.
+  Sample addSample(const Sample& sample, const std::string& date);
+  /// Takes a sample out of use; it stays in the database, marked. False when no sample in use has
+  /// this id.
+  bool removeSample(std::uint32_t id, const std::string& date);
+  /// The same for all samples; returns how many there were.
+  std::size_t clearSamples(const std::string& date);
+
+  /// Runs a cycle and stores its report. When it succeeded its parameters are a new revision, in
+  /// force.
+  CycleReport run(const CycleRequest& request, const std::string& date);
+  /// Report of the last cycle ever run.
+  std::optional<CycleReport> lastReport() const { return database_.lastCycle(); }
+
+  /// Puts the parameters of the description at the start in force, as a new revision.
+  void reset(const std::string& date);
+  /// Puts the parameters of an earlier revision in force, as a new revision. Throws DataError when
+  /// there is none of this number.
+  void restore(std::uint32_t number, const std::string& date);
+
+  /// Without `saved`, which only its user knows.
+  SessionProgress progress() const;
+
+  /// The calibrated description, with its record.
+  CalibratedDescription description(const std::string& date) const;
+
+ private:
+  void putInForce(const Revision& revision);
+
+  std::string software_;
+  SessionDatabase database_;
+  Revision revision_;
+  CalibrationSession session_;
+};
+
+}  // namespace spherical_actuator_calibration

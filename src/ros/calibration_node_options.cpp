@@ -1,0 +1,27 @@
+#include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
+
+#include "spherical_actuator_calibration/core/yaml_reader.hpp"
+#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+
+namespace spherical_actuator_calibration {
+
+CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
+  const std::string name = private_node.getNamespace();
+  const YamlMap map = YamlMap::parse(privateParameterText(private_node), name);
+  CalibrationNodeOptions options;
+  options.calibration = readCalibrationConfig(map, name);
+  options.directory = map.text("directory", options.directory);
+  options.auto_capture = map.boolean("auto_capture", options.auto_capture);
+  options.capture_duration =
+      map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
+  // Read by diagnostic_updater itself.
+  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  map.finish();
+  return options;
+}
+
+CalibratedDescription loadDescriptionParameter(const ros::NodeHandle& node) {
+  return parseDescription(requiredParameterText(node, "actuator"), node.resolveName("actuator"));
+}
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,74 @@
+#include "spherical_actuator_calibration/ros/calibration_topics.hpp"
+
+#include <utility>
+
+#include <spherical_actuator_calibration/CalibrationStatus.h>
+
+#include "spherical_actuator_calibration/ros/time_conversion.hpp"
+
+namespace spherical_actuator_calibration {
+
+CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
+    : frame_(std::move(frame)) {
+  constexpr bool kLatched = true;
+  parameters_ = node.advertise<ActuatorParameters>("parameters", 1, kLatched);
+  report_ = node.advertise<CalibrationReport>("report", 1, kLatched);
+  status_ = node.advertise<CalibrationStatus>("status", 1, kLatched);
+  constexpr std::uint32_t kQueueLength = 1000;
+  samples_ = node.advertise<CalibrationSample>("samples", kQueueLength);
+}
+
+void CalibrationTopics::publishParameters(const LiveSession& session) {
+  ActuatorParameters message = parametersToRos(session.actuator());
+  message.header = header();
+  message.revision = session.revision().number;
+  message.source = session.revision().source;
+  parameters_.publish(message);
+}
+
+void CalibrationTopics::publishReport(const CalibrationReport& report) {
+  report_.publish(report);
+}
+
+void CalibrationTopics::publishStatus(const LiveSession& session,
+                                      const SessionProgress& progress,
+                                      const std::string& next_step) {
+  const Actuator& nominal = session.calibration().model().space().nominal();
+  CalibrationStatus message;
+  message.header = header();
+  message.actuator = nominal.name;
+  message.serial = nominal.serial;
+  message.revision = session.revision().number;
+  message.orientation_samples = progress.orientation_samples;
+  message.torque_samples = progress.torque_samples;
+  message.joint_done = static_cast<std::uint8_t>(progress.joint_done);
+  message.poles_done = static_cast<std::uint8_t>(progress.poles_done);
+  message.coil_done.assign(progress.coil_done.begin(), progress.coil_done.end());
+  message.refined = static_cast<std::uint8_t>(progress.refined);
+  message.next_step = next_step;
+  status_.publish(message);
+}
+
+void CalibrationTopics::publishSample(const CalibrationSample& sample) {
+  samples_.publish(sample);
+}
+
+CalibrationReport CalibrationTopics::stamped(CalibrationReport report) const {
+  report.header = header();
+  return report;
+}
+
+CalibrationSample CalibrationTopics::sampleMessage(const Sample& sample) const {
+  CalibrationSample message = sampleToRos(sample);
+  message.header.frame_id = frame_;
+  return message;
+}
+
+std_msgs::Header CalibrationTopics::header() const {
+  std_msgs::Header header;
+  header.stamp = ros::Time::now();
+  header.frame_id = frame_;
+  return header;
+}
+
+}  // namespace spherical_actuator_calibration

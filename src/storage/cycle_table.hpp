@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <SQLiteCpp/Database.h>
+
+#include "spherical_actuator_calibration/core/calibration_report.hpp"
+
+/// Tables cycles, cycle_errors, cycle_estimates and cycle_residuals (doc/session_database.md).
+/// Throws SQLite::Exception; the caller holds the transaction.
+namespace spherical_actuator_calibration::cycle_table {
+
+/// Returns the id of the new row.
+std::int64_t insert(const SQLite::Database& database,
+                    const CycleReport& report,
+                    const std::string& software,
+                    const std::string& date);
+std::optional<CycleReport> last(const SQLite::Database& database);
+/// Precondition: there is a row with this id.
+CycleReport find(const SQLite::Database& database, std::int64_t id);
+
+}  // namespace spherical_actuator_calibration::cycle_table

@@ -1,0 +1,16 @@
+#include "folder_sync.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace spherical_actuator_calibration {
+
+void syncFolder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    ::fsync(descriptor);
+    ::close(descriptor);
+  }
+}
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace spherical_actuator_calibration {
+
+/// Makes the names in a folder survive a power failure. Some file systems cannot sync a folder;
+/// then nothing happens.
+void syncFolder(const std::string& folder);
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,98 @@
+#include "spherical_actuator_calibration/storage/live_session.hpp"
+
+#include <utility>
+
+#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+
+namespace spherical_actuator_calibration {
+
+LiveSession::LiveSession(const CalibratedDescription& start,
+                         const CalibrationConfig& config,
+                         const std::string& database_path,
+                         const std::string& software)
+    : software_(software),
+      database_(database_path, {start, config.tolerance, software}),
+      revision_(database_.current()),
+      session_(start,
+               database_.samplesInUse(),
+               config,
+               revision_.state,
+               database_.cyclesOfRevision(revision_.number)) {}
+
+Actuator LiveSession::actuator() const {
+  return session_.model().space().actuatorAt(session_.state().belief.x);
+}
+
+Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
+  Sample stored = session_.prepared(sample);
+  stored.id = database_.nextSampleId();
+  database_.addSample(stored, date);
+  session_.add(stored);
+  return stored;
+}
+
+bool LiveSession::removeSample(std::uint32_t id, const std::string& date) {
+  return database_.removeSample(id, date) && session_.remove(id);
+}
+
+std::size_t LiveSession::clearSamples(const std::string& date) {
+  const std::size_t count = database_.clearSamples(date);
+  session_.clearSamples();
+  return count;
+}
+
+CycleReport LiveSession::run(const CycleRequest& request, const std::string& date) {
+  // What cannot be stored must not be in force.
+  CalibrationState before = session_.state();
+  std::vector<CycleReport> reports = session_.reports();
+  CycleReport report = session_.run(request);
+  try {
+    if (report.success) {
+      revision_ =
+          database_.addCycle(report, session_.state(), request.cycle == Cycle::kRefine, date);
+    } else {
+      database_.addCycle(report, date);
+    }
+  } catch (...) {
+    session_.resume(std::move(before), std::move(reports));
+    throw;
+  }
+  return report;
+}
+
+void LiveSession::reset(const std::string& date) {
+  putInForce(database_.addRevision(session_.startState(), "nominal", "reset", false, date));
+}
+
+void LiveSession::restore(std::uint32_t number, const std::string& date) {
+  const std::optional<Revision> earlier = database_.revision(number);
+  if (!earlier) {
+    throw DataError("There is no revision " + std::to_string(number) + ": the newest is " +
+                    std::to_string(revision_.number) + ".");
+  }
+  putInForce(database_.addRevision(
+      earlier->state, "restored", "revision " + std::to_string(number), earlier->refined, date));
+}
+
+SessionProgress LiveSession::progress() const {
+  SessionProgress progress = progressOf(
+      session_.model(), session_.samples(), session_.state(), session_.config().estimation);
+  progress.refined = revision_.refined;
+  return progress;
+}
+
+CalibratedDescription LiveSession::description(const std::string& date) const {
+  CalibrationOrigin origin;
+  origin.date = date;
+  origin.software = software_;
+  origin.revision = revision_.number;
+  return session_.description(origin);
+}
+
+void LiveSession::putInForce(const Revision& revision) {
+  session_.resume(revision.state, database_.cyclesOfRevision(revision.number));
+  revision_ = revision;
+}
+
+}  // namespace spherical_actuator_calibration

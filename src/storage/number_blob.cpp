@@ -1,0 +1,62 @@
+#include "number_blob.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "spherical_actuator_calibration/core/error.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr std::size_t kBytes = sizeof(double);
+constexpr unsigned kBitsPerByte = 8;
+
+void append(std::string& blob, double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, kBytes);
+  for (std::size_t n = 0; n < kBytes; ++n) {
+    blob.push_back(static_cast<char>(static_cast<unsigned char>(bits >> (kBitsPerByte * n))));
+  }
+}
+
+double numberAt(const std::string& blob, std::size_t offset) {
+  std::uint64_t bits = 0;
+  for (std::size_t n = 0; n < kBytes; ++n) {
+    const auto byte = static_cast<unsigned char>(blob[offset + n]);
+    bits |= static_cast<std::uint64_t>(byte) << (kBitsPerByte * n);
+  }
+  double value = 0.0;
+  std::memcpy(&value, &bits, kBytes);
+  return value;
+}
+
+}  // namespace
+
+std::string blobOf(const Eigen::MatrixXd& matrix) {
+  std::string blob;
+  blob.reserve(static_cast<std::size_t>(matrix.size()) * kBytes);
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+      append(blob, matrix(row, column));
+    }
+  }
+  return blob;
+}
+
+Eigen::MatrixXd matrixOf(const std::string& blob, Eigen::Index rows, Eigen::Index columns) {
+  if (blob.size() != static_cast<std::size_t>(rows * columns) * kBytes) {
+    throw DataError("A stored matrix has not the size of its parameters.");
+  }
+  Eigen::MatrixXd matrix(rows, columns);
+  std::size_t offset = 0;
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index column = 0; column < columns; ++column) {
+      matrix(row, column) = numberAt(blob, offset);
+      offset += kBytes;
+    }
+  }
+  return matrix;
+}
+
+}  // namespace spherical_actuator_calibration

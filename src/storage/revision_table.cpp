@@ -1,0 +1,113 @@
+#include "revision_table.hpp"
+
+#include <cstddef>
+#include <string>
+
+#include "number_blob.hpp"
+#include "row_access.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+
+namespace spherical_actuator_calibration::revision_table {
+namespace {
+
+RevisionSummary readSummary(RowReader& row) {
+  RevisionSummary summary;
+  summary.number = row.count();
+  summary.date = row.text();
+  summary.software = row.text();
+  summary.source = row.text();
+  summary.origin = row.text();
+  summary.refined = row.flag();
+  return summary;
+}
+
+/// One byte per coordinate, 0 or 1.
+std::string bytesOf(const std::vector<bool>& flags) {
+  std::string bytes;
+  bytes.reserve(flags.size());
+  for (const bool flag : flags) {
+    bytes.push_back(flag ? '\1' : '\0');
+  }
+  return bytes;
+}
+
+CalibrationState readState(RowReader& row) {
+  const std::string coordinates = row.bytes();
+  const std::string covariance = row.bytes();
+  const std::string identified = row.bytes();
+  const auto size = static_cast<Eigen::Index>(identified.size());
+  CalibrationState state;
+  state.belief.x = matrixOf(coordinates, size, 1);
+  state.belief.covariance = matrixOf(covariance, size, size);
+  state.identified.reserve(identified.size());
+  for (const char byte : identified) {
+    state.identified.push_back(byte != '\0');
+  }
+  return state;
+}
+
+}  // namespace
+
+void insert(const SQLite::Database& database, const Revision& revision, const Lineage& lineage) {
+  RowWriter row(database,
+                "INSERT INTO revisions (number, date, software, source, origin, refined, "
+                "predecessor, cycle, coordinates, covariance, identified) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  row.put(revision.number).put(revision.date).put(revision.software).put(revision.source);
+  row.put(revision.origin).put(revision.refined).put(lineage.predecessor).put(lineage.cycle);
+  const std::string coordinates = blobOf(revision.state.belief.x);
+  const std::string covariance = blobOf(revision.state.belief.covariance);
+  const std::string identified = bytesOf(revision.state.identified);
+  row.putBytes(coordinates).putBytes(covariance).putBytes(identified).write();
+}
+
+std::uint32_t newestNumber(const SQLite::Database& database) {
+  RowReader row(database, "SELECT number FROM revisions ORDER BY number DESC LIMIT 1");
+  if (!row.next()) {
+    throw DataError("The session database holds no parameters: put a copy of it back.");
+  }
+  return row.count();
+}
+
+std::optional<Revision> find(const SQLite::Database& database, std::uint32_t number) {
+  RowReader row(database,
+                "SELECT number, date, software, source, origin, refined, coordinates, covariance, "
+                "identified FROM revisions WHERE number = ?",
+                number);
+  if (!row.next()) {
+    return std::nullopt;
+  }
+  Revision revision;
+  static_cast<RevisionSummary&>(revision) = readSummary(row);
+  revision.state = readState(row);
+  return revision;
+}
+
+std::vector<RevisionSummary> all(const SQLite::Database& database) {
+  RowReader row(database,
+                "SELECT number, date, software, source, origin, refined FROM revisions "
+                "ORDER BY number");
+  std::vector<RevisionSummary> summaries;
+  while (row.next()) {
+    summaries.push_back(readSummary(row));
+  }
+  return summaries;
+}
+
+std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number) {
+  // A predecessor has the smaller number, so that the order of numbers is the order of the chain.
+  RowReader row(database,
+                "WITH RECURSIVE chain (number, predecessor, cycle) AS ("
+                "SELECT number, predecessor, cycle FROM revisions WHERE number = ? UNION ALL "
+                "SELECT r.number, r.predecessor, r.cycle FROM revisions AS r "
+                "JOIN chain ON r.number = chain.predecessor) "
+                "SELECT cycle FROM chain WHERE cycle IS NOT NULL ORDER BY number",
+                number);
+  std::vector<std::int64_t> cycles;
+  while (row.next()) {
+    cycles.push_back(row.integer());
+  }
+  return cycles;
+}
+
+}  // namespace spherical_actuator_calibration::revision_table

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Exception.h>
+
+#include "process_lock.hpp"
+#include "storage_error.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// The open file of a session database, locked against other writers. Turns the errors of SQLite
+/// into DataError.
+class SessionConnection {
+ public:
+  /// Opens the file, or makes it with the session's tables and what `fill` writes into them. Throws
+  /// DataError.
+  SessionConnection(const std::string& path, const std::function<void(SQLite::Database&)>& fill);
+
+  const std::string& path() const { return path_; }
+  const SQLite::Database& database() const { return database_; }
+
+  /// Runs `action` and returns its result. `failure` tells in errors what did not happen.
+  template <typename Action>
+  auto read(const std::string& failure, Action action) const {
+    try {
+      return action();
+    } catch (const SQLite::Exception& error) {
+      throwStorageError(path_, failure, error);
+    }
+  }
+
+  /// Runs `action` in one transaction, which is on the disk when this returns. When it throws,
+  /// nothing is stored.
+  void write(const std::string& failure, const std::function<void(SQLite::Database&)>& action);
+
+ private:
+  std::string path_;
+  ProcessLock lock_;
+  SQLite::Database database_;
+};
+
+}  // namespace spherical_actuator_calibration

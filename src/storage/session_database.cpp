@@ -1,0 +1,189 @@
+#include "spherical_actuator_calibration/storage/session_database.hpp"
+
+#include <utility>
+
+#include "cycle_table.hpp"
+#include "revision_table.hpp"
+#include "row_access.hpp"
+#include "sample_table.hpp"
+#include "session_connection.hpp"
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "unit_table.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr char kNotRead[] = "the session cannot be read";
+
+CalibrationState startState(const SessionIdentity& identity) {
+  CalibrationConfig config;
+  config.tolerance = identity.tolerance;
+  return CalibrationSession(identity.start, {}, config).startState();
+}
+
+/// Present time, ISO 8601.
+std::string presentDate(const SQLite::Database& database) {
+  RowReader row(database, "SELECT strftime('%Y-%m-%dT%H:%M:%SZ', 'now')");
+  row.next();
+  return row.text();
+}
+
+void fillNewDatabase(const SQLite::Database& database, const SessionIdentity& identity) {
+  unit_table::insert(database, identity.start);
+  Revision revision;
+  revision.date = presentDate(database);
+  revision.software = identity.software;
+  revision.source = identity.start.calibration ? "identified" : "nominal";
+  revision.origin = "start";
+  revision.state = startState(identity);
+  revision_table::insert(database, revision, {});
+}
+
+/// "The sample 3 was not stored".
+std::string notStored(const std::string& what) {
+  return what + " was not stored";
+}
+
+std::string nameOf(const CycleReport& report) {
+  return cycleText({report.cycle, report.coil});
+}
+
+}  // namespace
+
+/// The open database and what is written with everything.
+struct SessionDatabase::Tables {
+  SessionConnection connection;
+  std::string software;
+
+  const SQLite::Database& database() const { return connection.database(); }
+};
+
+SessionDatabase::SessionDatabase(const std::string& path, const SessionIdentity& identity)
+    : tables_(new Tables{SessionConnection(path,
+                                           [&identity](SQLite::Database& database) {
+                                             fillNewDatabase(database, identity);
+                                           }),
+                         identity.software}) {
+  tables_->connection.read(kNotRead,
+                           [&] { unit_table::check(tables_->database(), path, identity.start); });
+}
+
+SessionDatabase::~SessionDatabase() = default;
+
+void SessionDatabase::addSample(const Sample& sample, const std::string& date) {
+  tables_->connection.write(
+      notStored("sample " + std::to_string(sample.id)),
+      [&](SQLite::Database& database) { sample_table::insert(database, sample, date); });
+}
+
+std::vector<Sample> SessionDatabase::samplesInUse() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return sample_table::inUse(tables_->database()); });
+}
+
+bool SessionDatabase::removeSample(std::uint32_t id, const std::string& date) {
+  bool removed = false;
+  tables_->connection.write(
+      "sample " + std::to_string(id) + " was not removed",
+      [&](SQLite::Database& database) { removed = sample_table::remove(database, id, date); });
+  return removed;
+}
+
+std::size_t SessionDatabase::clearSamples(const std::string& date) {
+  std::size_t count = 0;
+  tables_->connection.write("the samples were not cleared", [&](SQLite::Database& database) {
+    count = sample_table::clear(database, date);
+  });
+  return count;
+}
+
+std::uint32_t SessionDatabase::nextSampleId() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return sample_table::nextId(tables_->database()); });
+}
+
+void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {
+  tables_->connection.write(notStored("the report of cycle " + nameOf(report)),
+                            [&](SQLite::Database& database) {
+                              cycle_table::insert(database, report, tables_->software, date);
+                            });
+}
+
+Revision SessionDatabase::addCycle(const CycleReport& report,
+                                   const CalibrationState& after,
+                                   bool refined,
+                                   const std::string& date) {
+  Revision revision;
+  revision.date = date;
+  revision.software = tables_->software;
+  revision.source = "identified";
+  revision.origin = nameOf(report);
+  revision.refined = refined;
+  revision.state = after;
+  tables_->connection.write(
+      notStored("the result of cycle " + nameOf(report)), [&](SQLite::Database& database) {
+        const std::uint32_t before = revision_table::newestNumber(database);
+        revision.number = before + 1;
+        const std::int64_t cycle = cycle_table::insert(database, report, tables_->software, date);
+        revision_table::insert(database, revision, {before, cycle});
+      });
+  return revision;
+}
+
+std::optional<CycleReport> SessionDatabase::lastCycle() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return cycle_table::last(tables_->database()); });
+}
+
+std::vector<CycleReport> SessionDatabase::cyclesOfRevision(std::uint32_t number) const {
+  return tables_->connection.read(kNotRead, [&] {
+    std::vector<CycleReport> reports;
+    const std::vector<std::int64_t> cycles = revision_table::cyclesOf(tables_->database(), number);
+    reports.reserve(cycles.size());
+    for (const std::int64_t id : cycles) {
+      reports.push_back(cycle_table::find(tables_->database(), id));
+    }
+    return reports;
+  });
+}
+
+Revision SessionDatabase::addRevision(const CalibrationState& state,
+                                      const std::string& source,
+                                      const std::string& origin,
+                                      bool refined,
+                                      const std::string& date,
+                                      std::optional<std::uint32_t> same_as) {
+  Revision revision;
+  revision.date = date;
+  revision.software = tables_->software;
+  revision.source = source;
+  revision.origin = origin;
+  revision.refined = refined;
+  revision.state = state;
+  tables_->connection.write(notStored("the revision of the parameters"),
+                            [&](SQLite::Database& database) {
+                              revision.number = revision_table::newestNumber(database) + 1;
+                              revision_table::insert(database, revision, {same_as, std::nullopt});
+                            });
+  return revision;
+}
+
+Revision SessionDatabase::current() const {
+  return tables_->connection.read(kNotRead, [this] {
+    const SQLite::Database& database = tables_->database();
+    return *revision_table::find(database, revision_table::newestNumber(database));
+  });
+}
+
+std::optional<Revision> SessionDatabase::revision(std::uint32_t number) const {
+  return tables_->connection.read(
+      kNotRead, [&] { return revision_table::find(tables_->database(), number); });
+}
+
+std::vector<RevisionSummary> SessionDatabase::revisions() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return revision_table::all(tables_->database()); });
+}
+
+}  // namespace spherical_actuator_calibration

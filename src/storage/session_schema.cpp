@@ -1,0 +1,152 @@
+#include "session_schema.hpp"
+
+#include <cstdint>
+
+#include "row_access.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "storage_error.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// "SACS" in ASCII: marks the file as ours.
+constexpr std::int64_t kApplicationId = 0x53414353;
+constexpr std::int64_t kSchemaVersion = 1;
+
+// Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
+constexpr char kTables[] = R"sql(
+CREATE TABLE unit (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  name TEXT NOT NULL,
+  serial TEXT NOT NULL,
+  description TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE samples (
+  id INTEGER PRIMARY KEY,
+  date TEXT NOT NULL,
+  removal TEXT CHECK (removal IN ('removed', 'cleared')),
+  removal_date TEXT CHECK ((removal IS NULL) = (removal_date IS NULL)),
+  stamp INTEGER NOT NULL,
+  validation INTEGER NOT NULL,
+  joint_1 ANY NOT NULL, joint_2 ANY NOT NULL, joint_3 ANY NOT NULL,
+  joint_1_stddev ANY NOT NULL, joint_2_stddev ANY NOT NULL, joint_3_stddev ANY NOT NULL,
+  has_orientation INTEGER NOT NULL,
+  r11 ANY, r12 ANY, r13 ANY, r21 ANY, r22 ANY, r23 ANY, r31 ANY, r32 ANY, r33 ANY,
+  has_torque INTEGER NOT NULL,
+  torque_x ANY, torque_y ANY, torque_z ANY,
+  duration ANY NOT NULL,
+  measurements INTEGER NOT NULL,
+  orientation_stddev ANY,
+  torque_stddev ANY
+) STRICT;
+
+CREATE TABLE sample_currents (
+  sample INTEGER NOT NULL REFERENCES samples (id),
+  coil INTEGER NOT NULL,
+  current ANY NOT NULL,
+  PRIMARY KEY (sample, coil)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE cycles (
+  id INTEGER PRIMARY KEY,
+  date TEXT NOT NULL,
+  software TEXT NOT NULL,
+  cycle TEXT NOT NULL CHECK (cycle IN ('joint', 'poles', 'coil', 'refine')),
+  coil INTEGER NOT NULL,
+  success INTEGER NOT NULL,
+  message TEXT NOT NULL,
+  samples_used INTEGER NOT NULL,
+  samples_rejected INTEGER NOT NULL,
+  iterations INTEGER NOT NULL,
+  error_measure TEXT NOT NULL CHECK (error_measure IN ('orientation', 'torque', 'standardized')),
+  reduced_chi_square ANY,
+  condition_number ANY,
+  solve_time ANY,
+  orientation_uncertainty ANY,
+  torque_uncertainty ANY
+) STRICT;
+
+CREATE TABLE cycle_errors (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  iteration INTEGER NOT NULL,
+  error ANY,
+  PRIMARY KEY (cycle, iteration)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE cycle_estimates (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  nominal ANY,
+  initial ANY,
+  value ANY,
+  stddev ANY,
+  observable INTEGER NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE cycle_residuals (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  sample INTEGER NOT NULL REFERENCES samples (id),
+  quantity TEXT NOT NULL CHECK (quantity IN ('orientation', 'torque')),
+  residual ANY,
+  standardized ANY,
+  rejected INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE revisions (
+  number INTEGER PRIMARY KEY CHECK (number >= 0),
+  date TEXT NOT NULL,
+  software TEXT NOT NULL,
+  source TEXT NOT NULL CHECK (source IN ('nominal', 'identified', 'restored')),
+  origin TEXT NOT NULL,
+  refined INTEGER NOT NULL,
+  predecessor INTEGER REFERENCES revisions (number) CHECK (predecessor < number),
+  cycle INTEGER UNIQUE REFERENCES cycles (id),
+  coordinates BLOB NOT NULL,
+  covariance BLOB NOT NULL,
+  identified BLOB NOT NULL
+) STRICT;
+)sql";
+
+std::int64_t pragma(const SQLite::Database& database, const char* sql) {
+  RowReader row(database, sql);
+  return row.next() ? row.integer() : 0;
+}
+
+}  // namespace
+
+bool hasSessionSchema(const SQLite::Database& database, const std::string& path) {
+  const std::int64_t application = pragma(database, "PRAGMA application_id");
+  const std::int64_t version = pragma(database, "PRAGMA user_version");
+  const bool is_empty = pragma(database, "SELECT count(*) FROM sqlite_schema") == 0;
+  if (application == 0 && version == 0 && is_empty) {
+    return false;
+  }
+  if (application != kApplicationId) {
+    throw DataError(path + ": this is not a session database; choose another directory.");
+  }
+  if (version > kSchemaVersion) {
+    throw DataError(path + ": a newer version of this package made this session database (format " +
+                    std::to_string(version) + ", this version knows " +
+                    std::to_string(kSchemaVersion) + "); update the package.");
+  }
+  RowReader check(database, "PRAGMA quick_check(1)");
+  const std::string finding = check.next() ? check.text() : "no answer";
+  if (finding != "ok") {
+    throwDamaged(path, finding);
+  }
+  return true;
+}
+
+void createSessionSchema(SQLite::Database& database) {
+  database.exec(kTables);
+  database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+  database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+}
+
+}  // namespace spherical_actuator_calibration

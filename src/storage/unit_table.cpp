@@ -1,0 +1,58 @@
+#include "unit_table.hpp"
+
+#include <optional>
+
+#include "row_access.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "storage_error.hpp"
+
+namespace spherical_actuator_calibration::unit_table {
+namespace {
+
+constexpr char kTextName[] = "the actuator description";
+
+/// Text of all that the stored coordinates and uncertainties rest on.
+std::string essenceOf(CalibratedDescription description) {
+  description.actuator.workspace = Workspace{};
+  description.calibration = std::nullopt;
+  return renderDescription(description, kTextName);
+}
+
+/// What an operator calls the unit.
+std::string nameOf(const std::string& name, const std::string& serial) {
+  return "\"" + name + "\"" +
+         (serial.empty() ? " without serial" : " with serial \"" + serial + "\"");
+}
+
+}  // namespace
+
+void insert(const SQLite::Database& database, const CalibratedDescription& start) {
+  RowWriter row(database, "INSERT INTO unit (id, name, serial, description) VALUES (1, ?, ?, ?)");
+  row.put(start.actuator.name).put(start.actuator.serial);
+  row.put(renderDescription(start, kTextName)).write();
+}
+
+void check(const SQLite::Database& database,
+           const std::string& path,
+           const CalibratedDescription& start) {
+  RowReader row(database, "SELECT name, serial, description FROM unit");
+  if (!row.next()) {
+    throwDamaged(path, "no unit");
+  }
+  const std::string name = row.text();
+  const std::string serial = row.text();
+  if (name != start.actuator.name || serial != start.actuator.serial) {
+    throw DataError(path + ": this is the session of the actuator " + nameOf(name, serial) +
+                    ", but the description is of " +
+                    nameOf(start.actuator.name, start.actuator.serial) +
+                    "; give the description of that unit, or another directory.");
+  }
+  // Both texts come from this version's writer, so that a change of format is no difference.
+  if (essenceOf(parseDescription(row.text(), path)) != essenceOf(start)) {
+    throw DataError(path + ": this session was started with another description of " +
+                    nameOf(name, serial) +
+                    "; give the one it was started with, or another directory.");
+  }
+}
+
+}  // namespace spherical_actuator_calibration::unit_table

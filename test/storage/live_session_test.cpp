@@ -1,0 +1,141 @@
+#include "spherical_actuator_calibration/storage/live_session.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "support/error_message.hpp"
+#include "support/scenarios.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr char kDate[] = "2024-05-31T12:00:00Z";
+
+class LiveSessionTest : public ::testing::Test {
+ protected:
+  LiveSession open() const {
+    return LiveSession({scenarios::paperNominal()}, {}, folder_.path("session.db"), "0.1.0");
+  }
+
+  /// Ten orientations and thirty torques of coil 1.
+  static std::vector<Sample> samples() {
+    scenarios::Generator generator(3);
+    std::vector<Sample> samples = scenarios::paperSession(
+        scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator);
+    samples.resize(40);
+    for (Sample& sample : samples) {
+      sample.id = 0;
+    }
+    return samples;
+  }
+
+  static void addAll(LiveSession& session) {
+    for (const Sample& sample : samples()) {
+      session.addSample(sample, kDate);
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LiveSessionTest, GoesOnWhereItEnded) {
+  Eigen::VectorXd x;
+  {
+    LiveSession session = open();
+    addAll(session);
+    ASSERT_TRUE(session.run({Cycle::kJoint, 0}, kDate).success);
+    ASSERT_TRUE(session.run({Cycle::kPoles, 1}, kDate).success);
+    x = session.calibration().state().belief.x;
+  }
+  LiveSession session = open();
+  EXPECT_EQ(session.revision().number, 2U);
+  EXPECT_EQ(session.revision().source, "identified");
+  EXPECT_EQ(session.calibration().state().belief.x, x);
+  EXPECT_EQ(session.calibration().samples().size(), 40U);
+  EXPECT_EQ(session.calibration().reports().size(), 2U);
+  EXPECT_EQ(session.lastReport()->cycle, Cycle::kPoles);
+  EXPECT_TRUE(session.progress().poles_done);
+}
+
+TEST_F(LiveSessionTest, NumbersSamplesAnew) {
+  LiveSession session = open();
+  EXPECT_EQ(session.addSample(samples()[0], kDate).id, 1U);
+  EXPECT_EQ(session.addSample(samples()[1], kDate).id, 2U);
+  EXPECT_TRUE(session.removeSample(2, kDate));
+  EXPECT_FALSE(session.removeSample(2, kDate));
+  EXPECT_EQ(session.addSample(samples()[2], kDate).id, 3U);
+  EXPECT_EQ(session.clearSamples(kDate), 2U);
+  EXPECT_TRUE(session.calibration().samples().empty());
+  EXPECT_EQ(session.addSample(samples()[3], kDate).id, 4U);
+}
+
+TEST_F(LiveSessionTest, ASampleThatCannotBeUsedIsNotStored) {
+  LiveSession session = open();
+  Sample sample = samples()[20];
+  sample.current.resize(2);
+  EXPECT_THROW(session.addSample(sample, kDate), DataError);
+  EXPECT_TRUE(session.database().samplesInUse().empty());
+}
+
+TEST_F(LiveSessionTest, AFailedCycleIsStoredAndChangesNothing) {
+  LiveSession session = open();
+  addAll(session);
+  EXPECT_FALSE(session.run({Cycle::kCoil, 5}, kDate).success);
+  EXPECT_EQ(session.revision().number, 0U);
+  EXPECT_TRUE(session.calibration().state().belief.x.isZero(0.0));
+  EXPECT_EQ(session.lastReport()->cycle, Cycle::kCoil);
+  EXPECT_FALSE(session.lastReport()->success);
+}
+
+TEST_F(LiveSessionTest, ResetAndRestoreAreRevisionsThemselves) {
+  LiveSession session = open();
+  addAll(session);
+  session.run({Cycle::kJoint, 0}, kDate);
+  const Eigen::VectorXd identified = session.calibration().state().belief.x;
+  session.reset(kDate);
+  EXPECT_EQ(session.revision().number, 2U);
+  EXPECT_EQ(session.revision().source, "nominal");
+  EXPECT_TRUE(session.calibration().state().belief.x.isZero(0.0));
+  EXPECT_FALSE(session.progress().joint_done);
+  session.restore(1, kDate);
+  EXPECT_EQ(session.revision().number, 3U);
+  EXPECT_EQ(session.revision().source, "restored");
+  EXPECT_EQ(session.calibration().state().belief.x, identified);
+  EXPECT_TRUE(session.progress().joint_done);
+  ASSERT_EQ(session.calibration().reports().size(), 1U);
+  const std::string message = errorMessage<DataError>([&] { session.restore(17, kDate); });
+  EXPECT_NE(message.find("no revision 17"), std::string::npos) << message;
+  EXPECT_EQ(session.revision().number, 3U);
+}
+
+TEST_F(LiveSessionTest, OnlyARefinementCountsAsRefined) {
+  LiveSession session = open();
+  addAll(session);
+  session.run({Cycle::kJoint, 0}, kDate);
+  session.run({Cycle::kPoles, 1}, kDate);
+  EXPECT_FALSE(session.progress().refined);
+  ASSERT_TRUE(session.run({Cycle::kRefine, 0}, kDate).success);
+  EXPECT_TRUE(session.progress().refined);
+  session.run({Cycle::kJoint, 0}, kDate);
+  EXPECT_FALSE(session.progress().refined);
+}
+
+TEST_F(LiveSessionTest, DescriptionCarriesItsRevision) {
+  LiveSession session = open();
+  addAll(session);
+  session.run({Cycle::kJoint, 0}, kDate);
+  const CalibratedDescription description = session.description(kDate);
+  EXPECT_EQ(description.calibration->revision, 1U);
+  EXPECT_EQ(description.calibration->software, "0.1.0");
+  EXPECT_EQ(description.calibration->cycles.size(), 1U);
+  EXPECT_NE(description.actuator.joints[0].offset, 0.0);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
