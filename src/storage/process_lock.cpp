@@ -22,7 +22,7 @@ namespace {
 }  // namespace
 
 // Not a lock on the file itself: closing any descriptor of it would drop SQLite's own locks.
-ProcessLock::ProcessLock(const std::string& path) : descriptor_(-1) {
+ProcessLock::ProcessLock(const std::string& path) {
   constexpr mode_t kMode = 0666;  // narrowed by the process's umask
   const std::string lock_path = path + ".lock";
   const int descriptor = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);

@@ -16,7 +16,7 @@ class ProcessLock {
   ProcessLock& operator=(const ProcessLock&) = delete;
 
  private:
-  int descriptor_;
+  int descriptor_ = -1;
 };
 
 }  // namespace spherical_actuator_calibration
