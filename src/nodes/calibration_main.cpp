@@ -18,9 +18,10 @@ int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
   ros::init(argc, argv, "calibration", ros::init_options::NoSigintHandler);
   sac::handleTerminationSignals();
+  // The last handle to go ends ROS, and with it the console that errors are told on.
+  const ros::NodeHandle node;
+  const ros::NodeHandle private_node("~");
   try {
-    const ros::NodeHandle node;
-    const ros::NodeHandle private_node("~");
     sac::CalibrationNode calibration(node,
                                      private_node,
                                      sac::loadDescriptionParameter(node),
