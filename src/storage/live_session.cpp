@@ -71,8 +71,12 @@ void LiveSession::restore(std::uint32_t number, const std::string& date) {
     throw DataError("There is no revision " + std::to_string(number) + ": the newest is " +
                     std::to_string(revision_.number) + ".");
   }
-  putInForce(database_.addRevision(
-      earlier->state, "restored", "revision " + std::to_string(number), earlier->refined, date));
+  putInForce(database_.addRevision(earlier->state,
+                                   "restored",
+                                   "revision " + std::to_string(number),
+                                   earlier->refined,
+                                   date,
+                                   number));
 }
 
 SessionProgress LiveSession::progress() const {

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "spherical_actuator_calibration/storage/session_database.hpp"
+#include "storage/database_examples.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <unistd.h>
+
+namespace spherical_actuator_calibration {
+namespace {
+
+using database_examples::isSame;
+using database_examples::jointIdentity;
+using database_examples::kDate;
+
+constexpr Eigen::Index kParameters = 9;
+constexpr Eigen::Index kCoils = 24;
+
+/// What the writer says: that it has stored something, or is about to remove a sample.
+enum class Event : std::uint32_t { kOpened, kSample, kRemoving, kRemoved, kRevision };
+struct Message {
+  Event event = Event::kOpened;
+  std::uint32_t number = 0;  ///< id of the sample, or number of the revision
+};
+
+/// Stores samples, removals, cycles and revisions, each acknowledged through the pipe, until it is
+/// killed.
+[[noreturn]] void writeForever(const std::string& path, int pipe) {
+  const auto tell = [pipe](Event event, std::uint32_t number) {
+    const Message message = {event, number};
+    if (::write(pipe, &message, sizeof message) != sizeof message) {
+      ::_exit(1);
+    }
+  };
+  SessionDatabase database(path, jointIdentity());
+  tell(Event::kOpened, 0);
+  for (;;) {
+    const std::uint32_t id = database.nextSampleId();
+    for (const std::uint32_t next : {id, id + 1}) {
+      database.addSample(database_examples::sample(next, kCoils), kDate);
+      tell(Event::kSample, next);
+    }
+    tell(Event::kRemoving, id);
+    database.removeSample(id, kDate);
+    tell(Event::kRemoved, id);
+
+    CycleReport failed = database_examples::report(id, 1, kParameters);
+    failed.success = false;
+    database.addCycle(failed, kDate);
+    const std::uint32_t number = database.current().number + 1;
+    database.addCycle(database_examples::report(number, 1, kParameters),
+                      database_examples::state(number, kParameters),
+                      false,
+                      kDate);
+    tell(Event::kRevision, number);
+  }
+}
+
+/// All that writers have acknowledged.
+struct Acknowledged {
+  std::set<std::uint32_t> samples;
+  std::set<std::uint32_t> removing;
+  std::set<std::uint32_t> removed;
+  std::uint32_t revision = 0;
+
+  void take(const Message& message) {
+    switch (message.event) {
+      case Event::kOpened:
+        break;
+      case Event::kSample:
+        samples.insert(message.number);
+        break;
+      case Event::kRemoving:
+        removing.insert(message.number);
+        break;
+      case Event::kRemoved:
+        removed.insert(message.number);
+        break;
+      case Event::kRevision:
+        revision = message.number;
+        break;
+    }
+  }
+};
+
+/// Runs a writer and kills it after `messages` messages and `delay` more; takes what it
+/// acknowledged.
+void runAndKill(const std::string& path,
+                int messages,
+                std::chrono::microseconds delay,
+                Acknowledged& acknowledged) {
+  int ends[2] = {};
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t writer = ::fork();
+  ASSERT_GE(writer, 0);
+  if (writer == 0) {
+    ::close(ends[0]);
+    writeForever(path, ends[1]);
+  }
+  ::close(ends[1]);
+  Message message;
+  const auto receive = [&] {
+    const bool received = ::read(ends[0], &message, sizeof message) == sizeof message;
+    if (received) {
+      acknowledged.take(message);
+    }
+    return received;
+  };
+  bool is_alive = true;
+  for (int n = 0; n < messages && is_alive; ++n) {
+    is_alive = receive();
+  }
+  std::this_thread::sleep_for(delay);
+  ::kill(writer, SIGKILL);
+  while (receive()) {
+  }
+  ::close(ends[0]);
+  int status = 0;
+  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "The writer ended by itself.";
+}
+
+void expectNothingLost(const std::string& path, const Acknowledged& acknowledged) {
+  const SessionDatabase database(path, jointIdentity());
+  std::set<std::uint32_t> in_use;
+  for (const Sample& sample : database.samplesInUse()) {
+    in_use.insert(sample.id);
+    EXPECT_TRUE(isSame(sample, database_examples::sample(sample.id, kCoils))) << sample.id;
+    EXPECT_EQ(acknowledged.removed.count(sample.id), 0U) << sample.id;
+  }
+  for (const std::uint32_t id : acknowledged.samples) {
+    EXPECT_EQ(in_use.count(id) + acknowledged.removing.count(id) > 0, true) << id;
+  }
+  const Revision current = database.current();
+  EXPECT_GE(current.number, acknowledged.revision);
+  if (current.number > 0) {
+    EXPECT_TRUE(isSame(current.state, database_examples::state(current.number, kParameters)));
+  }
+}
+
+/// Counts of what must not be: torn pages, rows without what they rest on, cycles without their
+/// revision, samples without all currents.
+void expectNothingTorn(const std::string& path) {
+  using database_examples::query;
+  EXPECT_EQ(query(path, "PRAGMA integrity_check"), "ok");
+  EXPECT_EQ(query(path, "PRAGMA foreign_key_check"), "");
+  EXPECT_EQ(query(path,
+                  "SELECT count(*) FROM cycles WHERE success AND id NOT IN (SELECT cycle FROM "
+                  "revisions WHERE cycle IS NOT NULL)"),
+            "0");
+  EXPECT_EQ(query(path, "SELECT count(*) FROM revisions WHERE number > 0 AND cycle IS NULL"), "0");
+  EXPECT_EQ(query(path,
+                  "SELECT count(*) FROM cycles WHERE (SELECT count(*) FROM cycle_estimates "
+                  "WHERE cycle = cycles.id) <> 9"),
+            "0");
+  EXPECT_EQ(query(path,
+                  "SELECT count(*) FROM samples WHERE (SELECT count(*) FROM sample_currents "
+                  "WHERE sample = samples.id) <> 24"),
+            "0");
+}
+
+TEST(KilledWriter, LosesNothingThatItAcknowledged) {
+  constexpr int kKills = 100;
+  const TemporaryFolder folder;
+  const std::string path = folder.path("session.db");
+  std::mt19937_64 generator(20240531);
+  std::uniform_int_distribution<int> messages(0, 12);
+  std::uniform_int_distribution<int> microseconds(0, 3000);
+  Acknowledged acknowledged;
+  for (int kill = 0; kill < kKills && !HasFailure(); ++kill) {
+    const int count = messages(generator);
+    runAndKill(path, count, std::chrono::microseconds(microseconds(generator)), acknowledged);
+    expectNothingLost(path, acknowledged);
+    expectNothingTorn(path);
+  }
+  EXPECT_GT(acknowledged.samples.size(), 100U);
+  EXPECT_GT(acknowledged.removed.size(), 20U);
+  EXPECT_GT(acknowledged.revision, 20U);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,170 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/storage/session_database.hpp"
+#include "storage/database_examples.hpp"
+#include "support/error_message.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+using database_examples::identity;
+using database_examples::kDate;
+
+constexpr Eigen::Index kCoils = 24;
+constexpr Eigen::Index kParameters = 73;
+
+class OpeningTest : public ::testing::Test {
+ protected:
+  std::string path() const { return folder_.path("session.db"); }
+
+  /// Sentence with which opening is refused.
+  std::string refusal(const SessionIdentity& who) const {
+    return errorMessage<DataError>([&] { const SessionDatabase database(path(), who); });
+  }
+  void expectRefusal(const std::string& part, const SessionIdentity& who = identity()) const {
+    const std::string message = refusal(who);
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_NE(message.find(path()), std::string::npos) << message;
+  }
+
+  /// A database with some content; returns its text.
+  std::string make() const {
+    {
+      SessionDatabase database(path(), identity());
+      for (std::uint32_t id = 1; id <= 20; ++id) {
+        database.addSample(database_examples::sample(id, kCoils), kDate);
+      }
+      database.addCycle(database_examples::report(1, 20, kParameters),
+                        database_examples::state(1, kParameters),
+                        false,
+                        kDate);
+    }
+    return contentOf(path());
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(OpeningTest, OneProcessAtATime) {
+  const SessionDatabase first(path(), identity());
+  expectRefusal("another calibration node works with this session");
+}
+
+TEST_F(OpeningTest, AfterClosingItIsFreeAgain) {
+  make();
+  EXPECT_EQ(SessionDatabase(path(), identity()).samplesInUse().size(), 20U);
+}
+
+TEST_F(OpeningTest, AnotherUnitIsRefused) {
+  const std::string before = make();
+  SessionIdentity other = identity();
+  other.start.actuator.serial = "SA-002";
+  expectRefusal("with serial \"SA-001\", but the description is of \"", other);
+  other.start.actuator.serial = "";
+  expectRefusal("without serial", other);
+  other = identity();
+  other.start.actuator.name = "other";
+  expectRefusal("but the description is of \"other\"", other);
+  EXPECT_EQ(contentOf(path()), before);
+}
+
+TEST_F(OpeningTest, AnotherDescriptionOfTheUnitIsRefused) {
+  make();
+  SessionIdentity other = identity();
+  other.start.actuator.coils[3].polar += 1e-12;
+  expectRefusal("started with another description", other);
+  other = identity();
+  other.start.actuator.poles.pop_back();
+  expectRefusal("started with another description", other);
+  other = identity();
+  other.start.actuator.torque_curve->coefficients[0] += 1e-9;
+  expectRefusal("started with another description", other);
+  other = identity();
+  other.start = CalibrationSession(other.start, {}, {}).description({kDate, {}, "0.1.0", 1});
+  other.start.stddevs.joints[1].offset = 1e-3;
+  expectRefusal("started with another description", other);
+}
+
+TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
+  make();
+  SessionIdentity other = identity();
+  other.start.actuator.workspace.tilt_limit = 0.4;
+  EXPECT_EQ(refusal(other), "no exception");
+}
+
+TEST_F(OpeningTest, ANewerFormatIsRefused) {
+  make();
+  database_examples::change(path(), "PRAGMA user_version = 2");
+  expectRefusal("a newer version of this package made this session database");
+}
+
+TEST_F(OpeningTest, OtherFilesAreRefusedAndKept) {
+  folder_.write("session.db", std::string(5000, 'x'));
+  expectRefusal("the file is damaged");
+  EXPECT_EQ(contentOf(path()), std::string(5000, 'x'));
+}
+
+TEST_F(OpeningTest, OtherDatabasesAreRefusedAndKept) {
+  folder_.write("session.db", "");
+  database_examples::change(path(), "CREATE TABLE addresses (name TEXT)");
+  const std::string before = contentOf(path());
+  expectRefusal("this is not a session database");
+  EXPECT_EQ(contentOf(path()), before);
+}
+
+TEST_F(OpeningTest, AnEmptyFileBecomesADatabase) {
+  // What is left when the process ends before the first transaction.
+  folder_.write("session.db", "");
+  EXPECT_EQ(SessionDatabase(path(), identity()).current().number, 0U);
+}
+
+TEST_F(OpeningTest, ATruncatedFileIsRefused) {
+  const std::string whole = make();
+  for (const std::size_t size : {whole.size() / 2, whole.size() - 4096, whole.size() - 1}) {
+    folder_.write("session.db", whole.substr(0, size));
+    expectRefusal("the file is damaged; put a copy of it back");
+  }
+}
+
+TEST_F(OpeningTest, ACorruptFileIsRefused) {
+  const std::string whole = make();
+  std::string corrupt = whole;
+  // The header of every page but the first.
+  for (std::size_t page = 4096; page < corrupt.size(); page += 4096) {
+    corrupt.replace(page, 8, "\x55\x55\x55\x55\x55\x55\x55\x55");
+  }
+  folder_.write("session.db", corrupt);
+  expectRefusal("the file is damaged");
+  folder_.write("session.db", whole);
+  EXPECT_EQ(refusal(identity()), "no exception");
+}
+
+TEST_F(OpeningTest, AFolderInItsPlaceIsRefused) {
+  std::filesystem::create_directory(path());
+  expectRefusal("the session database cannot be opened, because the file or its folder cannot be");
+}
+
+TEST_F(OpeningTest, AFolderThatIsNotThereIsRefused) {
+  const std::string message = errorMessage<DataError>(
+      [&] { const SessionDatabase database(folder_.path("none/session.db"), identity()); });
+  EXPECT_NE(message.find("No such file or directory"), std::string::npos) << message;
+}
+
+TEST_F(OpeningTest, AFolderThatTakesNoFilesIsRefused) {
+  // Not even root makes files here.
+  const std::string message = errorMessage<DataError>(
+      [&] { const SessionDatabase database("/proc/self/session.db", identity()); });
+  EXPECT_NE(message.find("/proc/self/session.db.lock: the lock file cannot be made"),
+            std::string::npos)
+      << message;
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
