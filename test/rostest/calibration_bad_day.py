@@ -4,14 +4,21 @@
 import math
 import os
 import resource
+import socket
+import subprocess
 import sys
 import tempfile
 import threading
 import unittest
 
+import rosgraph
 import rospy
 import rostest
+import yaml
 from calibration_client import (
+    DEADLINE,
+    NAMESPACE,
+    NODE,
     PACKAGE,
     CalibrationClient,
     CalibrationNode,
@@ -22,6 +29,17 @@ from emulated_streams import EmulatedStreams, rotation
 
 POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.0, 0.1, 0.5))
 DURATION = 0.3  # [s] of a capture
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def stop_process(process):
+    process.terminate()
+    process.wait()
 
 
 class BadDay(unittest.TestCase):
@@ -106,14 +124,19 @@ class BadDay(unittest.TestCase):
         self.streams.silent.add("measured_orientation")
         self.wait_for_age("measured_orientation", 2.0)
         self.streams.silent.clear()
-        for pose in POSES[1:4]:
-            before = len(self.client.samples)
-            self.rest_at(pose)
-            self.streams.move_to(POSES[0])
-            wait_for(lambda: len(self.client.samples) > before, "a sample of the dwell")
-        last = self.client.samples[-1]
-        self.assertTrue(last.has_orientation)
-        self.assertAlmostEqual(last.joint_position[0], POSES[3][0], delta=1e-3)
+        self.rest_at(POSES[1])
+        self.streams.move_to(POSES[2])
+        self.assertTrue(self.automatic_sample_at(POSES[1]).has_orientation)
+
+    def automatic_sample_at(self, pose):
+        def is_here(sample):
+            pairs = zip(sample.joint_position, pose)
+            return all(abs(found - wanted) < 1e-3 for found, wanted in pairs)
+
+        def samples_here():
+            return [sample for sample in self.client.samples if is_here(sample)]
+
+        return wait_for(samples_here, f"an automatic sample at {pose}")[0]
 
     def rest_at(self, pose):
         """Rests long enough for an automatic sample, by the count of measurements."""
@@ -158,9 +181,10 @@ class BadDay(unittest.TestCase):
         self.nothing_changed(0, held)
 
     def test_a_rotor_that_never_settles_gives_no_sample(self):
-        self.assertTrue(self.client.call("set_auto_capture", data=True).success)
-        self.streams.tremble = 0.01
         held = self.client.held()
+        self.streams.tremble = 0.01
+        self.refused(self.capture(), "moves")
+        self.assertTrue(self.client.call("set_auto_capture", data=True).success)
         self.refused(self.capture(), "moves")
         self.nothing_changed(0, held)
 
@@ -195,7 +219,6 @@ class BadDay(unittest.TestCase):
         for coil in (0, 25, 4294967295):
             self.refused(self.client.call("calibrate_coil", coil=coil), "coil")
             self.refused(self.client.call("calibrate_poles", coil=coil), "coil")
-        self.refused(self.client.call("refine"))
         self.refused(self.client.call("remove_sample", id=4711), "4711")
         self.refused(self.client.call("restore", revision=4711), "4711")
         for duration in (-1.0, 1e9, math.nan):
@@ -210,6 +233,7 @@ class BadDay(unittest.TestCase):
         before = values_of(self.client.latest("parameters"))
         # One sample tells too little.
         self.assertTrue(self.client.call("clear_samples").success)
+        self.refused(self.client.call("refine"))
         self.captured()
         held = self.client.held()
         self.refused(self.client.call("calibrate_joint"))
@@ -284,21 +308,17 @@ class BadDay(unittest.TestCase):
 
         wait_for(is_told, "the failure on diagnostics")
         resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE, unlimited)
-
-        def is_held():
-            samples = self.client.held().values()
-            return any(abs(s.joint_position[1] - POSES[1][1]) < 1e-3 for s in samples)
-
-        wait_for(is_held, "the sample of the dwell")
+        sample = self.automatic_sample_at(POSES[1])
+        self.assertEqual(self.client.held()[sample.id].joint_position, sample.joint_position)
 
     def test_a_directory_that_cannot_be_made_ends_the_node_with_the_reason(self):
         obstacle = os.path.join(self.folder.name, "file")
         with open(obstacle, "w", encoding="utf-8"):
             pass
-        # It takes the name of the running node, which ends that one.
         self.node.stop()
         node = CalibrationNode(os.path.join(obstacle, "calibration")).start()
-        self.assertEqual(node.process.wait(timeout=60), 1)
+        self.addCleanup(node.stop)
+        self.assertEqual(node.process.wait(timeout=DEADLINE), 1)
         self.assertIn(obstacle, node.stderr())
 
     def test_a_second_node_on_the_same_directory_is_refused(self):
@@ -306,9 +326,62 @@ class BadDay(unittest.TestCase):
         node = CalibrationNode(self.directory, environment={"ROS_NAMESPACE": "/other"})
         rospy.set_param("/other/actuator", rospy.get_param("/actuator/actuator"))
         node.start()
-        self.assertEqual(node.process.wait(timeout=60), 1)
+        self.addCleanup(node.stop)
+        self.assertEqual(node.process.wait(timeout=DEADLINE), 1)
         self.assertIn(self.directory, node.stderr())
         self.nothing_changed(0, held)
+
+    # -- master --------------------------------------------------------------------------------------
+
+    def test_everything_is_there_after_the_master_was_restarted(self):
+        self.capture_all()
+        self.assertTrue(self.client.call("calibrate_joint").success)
+        held = self.client.held()
+        self.assertEqual(self.node.stop(), 0)
+
+        uri = f"http://localhost:{free_port()}"
+        node = CalibrationNode(self.directory, environment={"ROS_MASTER_URI": uri})
+        for _ in range(2):
+            master = self.start_master(uri)
+            node.start()
+            self.addCleanup(node.stop)
+            self.assertEqual(self.samples_held_below(uri), sorted(held))
+            # The node lives on without a master, but cannot be found by the next one.
+            stop_process(master)
+            self.assertTrue(node.alive())
+            self.assertEqual(node.stop(), 0)
+
+        self.client.start(self.node)
+        self.nothing_changed(1, held)
+
+    def start_master(self, uri):
+        master = subprocess.Popen(
+            ["rosmaster", "--core", "-p", uri.rsplit(":", 1)[1]],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        self.addCleanup(stop_process, master)
+        proxy = rosgraph.Master("/calibration_bad_day", master_uri=uri)
+        wait_for(proxy.is_online, "the second master")
+        for key in (NAMESPACE, NODE):
+            proxy.setParam(key, rospy.get_param(key))
+        return master
+
+    def samples_held_below(self, uri):
+        """Identifiers of the samples in use, asked for by the command line."""
+
+        def listed():
+            answer = subprocess.run(
+                ["rosservice", "call", f"{NODE}/list_samples"],
+                env={**os.environ, "ROS_MASTER_URI": uri},
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            return answer.stdout if answer.returncode == 0 else None
+
+        samples = yaml.safe_load(wait_for(listed, "the node below the second master"))["samples"]
+        return [sample["id"] for sample in samples]
 
 
 if __name__ == "__main__":

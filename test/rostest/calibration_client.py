@@ -44,6 +44,7 @@ SERVICES = {
     "set_auto_capture": SetBool,
     "validate": Calibrate,
 }
+STREAMS = ("joint_states", "measured_orientation", "measured_torque", "coil_currents")
 LATCHED = {
     "parameters": ActuatorParameters,
     "report": CalibrationReport,
@@ -71,6 +72,25 @@ def program(name, package=PACKAGE):
     return paths[0]
 
 
+def run_tool(name, bags=(), **options):
+    """Runs a tool of the package to its end."""
+    command = [program(name)]
+    for option, value in options.items():
+        command += [f"--{option}", str(value)]
+    subprocess.run(command + list(bags), check=True, stdout=subprocess.DEVNULL)
+
+
+def play(bag, *options):
+    """Plays the streams of a recording as soon as the node listens; returns the process."""
+    command = ["rosbag", "play", bag, "--quiet", "--queue", "100000", "--wait-for-subscribers"]
+    topics = [f"{NAMESPACE}/{stream}" for stream in STREAMS]
+    return subprocess.Popen(
+        command + list(options) + ["--topics"] + topics,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+    )
+
+
 class CalibrationNode:
     """The node's program on one calibration directory, started and ended by the test."""
 
@@ -78,7 +98,7 @@ class CalibrationNode:
         self.directory = directory
         self._arguments = [f"_directory:={directory}"]
         self._arguments += [f"_{key}:={value}" for key, value in private_parameters.items()]
-        self._environment = dict(os.environ, ROS_NAMESPACE=NAMESPACE, **(environment or {}))
+        self._environment = {**os.environ, "ROS_NAMESPACE": NAMESPACE, **(environment or {})}
         self.process = None
 
     def start(self):
@@ -159,10 +179,8 @@ class CalibrationClient:
 
     def diagnostic(self, task):
         """Values of the node's diagnostic task, by key; empty before the first."""
-        for name, status in list(self._diagnostics.items()):
-            if name.endswith(f"calibration: {task}"):
-                return {value.key: value.value for value in status.values}
-        return {}
+        status = self._diagnostics.get(f"{NODE[1:]}: {task}")
+        return {value.key: value.value for value in status.values} if status else {}
 
     def call(self, service, **fields):
         proxy = rospy.ServiceProxy(f"{NODE}/{service}", SERVICES[service])

@@ -2,7 +2,6 @@
 """A recording that is played into the node gives the parameters that calibrate_bag finds in it."""
 
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -15,10 +14,10 @@ from calibration_client import (
     PACKAGE,
     CalibrationClient,
     CalibrationNode,
-    program,
+    play,
+    run_tool,
     wait_for,
 )
-from emulated_streams import STREAMS
 
 TOLERANCE = 1e-9
 MAIN_COIL = 1
@@ -38,15 +37,6 @@ SESSION = {
 }
 
 
-def run(name, **options):
-    """Runs a tool of the package to its end."""
-    bags = options.pop("bags", [])
-    command = [program(name)]
-    for option, value in options.items():
-        command += ["--" + option.replace("_", "-"), str(value)]
-    subprocess.run(command + bags, check=True, stdout=subprocess.DEVNULL)
-
-
 def load(path):
     with open(path, encoding="utf-8") as file:
         return yaml.safe_load(file)
@@ -60,8 +50,8 @@ class Replay(unittest.TestCase):
         cls.description = cls.path("actuator.yaml")
         with open(cls.description, "w", encoding="utf-8") as file:
             yaml.safe_dump({"actuator": rospy.get_param(NAMESPACE + "/actuator")}, file)
-        run("simulate_recording", actuator=cls.description, output=cls.bag, **SESSION)
-        run(
+        run_tool("simulate_recording", actuator=cls.description, output=cls.bag, **SESSION)
+        run_tool(
             "calibrate_bag",
             actuator=cls.description,
             output=cls.path("expected.yaml"),
@@ -87,23 +77,13 @@ class Replay(unittest.TestCase):
         self.client.start(self.node)
 
     def test_parameters_equal_those_of_calibrate_bag(self):
-        self.play()
+        player = play(self.bag, "--clock", "--rate", str(rospy.get_param("~rate")))
+        self.assertEqual(player.wait(), 0)
         self.wait_for_samples()
         for cycle in self.cycles:
             self.check_cycle(cycle, self.calibrate(cycle))
         self.check_parameters()
         self.check_saved_file()
-
-    def play(self):
-        rate = str(rospy.get_param("~rate"))
-        topics = [f"{NAMESPACE}/{stream}" for stream in STREAMS]
-        play = ["--clock", "--queue", "100000", "--wait-for-subscribers", "--quiet", "--rate", rate]
-        subprocess.run(
-            ["rosbag", "play", self.bag] + play + ["--topics"] + topics,
-            check=True,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-        )
 
     def wait_for_samples(self):
         joint = self.cycles[0]

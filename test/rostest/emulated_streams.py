@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
 
 COILS = 24
-STREAMS = {
+MESSAGES = {
     "joint_states": JointState,
     "measured_orientation": QuaternionStamped,
     "measured_torque": Vector3Stamped,
@@ -51,7 +51,7 @@ class EmulatedStreams:
         self._random = random.Random(seed)
         self._publishers = {
             topic: rospy.Publisher(f"{NAMESPACE}/{topic}", message, queue_size=1000)
-            for topic, message in STREAMS.items()
+            for topic, message in MESSAGES.items()
         }
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -95,4 +95,4 @@ class EmulatedStreams:
         t = torque.vector
         t.x, t.y, t.z = (noise(0.0, TORQUE_NOISE) for _ in range(3))
         currents = CoilCurrents(current=[i + noise(0.0, CURRENT_NOISE) for i in self.current])
-        return dict(zip(STREAMS, (joints, orientation, torque, currents)))
+        return dict(zip(MESSAGES, (joints, orientation, torque, currents)))
