@@ -12,7 +12,7 @@ LiveSession::LiveSession(const CalibratedDescription& start,
                          const std::string& database_path,
                          const std::string& software)
     : software_(software),
-      database_(database_path, {start, config.tolerance, software}),
+      database_(database_path, {start, config, software}),
       revision_(database_.current()),
       session_(start,
                database_.samplesInUse(),

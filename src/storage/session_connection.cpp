@@ -41,9 +41,10 @@ SessionConnection::SessionConnection(const std::string& path,
       createSessionSchema(database);
       fill(database);
     });
-    // SQLite does so for its journals only.
-    syncFolder(std::filesystem::absolute(path_).parent_path());
   }
+  // The name of the file; SQLite sees to those of its journals only. A process that ended early may
+  // have left this undone.
+  syncFolder(std::filesystem::absolute(path_).parent_path());
 }
 
 void SessionConnection::write(const std::string& failure,

@@ -17,9 +17,7 @@ namespace {
 constexpr char kNotRead[] = "the session cannot be read";
 
 CalibrationState startState(const SessionIdentity& identity) {
-  CalibrationConfig config;
-  config.tolerance = identity.tolerance;
-  return CalibrationSession(identity.start, {}, config).startState();
+  return CalibrationSession(identity.start, {}, identity.config).startState();
 }
 
 /// Present time, ISO 8601.

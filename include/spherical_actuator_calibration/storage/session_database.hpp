@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "spherical_actuator_calibration/core/calibration_config.hpp"
 #include "spherical_actuator_calibration/core/calibration_report.hpp"
 #include "spherical_actuator_calibration/core/calibration_state.hpp"
 #include "spherical_actuator_calibration/core/description_file.hpp"
@@ -17,9 +18,9 @@ namespace spherical_actuator_calibration {
 
 /// What the database of one unit belongs to.
 struct SessionIdentity {
-  CalibratedDescription start;       ///< as loaded at the start, nominal or calibrated
-  ManufacturingTolerance tolerance;  ///< of revision 0, where the description states no uncertainty
-  std::string software;              ///< version that writes
+  CalibratedDescription start;  ///< as loaded at the start, nominal or calibrated
+  CalibrationConfig config;     ///< its part in the parameters at the start makes revision 0
+  std::string software;         ///< version that writes
 };
 
 /// Everything that a session must not lose, in one SQLite file (doc/session_database.md): every
