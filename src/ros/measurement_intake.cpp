@@ -1,5 +1,10 @@
 #include "spherical_actuator_calibration/ros/measurement_intake.hpp"
 
+#include <array>
+#include <utility>
+
+#include <ros/time.h>
+
 #include "spherical_actuator_calibration/ros/recorded_streams.hpp"
 #include "spherical_actuator_calibration/ros/time_conversion.hpp"
 
@@ -12,6 +17,10 @@ constexpr std::uint32_t kQueueLength = 20000;
 /// A stream that is absent, such as a tracker which is switched off, is told but is no error of the
 /// calibration; what is too old or too slow for a dwell is.
 constexpr StreamLimits kLimits = {20.0, 0.5};
+
+double steadySeconds() {
+  return ros::SteadyTime::now().toSec();
+}
 
 std::string otherFrame(const std::string& frame_id, const std::string& frame) {
   return "it is in the frame \"" + frame_id + "\", not in \"" + frame + "\"";
@@ -56,6 +65,7 @@ MeasurementIntake::~MeasurementIntake() {
 
 std::vector<Sample> MeasurementIntake::takeSamples() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  buildInOrder();
   return builder_.takeSamples();
 }
 
@@ -71,6 +81,9 @@ std::optional<Stamp> MeasurementIntake::newest() const {
 
 void MeasurementIntake::finish() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  while (const auto measurement = merger_.nextAtOnce()) {
+    build(*measurement);
+  }
   builder_.finish();
 }
 
@@ -84,7 +97,7 @@ void MeasurementIntake::addDiagnostics(diagnostic_updater::Updater& updater) {
 void MeasurementIntake::receive(const sensor_msgs::JointState::ConstPtr& message) {
   ++received_;
   if (const auto measurement = joint_reader_.read(*message)) {
-    add(*measurement, builder_.report().joints, joints_);
+    merge(*measurement);
     return;
   }
   joints_.refuse("it lacks a joint of the description, or its position");
@@ -96,7 +109,7 @@ void MeasurementIntake::receive(const geometry_msgs::QuaternionStamped::ConstPtr
     orientations_.refuse(otherFrame(message->header.frame_id, frames_.stator));
     return;
   }
-  add(orientationFromRos(*message), builder_.report().orientations, orientations_);
+  merge(orientationFromRos(*message));
 }
 
 void MeasurementIntake::receive(const geometry_msgs::Vector3Stamped::ConstPtr& message) {
@@ -105,27 +118,49 @@ void MeasurementIntake::receive(const geometry_msgs::Vector3Stamped::ConstPtr& m
     torques_.refuse(otherFrame(message->header.frame_id, frames_.rotor));
     return;
   }
-  add(torqueFromRos(*message), builder_.report().torques, torques_);
+  merge(torqueFromRos(*message));
 }
 
 void MeasurementIntake::receive(const CoilCurrents::ConstPtr& message) {
   ++received_;
-  currentFromRos(*message, current_);
-  add(current_, builder_.report().currents, currents_);
+  CurrentMeasurement measurement;
+  currentFromRos(*message, measurement);
+  merge(std::move(measurement));
+}
+
+void MeasurementIntake::merge(AnyMeasurement measurement) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  merger_.add(std::move(measurement), steadySeconds());
+  buildInOrder();
+}
+
+void MeasurementIntake::buildInOrder() {
+  const double now = steadySeconds();
+  while (const auto measurement = merger_.next(now)) {
+    build(*measurement);
+  }
+}
+
+void MeasurementIntake::build(const AnyMeasurement& measurement) {
+  const SampleBuilderReport& report = builder_.report();
+  if (const auto* joints = std::get_if<JointMeasurement>(&measurement)) {
+    build(*joints, report.joints, joints_);
+  } else if (const auto* orientation = std::get_if<OrientationMeasurement>(&measurement)) {
+    build(*orientation, report.orientations, orientations_);
+  } else if (const auto* torque = std::get_if<TorqueMeasurement>(&measurement)) {
+    build(*torque, report.torques, torques_);
+  } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
+    build(*current, report.currents, currents_);
+  }
 }
 
 template <typename Measurement>
-void MeasurementIntake::add(const Measurement& measurement,
-                            const StreamStatistics& statistics,
-                            StreamMonitor& monitor) {
-  std::array<std::uint64_t, kDropReasons> dropped_before = {};
-  std::array<std::uint64_t, kDropReasons> dropped = {};
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    dropped_before = statistics.dropped;
-    builder_.add(measurement);
-    dropped = statistics.dropped;
-  }
+void MeasurementIntake::build(const Measurement& measurement,
+                              const StreamStatistics& statistics,
+                              StreamMonitor& monitor) {
+  const std::array<std::uint64_t, kDropReasons> dropped_before = statistics.dropped;
+  builder_.add(measurement);
+  const std::array<std::uint64_t, kDropReasons>& dropped = statistics.dropped;
   for (std::size_t k = 0; k < kDropReasons; ++k) {
     if (dropped[k] != dropped_before[k]) {
       monitor.refuse(std::string("it is ") + describe(static_cast<DropReason>(k)));

@@ -132,6 +132,12 @@ class CalibrationNode:
         self.process.kill()
         self.process.wait()
 
+    def stall(self, duration):
+        """The process gets no processor time for a while, as on a busy computer."""
+        self.process.send_signal(signal.SIGSTOP)
+        time.sleep(duration)
+        self.process.send_signal(signal.SIGCONT)
+
     def stop(self):
         """Asks the node to end, and returns its exit status."""
         if self.alive():

@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/core/actuator.hpp"
 #include "spherical_actuator_calibration/core/calibration_config.hpp"
 #include "spherical_actuator_calibration/core/sample_builder.hpp"
+#include "spherical_actuator_calibration/core/stream_merger.hpp"
 #include "spherical_actuator_calibration/ros/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/stream_monitor.hpp"
 
@@ -56,21 +57,24 @@ class MeasurementIntake {
   void receive(const geometry_msgs::QuaternionStamped::ConstPtr& message);
   void receive(const geometry_msgs::Vector3Stamped::ConstPtr& message);
   void receive(const CoilCurrents::ConstPtr& message);
+  void merge(AnyMeasurement measurement);
+  void buildInOrder();
+  void build(const AnyMeasurement& measurement);
   template <typename Measurement>
-  void add(const Measurement& measurement,
-           const StreamStatistics& statistics,
-           StreamMonitor& monitor);
+  void build(const Measurement& measurement,
+             const StreamStatistics& statistics,
+             StreamMonitor& monitor);
   void diagnoseDwells(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const MeasurementFrames frames_;
   std::atomic<std::uint64_t> received_{0};
 
-  mutable std::mutex mutex_;  ///< of the builder
+  mutable std::mutex mutex_;  ///< of merger and builder
+  StreamMerger merger_;
   SampleBuilder builder_;
 
   // Used by the receiving thread alone, or thread-safe by themselves.
   JointStateReader joint_reader_;
-  CurrentMeasurement current_;
   StreamMonitor joints_;
   StreamMonitor orientations_;
   StreamMonitor torques_;
