@@ -89,6 +89,7 @@ void visitEstimation(Config& c, Visitor& visit) {
   visit.option("joint_axis", c.tolerance.joint_axis, tolerance);
   visit.option("pole", c.tolerance.pole, tolerance);
   visit.option("coil", c.tolerance.coil, tolerance);
+  visit.option("effect", c.tolerance.effect, ValueRange::closed(0.0, 1.0));
 }
 
 template <typename Config, typename Visitor>
@@ -99,6 +100,11 @@ void visitOptions(Config& c, Visitor& visit) {
   visitDwell(c, visit);
   visitMeans(c, visit);
   visitEstimation(c, visit);
+  visit.section("effects");
+  for (std::size_t e = 0; e < kLaboratoryEffects; ++e) {
+    const auto effect = static_cast<LaboratoryEffect>(e);
+    visit.option(effectName(effect), c.effects[effect]);
+  }
   visit.section("validation");
   visit.option("hold_out_every", c.hold_out_every, 0);
 }
@@ -129,6 +135,11 @@ class OptionReader {
       value = section_.nonEmptyText(key);
     }
   }
+  void option(const std::string& key, bool& value) const {
+    if (has_section_) {
+      value = section_.boolean(key, value);
+    }
+  }
   void option(const std::string& key, BiasRemoval& value) const {
     if (has_section_ && section_.has(key)) {
       const bool none = section_.choice(key, {"none", "zero_current"}) == "none";
@@ -153,6 +164,7 @@ class OptionWriter {
     add(key, std::to_string(value));
   }
   void option(const std::string& key, const std::string& value) { add(key, yamlText(value)); }
+  void option(const std::string& key, bool value) { add(key, value ? "true" : "false"); }
   void option(const std::string& key, BiasRemoval value) {
     add(key, value == BiasRemoval::kNone ? "none" : "zero_current");
   }

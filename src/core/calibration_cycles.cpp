@@ -241,6 +241,27 @@ void fillReport(const std::vector<Sample>& samples,
   report.residuals = sampleResiduals(samples, estimate);
 }
 
+/// Whether a coordinate of the effects acts on any observation.
+bool concerns(const EffectLayout& effects,
+              Eigen::Index coordinate,
+              bool any_orientation,
+              const std::vector<bool>& excited) {
+  switch (effects.effect(coordinate)) {
+    case LaboratoryEffect::kEncoderHarmonics:
+    case LaboratoryEffect::kTiltCrossAxis:
+      return true;
+    case LaboratoryEffect::kMarkerRegistration:
+    case LaboratoryEffect::kTrackerRegistration:
+      return any_orientation;
+    case LaboratoryEffect::kCoilGains: {
+      const Eigen::Index place = coordinate - effects.first(LaboratoryEffect::kCoilGains);
+      return excited[effects.coilsWithoutGain() + static_cast<std::size_t>(place)];
+    }
+    default:
+      return std::find(excited.begin(), excited.end(), true) != excited.end();
+  }
+}
+
 }  // namespace
 
 std::string cycleName(Cycle cycle) {
@@ -318,6 +339,17 @@ std::vector<Eigen::Index> selectCoordinates(const ParameterSpace& space,
   for (std::size_t j = 0; j < excited.size(); ++j) {
     if (excited[j]) {
       add(space.coil(j), space.coil(j) + ParameterSpace::kPerAxis);
+    }
+  }
+  if (request.cycle == Cycle::kRefine) {
+    const bool any_orientation =
+        std::any_of(samples.begin(), samples.end(), [](const Sample& sample) {
+          return sample.has_orientation && !sample.validation;
+        });
+    for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
+      if (concerns(space.effects(), e, any_orientation, excited)) {
+        coordinates.push_back(space.effect() + e);
+      }
     }
   }
   return coordinates;

@@ -112,7 +112,7 @@ CalibrationSession::CalibrationSession(CalibratedDescription start,
       samples_(spherical_actuator_calibration::prepared(
           std::move(samples), start_.actuator, validated(config))),
       config_(std::move(config)),
-      model_(ParameterSpace(start_.actuator)),
+      model_(ParameterSpace(start_.actuator, config_.effects)),
       state_(spherical_actuator_calibration::startState(
           model_.space(), start_.stddevs, config_.tolerance)) {}
 
@@ -155,7 +155,8 @@ void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport>
   if (state.belief.x.size() != size || state.belief.covariance.rows() != size ||
       state.belief.covariance.cols() != size ||
       state.identified.size() != static_cast<std::size_t>(size)) {
-    throw DataError("The stored parameters are of an actuator with other poles or coils.");
+    throw DataError(
+        "The stored parameters are of an actuator with other poles or coils, or of other effects.");
   }
   state_ = std::move(state);
   reports_ = std::move(reports);
@@ -241,6 +242,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
     if (moved(at, 2)) {
       result.actuator.poles[i] = calibrated.poles[i];
     }
+    result.actuator.poles[i].gain = calibrated.poles[i].gain;
     result.stddevs.poles[i] = {stddev(at), stddev(at + 1)};
   }
   result.stddevs.coils.resize(space.coils());
@@ -249,8 +251,10 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
     if (moved(at, 2)) {
       result.actuator.coils[j] = calibrated.coils[j];
     }
+    result.actuator.coils[j].gain = calibrated.coils[j].gain;
     result.stddevs.coils[j] = {stddev(at), stddev(at + 1)};
   }
+  result.actuator.torque_curve = calibrated.torque_curve;
   result.calibration = record(origin);
   return result;
 }
@@ -272,9 +276,17 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
       record.torque_uncertainty = report.torque_uncertainty;
     }
   }
-  for (const ParameterEstimate& parameter : parameters()) {
+  const std::vector<ParameterEstimate> estimates = parameters();
+  for (const ParameterEstimate& parameter : estimates) {
     if (!parameter.observable) {
       record.unidentified.push_back(parameter.name);
+    }
+  }
+  const ParameterSpace& space = model_.space();
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    if (state_.identified[static_cast<std::size_t>(p)]) {
+      const ParameterEstimate& effect = estimates[static_cast<std::size_t>(p)];
+      record.effects.push_back({effect.name, effect.value, effect.stddev});
     }
   }
   if (const auto validation = this->validation()) {

@@ -19,9 +19,11 @@ double toleranceOf(ParameterKind kind, const ManufacturingTolerance& tolerance) 
       return tolerance.pole;
     case ParameterKind::kCoilPolar:
     case ParameterKind::kCoilAzimuth:
+      return tolerance.coil;
+    case ParameterKind::kEffect:
       break;
   }
-  return tolerance.coil;
+  return tolerance.effect;
 }
 
 void require(double value, const char* key) {
@@ -38,6 +40,7 @@ void validate(const ManufacturingTolerance& tolerance) {
   require(tolerance.joint_axis, "joint_axis");
   require(tolerance.pole, "pole");
   require(tolerance.coil, "coil");
+  require(tolerance.effect, "effect");
 }
 
 CalibrationState nominalState(const ParameterSpace& space,

@@ -30,9 +30,11 @@ ParameterGroup groupOf(ParameterKind kind) {
       return ParameterGroup::kPoles;
     case ParameterKind::kCoilPolar:
     case ParameterKind::kCoilAzimuth:
+      return ParameterGroup::kCoils;
+    case ParameterKind::kEffect:
       break;
   }
-  return ParameterGroup::kCoils;
+  return ParameterGroup::kEffects;
 }
 
 /// Coordinates that the refinement frees: what the samples of the plan can serve.
@@ -95,7 +97,7 @@ StageSummary summarize(std::vector<StudyTrial>& trials,
 
 const char* groupName(ParameterGroup group) {
   constexpr std::array<const char*, kParameterGroups> kNames = {
-      "offsets", "joint_axes", "poles", "coils"};
+      "offsets", "joint_axes", "poles", "coils", "effects"};
   return kNames[static_cast<std::size_t>(group)];
 }
 

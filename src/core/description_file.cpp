@@ -193,6 +193,13 @@ CalibrationRecord readCalibration(const YamlMap& map) {
   for (const YamlMap& item : map.maps("cycles")) {
     record.cycles.push_back(readCycle(item));
   }
+  if (map.has("effects")) {
+    for (const YamlMap& item : map.maps("effects")) {
+      record.effects.push_back({item.nonEmptyText("name"),
+                                item.number("value", ValueRange::finite()),
+                                item.number("stddev", ValueRange::nonNegative())});
+    }
+  }
   record.unidentified = map.texts("unidentified");
   if (map.has("validation")) {
     record.validation = readValidation(map.map("validation"));

@@ -151,6 +151,17 @@ void writeCalibration(std::ostream& text, const CalibrationRecord& record) {
     cycles.push_back(cycleLine(cycle));
   }
   writeList(text, indent, "cycles", cycles);
+  if (!record.effects.empty()) {
+    std::vector<std::string> effects;
+    for (const EffectRecord& effect : record.effects) {
+      effects.push_back(YamlLine()
+                            .add("name", yamlText(effect.name))
+                            .add("value", yamlNumber(effect.value))
+                            .add("stddev", yamlNumber(effect.stddev))
+                            .text());
+    }
+    writeList(text, indent, "effects", effects);
+  }
   std::vector<std::string> unidentified;
   for (const std::string& name : record.unidentified) {
     unidentified.push_back(yamlText(name));

@@ -74,15 +74,24 @@ void addObservations(const LeastSquaresInput& input,
     }
     const Observation& what = input.problem->observations[n];
     const Sample& sample = (*input.problem->samples)[what.sample];
+    double* const effects = x.data() + space.effect();
+    const bool has_effects = space.effects().size() > 0;
     if (what.quantity == Quantity::kOrientation) {
+      std::vector<double*> blocks{x.data()};
+      if (has_effects) {
+        blocks.push_back(effects);
+      }
       problem.AddResidualBlock(
-          new OrientationCost(model, sample, (*input.whitening)[n]), loss, x.data());
+          new OrientationCost(model, sample, (*input.whitening)[n]), loss, blocks);
       continue;
     }
     const std::vector<Excitation>& excitations = input.evaluator->excitations(n);
     boost::container::small_vector<double*, 8> blocks{x.data(), x.data() + space.pole(0)};
     for (const Excitation& excitation : excitations) {
       blocks.push_back(x.data() + space.coil(excitation.coil));
+    }
+    if (has_effects) {
+      blocks.push_back(effects);
     }
     problem.AddResidualBlock(new TorqueCost(model, sample, excitations, (*input.whitening)[n]),
                              loss,
@@ -130,6 +139,8 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
     const Eigen::Index first = space.coil(j);
     constrainBlock(problem, x.data() + first, first, ParameterSpace::kPerAxis, input.free);
   }
+  constrainBlock(
+      problem, x.data() + space.effect(), space.effect(), space.effects().size(), input.free);
 
   PathRecorder recorder(x, result.path);
   ceres::Solver::Options options = solverOptions(input, problem.NumResiduals());

@@ -1,10 +1,17 @@
 #include "spherical_actuator_calibration/core/linearization.hpp"
 
-#include <numeric>
-
 #include <boost/container/small_vector.hpp>
 
 namespace spherical_actuator_calibration {
+namespace {
+
+/// Where the columns of the effects are in a whole Jacobian; nowhere when none is modelled.
+template <typename Jacobian>
+JacobianBlock effectBlock(const ParameterSpace& space, Jacobian& jacobian) {
+  return {space.effects().size() > 0 ? jacobian.data() + space.effect() : nullptr, space.size()};
+}
+
+}  // namespace
 
 ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
                                            const EstimationOptions& options)
@@ -30,7 +37,8 @@ Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
   const Sample& sample = (*problem_.samples)[what.sample];
   const ParameterSpace& space = problem_.model->space();
   if (what.quantity == Quantity::kOrientation) {
-    return problem_.model->orientationResidual(sample, x.data());
+    return problem_.model->orientationResidual(sample,
+                                               {x.data(), x.data() + space.effect(), {}, {}});
   }
   boost::container::small_vector<const double*, 8> coils;
   for (const Excitation& excitation : excitations_[observation]) {
@@ -40,6 +48,7 @@ Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
   blocks.joints = x.data();
   blocks.poles = x.data() + space.pole(0);
   blocks.coils = coils.data();
+  blocks.effects = x.data() + space.effect();
   return problem_.model->torqueResidual(sample, excitations_[observation], blocks);
 }
 
@@ -54,14 +63,20 @@ void ObservationEvaluator::linearize(std::size_t observation,
   const auto block = [&](Eigen::Index first) {
     return JacobianBlock{out.jacobian.data() + first, size};
   };
+  const auto take = [&out](Eigen::Index first, Eigen::Index last) {
+    for (Eigen::Index p = first; p < last; ++p) {
+      out.columns.push_back(p);
+    }
+  };
+  out.columns.clear();
   if (what.quantity == Quantity::kOrientation) {
-    out.columns.resize(static_cast<std::size_t>(space.pole(0)));
-    std::iota(out.columns.begin(), out.columns.end(), Eigen::Index{0});
-    out.residual = problem_.model->orientationResidual(sample, x.data(), block(0));
+    take(0, space.pole(0));
+    take(space.effect(), size);
+    out.residual = problem_.model->orientationResidual(
+        sample, {x.data(), x.data() + space.effect(), block(0), effectBlock(space, out.jacobian)});
     return;
   }
-  out.columns.resize(static_cast<std::size_t>(space.coil(0)));
-  std::iota(out.columns.begin(), out.columns.end(), Eigen::Index{0});
+  take(0, space.coil(0));
   boost::container::small_vector<const double*, 8> coils;
   boost::container::small_vector<JacobianBlock, 8> d_coils;
   for (const Excitation& excitation : excitations_[observation]) {
@@ -78,6 +93,9 @@ void ObservationEvaluator::linearize(std::size_t observation,
   blocks.d_joints = block(0);
   blocks.d_poles = block(space.pole(0));
   blocks.d_coils = d_coils.data();
+  blocks.effects = x.data() + space.effect();
+  blocks.d_effects = effectBlock(space, out.jacobian);
+  take(space.effect(), size);
   out.residual = problem_.model->torqueResidual(sample, excitations_[observation], blocks);
 }
 

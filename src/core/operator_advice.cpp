@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-enum class Part { kJointOffset, kJointAxis, kPole, kCoil };
+enum class Part { kJointOffset, kJointAxis, kPole, kCoil, kEffect };
 
 Part partOf(ParameterKind kind) {
   switch (kind) {
@@ -31,9 +31,11 @@ Part partOf(ParameterKind kind) {
       return Part::kPole;
     case ParameterKind::kCoilPolar:
     case ParameterKind::kCoilAzimuth:
+      return Part::kCoil;
+    case ParameterKind::kEffect:
       break;
   }
-  return Part::kCoil;
+  return Part::kEffect;
 }
 
 std::string format(const char* pattern, double value) {
@@ -163,6 +165,14 @@ std::string adviceForJoint(const CalibrationModel& model, Part part, std::size_t
   return "The axis of " + name + " is not observable: move " + name + " by at least 0.3 rad.";
 }
 
+std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinate) {
+  const EffectLayout& effects = model.space().effects();
+  const auto at = static_cast<Eigen::Index>(coordinate);
+  return "The samples cannot tell " + effects.name(at) +
+         " apart from the other parameters: switch off effects." + effectName(effects.effect(at)) +
+         ", or add poses over the whole workspace.";
+}
+
 std::string adviceForTorque(const CalibrationModel& model,
                             const std::vector<Sample>& samples,
                             const std::vector<Observation>& observations,
@@ -200,6 +210,10 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
     const ParameterId id = model.space().id(parameter);
     const Part part = partOf(id.kind);
     if (!told.emplace(std::make_pair(part, id.index), true).second) {
+      continue;
+    }
+    if (part == Part::kEffect) {
+      advice.push_back(adviceForEffect(model, id.index));
       continue;
     }
     advice.push_back(

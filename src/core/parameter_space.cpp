@@ -40,9 +40,41 @@ void moveAngles(const AxisChart& chart, const Eigen::Vector2d& coordinates, Pole
   axis.azimuth = angles.azimuth;
 }
 
+void changeCurve(const EffectLayout& effects,
+                 const double* values,
+                 std::vector<double>& coefficients) {
+  const Eigen::Map<const Eigen::VectorXd> shares(
+      values + effects.first(LaboratoryEffect::kTorqueCurve), effects.curveShapes().cols());
+  Eigen::Map<Eigen::VectorXd>(coefficients.data(), effects.curveShapes().rows()) +=
+      effects.curveShapes() * shares;
+}
+
+/// Puts the effects of strength into gains and torque curve.
+void applyStrength(const EffectLayout& effects, const double* values, Actuator& actuator) {
+  using Effect = LaboratoryEffect;
+  const double scale = effects.has(Effect::kStrengthScale)
+                           ? 1.0 + values[effects.first(Effect::kStrengthScale)]
+                           : 1.0;
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    const double own =
+        effects.has(Effect::kPoleGains)
+            ? values[effects.first(Effect::kPoleGains) + static_cast<Eigen::Index>(i)]
+            : 0.0;
+    actuator.poles[i].gain *= scale * (1.0 + own);
+  }
+  for (Eigen::Index n = 0; n < effects.count(Effect::kCoilGains); ++n) {
+    const std::size_t coil = effects.coilsWithoutGain() + static_cast<std::size_t>(n);
+    actuator.coils[coil].gain *= 1.0 + values[effects.first(Effect::kCoilGains) + n];
+  }
+  if (effects.has(Effect::kTorqueCurve)) {
+    changeCurve(effects, values, actuator.torque_curve->coefficients);
+  }
+}
+
 }  // namespace
 
-ParameterSpace::ParameterSpace(Actuator nominal) : nominal_(std::move(nominal)) {
+ParameterSpace::ParameterSpace(Actuator nominal, const EffectSelection& effects)
+    : nominal_(std::move(nominal)) {
   validate(nominal_);
   for (JointAxis& joint : nominal_.joints) {
     joint.axis.normalize();
@@ -54,7 +86,8 @@ ParameterSpace::ParameterSpace(Actuator nominal) : nominal_(std::move(nominal)) 
   for (const CoilAxis& coil : nominal_.coils) {
     coil_charts_.push_back(AxisChart::aroundAngles(coil.polar, coil.azimuth));
   }
-  size_ = coil(coils());
+  effects_ = EffectLayout(nominal_, effects);
+  size_ = effect() + effects_.size();
 }
 
 ParameterId ParameterSpace::id(Eigen::Index parameter) const {
@@ -69,7 +102,10 @@ ParameterId ParameterSpace::id(Eigen::Index parameter) const {
   if (parameter < coil(0)) {
     return split(parameter - pole(0), kPerAxis, ParameterKind::kPolePolar);
   }
-  return split(parameter - coil(0), kPerAxis, ParameterKind::kCoilPolar);
+  if (parameter < effect()) {
+    return split(parameter - coil(0), kPerAxis, ParameterKind::kCoilPolar);
+  }
+  return {ParameterKind::kEffect, static_cast<std::size_t>(parameter - effect())};
 }
 
 std::string ParameterSpace::name(Eigen::Index parameter) const {
@@ -90,6 +126,8 @@ std::string ParameterSpace::name(Eigen::Index parameter) const {
       return "coil_" + number + "/polar";
     case ParameterKind::kCoilAzimuth:
       return "coil_" + number + "/azimuth";
+    case ParameterKind::kEffect:
+      return effects_.name(static_cast<Eigen::Index>(which.index));
   }
   throw DataError("Parameter " + std::to_string(parameter) + " does not exist.");
 }
@@ -107,6 +145,7 @@ Actuator ParameterSpace::actuatorAt(const Eigen::VectorXd& x) const {
   for (std::size_t j = 0; j < coils(); ++j) {
     moveAngles(coil_charts_[j], x.segment<2>(coil(j)), actuator.coils[j]);
   }
+  applyStrength(effects_, x.data() + effect(), actuator);
   return actuator;
 }
 
@@ -117,7 +156,7 @@ Eigen::VectorXd ParameterSpace::coordinatesOf(const Actuator& actuator) const {
                     " coils does not fit a description of " + std::to_string(poles()) + " and " +
                     std::to_string(coils()) + ".");
   }
-  Eigen::VectorXd x(size_);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size_);
   for (std::size_t k = 0; k < kJoints; ++k) {
     x[joint(k)] = actuator.joints[k].offset - nominal_.joints[k].offset;
     x.segment<2>(joint(k) + 1) = joint_charts_[k].coordinates(actuator.joints[k].axis.normalized());
@@ -145,6 +184,9 @@ Eigen::VectorXd ParameterSpace::reportedValues(const Eigen::VectorXd& x) const {
   for (std::size_t j = 0; j < coils(); ++j) {
     values.segment<2>(coil(j)) << actuator.coils[j].polar, actuator.coils[j].azimuth;
   }
+  for (Eigen::Index e = 0; e < effects_.size(); ++e) {
+    values[effect() + e] = x[effect() + e] * effects_.unit(e);
+  }
   return values;
 }
 
@@ -162,6 +204,9 @@ Eigen::VectorXd ParameterSpace::reportedStddevs(const Eigen::VectorXd& x,
   }
   for (std::size_t j = 0; j < coils(); ++j) {
     transform(coil_charts_[j], coil(j));
+  }
+  for (Eigen::Index e = 0; e < effects_.size(); ++e) {
+    stddevs[effect() + e] *= effects_.unit(e);
   }
   return stddevs;
 }

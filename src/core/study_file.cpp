@@ -101,7 +101,8 @@ std::string renderStudy(const StudyRecord& study) {
   lines += "  summary:\n" + stageText("sequence", summarizeSequence(study.trials)) +
            stageText("refinement", summarizeRefinement(study.trials));
   lines +=
-      "  # per group (offsets, joint_axes, poles, coils): parameters, how many within their\n"
+      "  # per group (offsets, joint_axes, poles, coils, effects): parameters, how many within "
+      "their\n"
       "  # 95 % interval, sum of squared errors, sum of variances at the bound [rad^2]\n"
       "  trials:\n";
   for (const StudyTrial& trial : study.trials) {

@@ -98,7 +98,11 @@ class PoseUncertainty {
     R_rotor_stator_ = pose.R_stator_rotor.transpose();
     // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
     Eigen::Matrix<double, 3, 9, Eigen::RowMajor> J;
-    model_.orientationResidual(pose, belief_.x.data(), {J.data(), J.cols()});
+    CalibrationModel::OrientationBlocks blocks;
+    blocks.joints = belief_.x.data();
+    blocks.effects = belief_.x.data() + model_.space().effect();
+    blocks.d_joints = {J.data(), J.cols()};
+    model_.orientationResidual(pose, blocks);
     const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
     const Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
     moved_covariance_.topLeftCorner<3, 3>() = own;

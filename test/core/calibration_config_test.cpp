@@ -75,7 +75,8 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
     *value *= 1.25;
   }
   estimation.max_iterations = 7;
-  config.tolerance = {0.01, 0.02, 0.04, 0.05};
+  config.tolerance = {0.01, 0.02, 0.04, 0.05, 0.06};
+  config.effects.modelled.fill(true);
   config.hold_out_every = 5;
 
   const std::string text = renderCalibrationConfig(config);

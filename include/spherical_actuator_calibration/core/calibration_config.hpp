@@ -23,6 +23,8 @@ struct CalibrationConfig {
   SampleBuilderOptions samples;
   EstimationOptions estimation;
   ManufacturingTolerance tolerance;
+  /// Laboratory effects that the refinement identifies beside the geometry.
+  EffectSelection effects;
   /// Every so manieth sample is held out for validation; 0: none but those recorded so.
   int hold_out_every = 0;
 };

@@ -29,8 +29,9 @@ struct JacobianBlock {
 };
 
 /// Residuals of samples as functions of the coordinates of a ParameterSpace, with analytic
-/// Jacobians. The coordinates come as pointers to the blocks (joints: 9, poles: 2m, one coil: 2),
-/// because that is how a solver holds them; a whole coordinate vector is such a set of blocks, too.
+/// Jacobians. The coordinates come as pointers to the blocks (joints: 9, poles: 2m, one coil: 2,
+/// laboratory effects: as many as are modelled), because that is how a solver holds them; a whole
+/// coordinate vector is such a set of blocks, too. `effects` is not read when none is modelled.
 class CalibrationModel {
  public:
   explicit CalibrationModel(ParameterSpace space);
@@ -40,20 +41,28 @@ class CalibrationModel {
   /// Precondition: hasTorqueModel().
   const TorqueCurve& curve() const { return *curve_; }
 
+  /// Blocks that an orientation residual depends on.
+  struct OrientationBlocks {
+    const double* joints = nullptr;
+    const double* effects = nullptr;
+    JacobianBlock d_joints;
+    JacobianBlock d_effects;
+  };
+
   /// y = ln(R_a R(q)ᵀ)^∨ [rad], stator frame (doc/method.md, Joint (12–14)); ∂y/∂joints = −J_r⁻¹(y)
-  /// ∂ξ/∂joints.
-  Eigen::Vector3d orientationResidual(const Sample& sample,
-                                      const double* joints,
-                                      JacobianBlock d_joints = {}) const;
+  /// ∂ξ/∂joints. With effects, q is the corrected reading and R lies between the registrations.
+  Eigen::Vector3d orientationResidual(const Sample& sample, const OrientationBlocks& blocks) const;
 
   /// Blocks that a torque residual depends on; `coils` and `d_coils` go along with its excitations.
   struct TorqueBlocks {
     const double* joints = nullptr;
     const double* poles = nullptr;
     const double* const* coils = nullptr;
+    const double* effects = nullptr;
     JacobianBlock d_joints;
     JacobianBlock d_poles;
     const JacobianBlock* d_coils = nullptr;  ///< null when none is wanted
+    JacobianBlock d_effects;
   };
 
   /// T_measured − T_model [N·m], rotor frame (paper (21), doc/method.md, Torque curve).
@@ -63,8 +72,11 @@ class CalibrationModel {
                                  const TorqueBlocks& blocks) const;
 
  private:
+  TorqueCurve curveAt(const double* effects) const;
+
   ParameterSpace space_;
   std::optional<TorqueCurve> curve_;
+  std::vector<TorqueCurve> curve_basis_;  ///< of the modelled coefficients, one each
 };
 
 }  // namespace spherical_actuator_calibration

@@ -48,6 +48,14 @@ struct CycleRecord {
   double reduced_chi_square = 0.0;
 };
 
+/// A laboratory effect that was identified beside the geometry. Gains and torque curve are in the
+/// actuator as well.
+struct EffectRecord {
+  std::string name;     ///< see EffectLayout
+  double value = 0.0;   ///< in its own unit
+  double stddev = 0.0;  ///< the same
+};
+
 /// Residuals of the samples that were held out.
 struct ValidationRecord {
   std::uint32_t samples = 0;
@@ -62,6 +70,7 @@ struct CalibrationRecord {
   std::vector<RecordingSource> source;
   std::string software;  ///< version of this package
   std::vector<CycleRecord> cycles;
+  std::vector<EffectRecord> effects;      ///< none where none was modelled
   std::vector<std::string> unidentified;  ///< names of parameters that the data leave open
   std::optional<ValidationRecord> validation;
   std::optional<double> orientation_uncertainty;  ///< see workspace_uncertainty.hpp [rad]

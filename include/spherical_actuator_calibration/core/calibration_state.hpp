@@ -16,6 +16,7 @@ struct ManufacturingTolerance {
   double joint_axis = 0.03;  ///< per tangential direction
   double pole = 0.03;        ///< per tangential direction
   double coil = 0.03;        ///< per tangential direction
+  double effect = 0.03;      ///< of a modelled laboratory effect, in units of the EffectLayout
 };
 
 /// Throws ConfigError unless every tolerance lies in [0, 1] rad.

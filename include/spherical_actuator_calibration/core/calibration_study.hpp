@@ -25,9 +25,9 @@ struct StudyOptions {
 };
 
 /// Groups that errors are told for.
-enum class ParameterGroup { kOffsets, kJointAxes, kPoles, kCoils };
-inline constexpr std::size_t kParameterGroups = 4;
-/// offsets, joint_axes, poles, coils.
+enum class ParameterGroup { kOffsets, kJointAxes, kPoles, kCoils, kEffects };
+inline constexpr std::size_t kParameterGroups = 5;
+/// offsets, joint_axes, poles, coils, effects.
 const char* groupName(ParameterGroup group);
 
 /// What is told of one group of parameters after one trial.

@@ -4,21 +4,20 @@
 
 #include <Eigen/Core>
 #include <ceres/cost_function.h>
-#include <ceres/sized_cost_function.h>
 
 #include "spherical_actuator_calibration/core/calibration_model.hpp"
 #include "spherical_actuator_calibration/core/sample.hpp"
 
 namespace spherical_actuator_calibration {
 
-/// W y with y = ln(R_a R(q)ᵀ)^∨: whitened orientation residual over the joint block (9).
-/// Keeps references: model and sample must outlive it.
-class OrientationCost final : public ceres::SizedCostFunction<3, 9> {
+/// W y with y = ln(R_a R(q)ᵀ)^∨: whitened orientation residual over the joint block (9) and, where
+/// laboratory effects are modelled, their block. Keeps references: model and sample must outlive
+/// it.
+class OrientationCost final : public ceres::CostFunction {
  public:
   OrientationCost(const CalibrationModel& model,
                   const Sample& sample,
-                  const Eigen::Matrix3d& whitening)
-      : model_(model), sample_(sample), whitening_(whitening) {}
+                  const Eigen::Matrix3d& whitening);
 
   bool Evaluate(double const* const* parameters,
                 double* residuals,
@@ -30,8 +29,9 @@ class OrientationCost final : public ceres::SizedCostFunction<3, 9> {
   Eigen::Matrix3d whitening_;
 };
 
-/// W (T_measured − T_model): whitened torque residual over the joint block (9), the pole block (2m)
-/// and one block (2) for each excited coil. Keeps references, as above.
+/// W (T_measured − T_model): whitened torque residual over the joint block (9), the pole block
+/// (2m), one block (2) for each excited coil and, where modelled, that of the effects. Keeps
+/// references, as above.
 class TorqueCost final : public ceres::CostFunction {
  public:
   TorqueCost(const CalibrationModel& model,
