@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/drivers/current_limiter.hpp"
+#include "spherical_actuator_calibration/drivers/modbus_link.hpp"
+#include "spherical_actuator_calibration/drivers/register_field.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// The current amplifier of all coils, and how it is driven, as a configuration describes them.
+/// Blocks hold one number per coil, in description order, from the field's address on.
+struct CurrentAmplifierOptions {
+  ModbusLinkOptions link;
+  double rate = 200.0;  ///< of the control loop [Hz]
+  /// Without a fresh command for so long all currents go to zero [s].
+  double watchdog = 0.25;
+  CurrentLimits limits;
+  RegisterField setpoints;  ///< block of holding registers [A]
+  RegisterField currents;   ///< block of measured currents [A]
+  /// Holding register that is 1 while the output stages are on, 0 otherwise.
+  std::optional<int> enable_address;
+  /// Register that is not 0 when the amplifier has tripped.
+  std::optional<RegisterField> tripped;
+  /// Holding register that is counted up with every setpoint, for the amplifier's own watchdog.
+  std::optional<int> heartbeat_address;
+};
+
+/// Reads a configuration (config/coil_driver.yaml) from a map whose other keys are the caller's.
+/// Throws ConfigError that names the key.
+CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map);
+
+/// The current amplifier over a Modbus link. Not thread-safe.
+class CurrentAmplifier {
+ public:
+  /// Keeps a reference to the transport.
+  CurrentAmplifier(const CurrentAmplifierOptions& options,
+                   std::size_t coils,
+                   ModbusTransport& transport);
+
+  /// Sets the current of every coil [A], and switches the output stages on if they are off. Throws
+  /// TransportError, and DataError when a current does not fit into its register: then none is
+  /// written.
+  void write(const Eigen::VectorXd& currents);
+  /// Measured current of every coil [A]. Throws TransportError, and DataError when one is not
+  /// finite.
+  Eigen::VectorXd read();
+  /// Whether the amplifier says that it has tripped; false where it cannot say. Throws
+  /// TransportError.
+  bool isTripped();
+  /// Output stages off, where they can be switched, and zero currents. Throws TransportError.
+  void disable();
+
+ private:
+  void writeSetpoints(const std::vector<std::uint16_t>& words);
+
+  CurrentAmplifierOptions options_;
+  std::size_t coils_;
+  ModbusTransport& transport_;
+  bool is_enabled_ = false;
+  std::uint16_t heartbeat_ = 0;
+};
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,136 @@
+#include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
+
+#include <algorithm>
+
+#include "spherical_actuator_calibration/core/error.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+// Words that fit into one request (Modbus application protocol).
+constexpr std::size_t kLargestWrite = 123;
+constexpr std::size_t kLargestRead = 125;
+
+constexpr std::int64_t kLargestAddress = 65535;
+
+std::optional<int> readAddress(const YamlMap& map, const char* key) {
+  if (!map.has(key)) {
+    return std::nullopt;
+  }
+  return static_cast<int>(map.integer(key, 0, kLargestAddress));
+}
+
+/// Numbers of one field that a request of so many words holds.
+std::size_t perRequest(const RegisterField& field, std::size_t words) {
+  return words / static_cast<std::size_t>(field.words());
+}
+
+}  // namespace
+
+CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
+  CurrentAmplifierOptions options;
+  options.link = readModbusLink(map.map("link"));
+  options.rate = map.number("rate", ValueRange::closed(1.0, 5000.0, "Hz"), options.rate);
+  options.watchdog = map.number("watchdog", ValueRange::closed(0.01, 10.0, "s"), options.watchdog);
+  const YamlMap limits = map.map("limits");
+  const ValueRange ampere{0.0, 1000.0, "A", true, false};
+  options.limits.coil = limits.number("coil", ampere);
+  options.limits.total = limits.number("total", ampere);
+  options.limits.slew = limits.number("slew", ValueRange{0.0, 1e6, "A/s", true, false});
+  options.setpoints = readRegisterField(map.map("setpoints"));
+  if (options.setpoints.table != RegisterTable::kHolding) {
+    map.map("setpoints").fail("table", "input registers cannot be written.");
+  }
+  options.currents = readRegisterField(map.map("currents"));
+  options.enable_address = readAddress(map, "enable_address");
+  options.heartbeat_address = readAddress(map, "heartbeat_address");
+  if (map.has("tripped")) {
+    options.tripped = readRegisterField(map.map("tripped"));
+  }
+  return options;
+}
+
+CurrentAmplifier::CurrentAmplifier(const CurrentAmplifierOptions& options,
+                                   std::size_t coils,
+                                   ModbusTransport& transport)
+    : options_(options), coils_(coils), transport_(transport) {}
+
+void CurrentAmplifier::write(const Eigen::VectorXd& currents) {
+  const RegisterField& field = options_.setpoints;
+  std::vector<std::uint16_t> words;
+  words.reserve(coils_ * static_cast<std::size_t>(field.words()));
+  for (const double current : currents) {
+    const std::vector<std::uint16_t> number = field.encode(current);
+    words.insert(words.end(), number.begin(), number.end());
+  }
+  writeSetpoints(words);
+  if (options_.heartbeat_address) {
+    transport_.write(field.unit, *options_.heartbeat_address, {++heartbeat_});
+  }
+  if (options_.enable_address && !is_enabled_) {
+    transport_.write(field.unit, *options_.enable_address, {1});
+    is_enabled_ = true;
+  }
+}
+
+Eigen::VectorXd CurrentAmplifier::read() {
+  const RegisterField& field = options_.currents;
+  const auto words_each = static_cast<std::size_t>(field.words());
+  const std::size_t most = perRequest(field, kLargestRead);
+  Eigen::VectorXd currents(static_cast<Eigen::Index>(coils_));
+  for (std::size_t first = 0; first < coils_; first += most) {
+    const std::size_t count = std::min(most, coils_ - first);
+    const std::vector<std::uint16_t> words =
+        transport_.read(field.unit,
+                        field.table,
+                        field.address + static_cast<int>(first * words_each),
+                        static_cast<int>(count * words_each));
+    for (std::size_t n = 0; n < count; ++n) {
+      currents[static_cast<Eigen::Index>(first + n)] = field.decode(&words[n * words_each]);
+    }
+  }
+  if (!currents.allFinite()) {
+    throw DataError("The amplifier measures a current that is not finite.");
+  }
+  return currents;
+}
+
+bool CurrentAmplifier::isTripped() {
+  if (!options_.tripped) {
+    return false;
+  }
+  const RegisterField& field = *options_.tripped;
+  const std::vector<std::uint16_t> words =
+      transport_.read(field.unit, field.table, field.address, field.words());
+  return decodeRegisters(words.data(), field.type, field.order) != 0.0;
+}
+
+void CurrentAmplifier::disable() {
+  // Whatever happens to the setpoints, the output stages are switched off on the way back in.
+  is_enabled_ = false;
+  const RegisterField& field = options_.setpoints;
+  if (options_.enable_address) {
+    transport_.write(field.unit, *options_.enable_address, {0});
+  }
+  std::vector<std::uint16_t> words;
+  const std::vector<std::uint16_t> zero = field.encode(0.0);
+  for (std::size_t coil = 0; coil < coils_; ++coil) {
+    words.insert(words.end(), zero.begin(), zero.end());
+  }
+  writeSetpoints(words);
+}
+
+void CurrentAmplifier::writeSetpoints(const std::vector<std::uint16_t>& words) {
+  const RegisterField& field = options_.setpoints;
+  const std::size_t most =
+      perRequest(field, kLargestWrite) * static_cast<std::size_t>(field.words());
+  for (std::size_t first = 0; first < words.size(); first += most) {
+    const std::size_t last = std::min(first + most, words.size());
+    transport_.write(field.unit,
+                     field.address + static_cast<int>(first),
+                     {words.begin() + static_cast<std::ptrdiff_t>(first),
+                      words.begin() + static_cast<std::ptrdiff_t>(last)});
+  }
+}
+
+}  // namespace spherical_actuator_calibration

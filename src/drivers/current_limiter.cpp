@@ -1,0 +1,59 @@
+#include "spherical_actuator_calibration/drivers/current_limiter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spherical_actuator_calibration/core/value_range.hpp"
+
+namespace spherical_actuator_calibration {
+
+void validate(const CurrentLimits& limits) {
+  const ValueRange ampere{0.0, 1000.0, "A", true, false};
+  requireInRange("limits.coil", limits.coil, ampere);
+  requireInRange("limits.total", limits.total, ampere);
+  requireInRange("limits.slew", limits.slew, ValueRange{0.0, 1e6, "A/s", true, false});
+}
+
+std::string commandDefect(const Eigen::VectorXd& command, std::size_t coils) {
+  if (static_cast<std::size_t>(command.size()) != coils) {
+    return "The command has " + std::to_string(command.size()) + " currents for " +
+           std::to_string(coils) + " coils.";
+  }
+  for (Eigen::Index coil = 0; coil < command.size(); ++coil) {
+    if (!std::isfinite(command[coil])) {
+      return "The commanded current of coil " + std::to_string(coil + 1) + " is not finite.";
+    }
+  }
+  return {};
+}
+
+CurrentLimiter::CurrentLimiter(const CurrentLimits& limits, std::size_t coils)
+    : limits_(limits), setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))) {
+  validate(limits);
+}
+
+const Eigen::VectorXd& CurrentLimiter::follow(const Eigen::VectorXd& command, double elapsed) {
+  Eigen::VectorXd wanted = command.cwiseMax(-limits_.coil).cwiseMin(limits_.coil);
+  const double total = wanted.cwiseAbs().sum();
+  if (total > limits_.total) {
+    wanted *= limits_.total / total;
+  }
+  if (wanted != command) {
+    ++clamped_;
+  }
+  const double step = limits_.slew * std::max(elapsed, 0.0);
+  setpoints_ += (wanted - setpoints_).cwiseMax(-step).cwiseMin(step);
+  // On the way from one pattern to another the sum can be larger than at either end.
+  const double on_the_way = setpoints_.cwiseAbs().sum();
+  if (on_the_way > limits_.total) {
+    setpoints_ *= limits_.total / on_the_way;
+  }
+  return setpoints_;
+}
+
+const Eigen::VectorXd& CurrentLimiter::stop() {
+  setpoints_.setZero();
+  return setpoints_;
+}
+
+}  // namespace spherical_actuator_calibration
