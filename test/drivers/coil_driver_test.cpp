@@ -1,0 +1,262 @@
+#include "spherical_actuator_calibration/drivers/coil_driver.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "drivers/scripted_transport.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "support/error_message.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr char kShippedFile[] = SOURCE_DIR "/config/coil_driver.yaml";
+constexpr std::size_t kCoils = 24;
+constexpr int kUnit = 2;
+
+CurrentAmplifierOptions shippedOptions() {
+  return readCurrentAmplifierOptions(YamlMap::load(kShippedFile));
+}
+
+class CoilDriverTest : public ::testing::Test {
+ protected:
+  static Eigen::VectorXd pattern(std::size_t coil, double current) {
+    Eigen::VectorXd command = Eigen::VectorXd::Zero(kCoils);
+    command[static_cast<Eigen::Index>(coil)] = current;
+    return command;
+  }
+
+  /// What the amplifier is told for a coil, from 0 [A].
+  double setpoint(int coil) const {
+    return 1e-3 * static_cast<std::int16_t>(bus_.at(kUnit, RegisterTable::kHolding, coil));
+  }
+  bool allZero() const {
+    for (int coil = 0; coil < static_cast<int>(kCoils); ++coil) {
+      if (setpoint(coil) != 0.0) {
+        return false;
+      }
+    }
+    return true;
+  }
+  bool enabled() const { return bus_.at(kUnit, RegisterTable::kHolding, 100) == 1; }
+
+  /// Beats until the command is reached.
+  void follow(const Eigen::VectorXd& command) {
+    // A command before the link is up would be forgotten.
+    beat();
+    for (int n = 0; n < 20; ++n) {
+      now_ += 0.005;
+      ASSERT_EQ(driver_.command(command, now_), "");
+      ASSERT_EQ(driver_.beat(now_).zero_reason, "");
+    }
+  }
+  CoilDriver::Beat beat() {
+    now_ += 0.005;
+    return driver_.beat(now_);
+  }
+
+  ScriptedTransport bus_;
+  CoilDriver driver_{shippedOptions(), kCoils, bus_};
+  double now_ = 100.0;
+};
+
+TEST_F(CoilDriverTest, FollowsACommandAndMeasures) {
+  bus_.set(kUnit, RegisterTable::kInput, 3, {1490});
+  follow(pattern(3, 1.5));
+  EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
+  EXPECT_TRUE(enabled());
+  const CoilDriver::Beat measured = beat();
+  ASSERT_TRUE(measured.measured);
+  EXPECT_NEAR((*measured.measured)[3], 1.49, 1e-12);
+}
+
+TEST_F(CoilDriverTest, BeginsWithZero) {
+  EXPECT_EQ(beat().zero_reason, "no command has come");
+  ASSERT_FALSE(bus_.writes().empty());
+  EXPECT_EQ(bus_.writes()[0].address, 100);
+  EXPECT_EQ(bus_.writes()[0].words[0], 0);
+  EXPECT_TRUE(allZero());
+}
+
+TEST_F(CoilDriverTest, GoesToZeroWithoutAFreshCommand) {
+  follow(pattern(3, 1.5));
+  now_ += 0.2;
+  EXPECT_EQ(beat().zero_reason, "");
+  now_ += 0.1;
+  EXPECT_EQ(beat().zero_reason, "no fresh command");
+  EXPECT_TRUE(allZero());
+}
+
+TEST_F(CoilDriverTest, ARefusedCommandLetsTheOneBeforeRunOut) {
+  follow(pattern(3, 1.5));
+  EXPECT_NE(driver_.command(Eigen::VectorXd::Zero(3), now_), "");
+  EXPECT_NE(driver_.command(pattern(3, std::nan("")), now_ + 0.2), "");
+  EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
+  now_ += 0.26;
+  beat();
+  EXPECT_TRUE(allZero());
+}
+
+TEST_F(CoilDriverTest, StaysWithinTheLimitsWhateverIsCommanded) {
+  follow(Eigen::VectorXd::Constant(kCoils, 50.0));
+  double sum = 0.0;
+  for (int coil = 0; coil < static_cast<int>(kCoils); ++coil) {
+    sum += std::abs(setpoint(coil));
+    EXPECT_LE(std::abs(setpoint(coil)), 2.5);
+  }
+  EXPECT_LE(sum, 8.0 + 0.5e-3 * kCoils);
+}
+
+TEST_F(CoilDriverTest, ALostLinkMeansZeroFirstAndAFreshCommandAfterwards) {
+  follow(pattern(3, 1.5));
+  bus_.setReachable(false);
+  EXPECT_NE(beat().zero_reason, "");
+  EXPECT_FALSE(driver_.link().isUp());
+  // Commands go on during the loss; one from then must not act when the link is back.
+  EXPECT_EQ(driver_.command(pattern(3, 1.5), now_), "");
+  bus_.setReachable(true);
+  const std::size_t before = bus_.writes().size();
+  now_ += 5.0;
+  beat();
+  ASSERT_GT(bus_.writes().size(), before);
+  EXPECT_EQ(bus_.writes()[before].address, 100);
+  EXPECT_EQ(bus_.writes()[before].words[0], 0);
+  EXPECT_TRUE(allZero());
+  EXPECT_EQ(driver_.link().reconnects(), 1U);
+  follow(pattern(3, 1.0));
+  EXPECT_NEAR(setpoint(3), 1.0, 1e-12);
+}
+
+TEST_F(CoilDriverTest, DoesNotBesiegeALostDevice) {
+  beat();
+  bus_.setReachable(false);
+  beat();
+  const std::uint64_t failures = driver_.link().failures();
+  for (int n = 0; n < 10; ++n) {
+    beat();
+  }
+  EXPECT_LE(driver_.link().failures(), failures + 1);
+}
+
+TEST_F(CoilDriverTest, EveryKindOfFailureEndsInZero) {
+  for (const TransportFailure failure : {TransportFailure::kTimeout,
+                                         TransportFailure::kGarbled,
+                                         TransportFailure::kRefused,
+                                         TransportFailure::kUnreachable}) {
+    // Of the trip register, of the setpoints, of the heartbeat, of the measured currents.
+    for (int request = 0; request < 4; ++request) {
+      now_ += 5.0;
+      follow(pattern(3, 1.5));
+      bus_.failNext(std::nullopt, request);
+      bus_.failNext(failure);
+      EXPECT_NE(beat().zero_reason, "") << request;
+      EXPECT_TRUE(allZero()) << request;
+      EXPECT_FALSE(enabled()) << request;
+      now_ += 5.0;
+      EXPECT_EQ(beat().zero_reason, "no command has come");
+    }
+  }
+}
+
+TEST_F(CoilDriverTest, ATripMeansZeroUntilAFreshCommandAfterIt) {
+  follow(pattern(3, 1.5));
+  bus_.set(kUnit, RegisterTable::kInput, 100, {1});
+  EXPECT_EQ(beat().zero_reason, "the amplifier has tripped");
+  EXPECT_TRUE(allZero());
+  EXPECT_FALSE(enabled());
+  bus_.set(kUnit, RegisterTable::kInput, 100, {0});
+  EXPECT_EQ(beat().zero_reason, "no command has come");
+  EXPECT_TRUE(allZero());
+}
+
+TEST_F(CoilDriverTest, StopsForGood) {
+  follow(pattern(3, 1.5));
+  EXPECT_EQ(driver_.stop(), "");
+  EXPECT_TRUE(allZero());
+  EXPECT_FALSE(enabled());
+}
+
+TEST_F(CoilDriverTest, TriesAgainToStop) {
+  follow(pattern(3, 1.5));
+  bus_.failNext(TransportFailure::kTimeout, 2);
+  EXPECT_EQ(driver_.stop(), "");
+  EXPECT_TRUE(allZero());
+  follow(pattern(3, 1.5));
+  bus_.setReachable(false);
+  EXPECT_NE(driver_.stop(), "");
+}
+
+TEST_F(CoilDriverTest, AStalledLoopTakesNoLargeStep) {
+  beat();
+  now_ += 10.0;
+  driver_.command(pattern(3, 2.5), now_);
+  driver_.beat(now_);
+  // 100 A/s for at most 50 ms would be 5 A: the coil's limit holds; at 20 A/s the step shows.
+  CurrentAmplifierOptions slow = shippedOptions();
+  slow.limits.slew = 20.0;
+  CoilDriver driver(slow, kCoils, bus_);
+  driver.beat(200.0);
+  driver.command(pattern(3, 2.5), 210.0);
+  driver.beat(210.0);
+  EXPECT_LE(setpoint(3), 1.0 + 1e-9);
+}
+
+TEST_F(CoilDriverTest, CountsTheHeartbeatUp) {
+  follow(pattern(3, 1.5));
+  const std::uint16_t before = bus_.at(kUnit, RegisterTable::kHolding, 101);
+  beat();
+  EXPECT_EQ(bus_.at(kUnit, RegisterTable::kHolding, 101), before + 1);
+}
+
+TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
+  CurrentAmplifierOptions options = shippedOptions();
+  options.setpoints.type = RegisterType::kFloat32;
+  options.currents.type = RegisterType::kFloat32;
+  options.setpoints.scale = options.currents.scale = 1.0;
+  options.enable_address.reset();
+  options.heartbeat_address.reset();
+  constexpr std::size_t kMany = 150;
+  ScriptedTransport bus;
+  bus.open();
+  CurrentAmplifier amplifier(options, kMany, bus);
+  Eigen::VectorXd currents =
+      Eigen::VectorXd::LinSpaced(kMany, -1.0, 1.0).cast<float>().cast<double>();
+  amplifier.write(currents);
+  EXPECT_EQ(bus.writes().size(), 3U);
+  for (const ScriptedTransport::Write& write : bus.writes()) {
+    EXPECT_LE(write.words.size(), 123U);
+    EXPECT_EQ(write.words.size() % 2, 0U);
+    bus.set(kUnit, RegisterTable::kInput, write.address, write.words);
+  }
+  EXPECT_EQ(amplifier.read(), currents);
+}
+
+TEST(CurrentAmplifier, WritesNothingOfACommandThatDoesNotFit) {
+  CurrentAmplifierOptions options = shippedOptions();
+  ScriptedTransport bus;
+  bus.open();
+  CurrentAmplifier amplifier(options, 2, bus);
+  EXPECT_THROW(amplifier.write(Eigen::Vector2d(1.0, 40.0)), DataError);
+  EXPECT_TRUE(bus.writes().empty());
+}
+
+TEST(CurrentAmplifier, ConfigurationErrorsNameTheKey) {
+  const auto message = [](const std::string& text) {
+    return errorMessage<ConfigError>(
+        [&] { readCurrentAmplifierOptions(YamlMap::parse(text, "c.yaml")); });
+  };
+  EXPECT_NE(message("link: {type: tcp, host: h}\nlimits: {coil: -1.0, total: 1.0, slew: 1.0}\n")
+                .find("limits.coil"),
+            std::string::npos);
+  EXPECT_NE(message("link: {type: tcp, host: h}\nlimits: {coil: 1.0, total: 1.0, slew: 1.0}\n"
+                    "setpoints: {table: input, address: 0, type: int16, scale: 1.0}\n")
+                .find("setpoints.table"),
+            std::string::npos);
+  EXPECT_NE(message("link: {type: tcp, host: h}\nwatchdog: 60.0\n").find("watchdog"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,157 @@
+#include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "drivers/scripted_transport.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "support/error_message.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr char kShippedFile[] = SOURCE_DIR "/config/joint_sensor.yaml";
+constexpr double kPi = 3.14159265358979323846;
+
+JointSensorOptions shippedOptions() {
+  return readJointSensorOptions(YamlMap::load(kShippedFile));
+}
+
+void put(const JointSensorOptions& options, const Eigen::Vector3d& q, ScriptedTransport& bus) {
+  for (const RegisterContent& content : encodeJoints(options, q)) {
+    bus.set(content.unit, content.table, content.address, content.words);
+  }
+}
+
+std::string configError(const std::string& text) {
+  return errorMessage<ConfigError>([&] {
+    const YamlMap map = YamlMap::parse(text, "s.yaml");
+    readJointSensorOptions(map);
+    map.finish();
+  });
+}
+
+TEST(JointSensor, ReadsTheAnglesThatItsRegistersHold) {
+  JointSensorOptions options = shippedOptions();
+  options.tilt->matrix << 1.01, 0.02, -0.015, 0.98;
+  options.tilt->x.zero = 1200.0;
+  options.tilt->y.sign = -1;
+  ScriptedTransport bus;
+  bus.open();
+  for (const Eigen::Vector3d& q : {Eigen::Vector3d(0.3, -0.2, 1.0),
+                                   Eigen::Vector3d(-0.6, 0.6, 3.0),
+                                   Eigen::Vector3d(0.0, 0.0, 0.0)}) {
+    put(options, q, bus);
+    JointSensor sensor(options, bus);
+    const Eigen::Vector3d read = sensor.read();
+    EXPECT_LT((read - q).head<2>().cwiseAbs().maxCoeff(), 3e-6);
+    EXPECT_NEAR(read[2], q[2], 0.5 * 2.0 * kPi / 131072.0 + 1e-12);
+  }
+}
+
+TEST(JointSensor, TiltChannelsTellComponentsOfGravity) {
+  const Eigen::Vector2d q(0.4, -0.5);
+  // g in the moved frame: (−cos q₁ sin q₂, sin q₁, cos q₁ cos q₂).
+  const Eigen::Vector2d inclinations = inclinationsOf(q);
+  EXPECT_NEAR(std::sin(inclinations[0]), std::sin(q[0]), 1e-15);
+  EXPECT_NEAR(std::sin(inclinations[1]), std::cos(q[0]) * std::sin(q[1]), 1e-15);
+  EXPECT_LT((*jointsOf(inclinations) - q).norm(), 1e-14);
+  EXPECT_FALSE(jointsOf({1.2, 1.2}));
+  EXPECT_FALSE(jointsOf({std::nan(""), 0.0}));
+}
+
+TEST(JointSensor, ReadsNeighbouringRegistersInOneRequest) {
+  ScriptedTransport bus;
+  bus.open();
+  JointSensor sensor(shippedOptions(), bus);
+  ASSERT_EQ(sensor.requests().size(), 1U);
+  EXPECT_EQ(sensor.requests()[0].count, 6);
+  sensor.read();
+  EXPECT_EQ(bus.reads(), 1);
+
+  JointSensorOptions apart = shippedOptions();
+  apart.encoders[0].field.unit = 3;
+  EXPECT_EQ(JointSensor(apart, bus).requests().size(), 2U);
+  apart = shippedOptions();
+  apart.encoders[0].field.address = 500;
+  EXPECT_EQ(JointSensor(apart, bus).requests().size(), 2U);
+}
+
+TEST(JointSensor, EncoderGoesOnThroughTheEndOfItsRange) {
+  const JointSensorOptions options = shippedOptions();
+  ScriptedTransport bus;
+  bus.open();
+  JointSensor sensor(options, bus);
+  for (double angle = 0.0; angle < 15.0; angle += 0.7) {
+    put(options, {0.0, 0.0, angle}, bus);
+    EXPECT_NEAR(sensor.read()[2], angle, 1e-4);
+  }
+  for (double angle = 14.7; angle > -15.0; angle -= 0.7) {
+    put(options, {0.0, 0.0, angle}, bus);
+    EXPECT_NEAR(sensor.read()[2], angle, 1e-4);
+  }
+}
+
+TEST(JointSensor, BeginsWithTheAngleNearestToZero) {
+  const JointSensorOptions options = shippedOptions();
+  ScriptedTransport bus;
+  bus.open();
+  put(options, {0.0, 0.0, 6.0}, bus);
+  EXPECT_NEAR(JointSensor(options, bus).read()[2], 6.0 - 2.0 * kPi, 1e-4);
+}
+
+TEST(JointSensor, RefusesWhatNoPoseHas) {
+  JointSensorOptions options = shippedOptions();
+  ScriptedTransport bus;
+  bus.open();
+  JointSensor sensor(options, bus);
+  bus.set(1, RegisterTable::kInput, 0, options.tilt->x.encode(1.4));
+  bus.set(1, RegisterTable::kInput, 2, options.tilt->y.encode(1.4));
+  EXPECT_NE(errorMessage<DataError>([&] { sensor.read(); }).find("which no pose has"),
+            std::string::npos);
+
+  options.encoders[0].field.type = RegisterType::kFloat32;
+  JointSensor floating(options, bus);
+  bus.set(1, RegisterTable::kInput, 0, {0, 0, 0, 0, 0x7FC0, 0});
+  EXPECT_NE(errorMessage<DataError>([&] { floating.read(); }).find("encoder"), std::string::npos);
+}
+
+TEST(JointSensor, ThreeEncodersServeAsWell) {
+  const JointSensorOptions options = readJointSensorOptions(YamlMap::parse(
+      "link: {type: rtu, device: /dev/ttyUSB0, baud: 19200, parity: none}\n"
+      "encoders:\n"
+      "  - {joint: 2, unit: 4, address: 10, type: int16, scale: 1.0e-3}\n"
+      "  - {joint: 1, unit: 3, address: 10, type: float32, word_order: low_first, scale: 1.0}\n"
+      "  - {joint: 3, unit: 5, address: 10, type: int32, scale: 1.0e-5}\n",
+      "s.yaml"));
+  EXPECT_EQ(options.link.parity, 'N');
+  EXPECT_EQ(options.link.baud, 19200);
+  ScriptedTransport bus;
+  bus.open();
+  put(options, {0.25, -0.125, 9.0}, bus);
+  JointSensor sensor(options, bus);
+  EXPECT_LT((sensor.read() - Eigen::Vector3d(0.25, -0.125, 9.0)).norm(), 1e-9);
+}
+
+TEST(JointSensor, ConfigurationErrorsNameTheKey) {
+  const std::string link = "link: {type: tcp, host: h}\n";
+  const std::string encoder = "{joint: 3, address: 0, type: int16, scale: 1.0}";
+  EXPECT_NE(configError(link + "encoders: [" + encoder + "]\n").find("joint 1 has 0 sensors"),
+            std::string::npos);
+  EXPECT_NE(configError(link + "encoders: [{joint: 3, address: 0, type: int8, scale: 1.0}]\n")
+                .find("encoders[0].type"),
+            std::string::npos);
+  EXPECT_NE(configError(link + "encoders: [{joint: 3, address: 0, type: int16, scale: 0.0}]\n")
+                .find("encoders[0].scale"),
+            std::string::npos);
+  EXPECT_NE(configError("link: {type: can}\nencoders: []\n").find("link.type"), std::string::npos);
+  EXPECT_NE(configError("link: {type: rtu}\nencoders: []\n").find("link.device"),
+            std::string::npos);
+  EXPECT_NE(configError(link + "rate: 0.0\nencoders: []\n").find("rate"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
