@@ -1,6 +1,18 @@
 #include "spherical_actuator_calibration/core/registration.hpp"
 
 namespace spherical_actuator_calibration {
+namespace {
+
+/// Torque about the origin of a body, in the body's frame, of a wrench on a sensor fixed to it.
+Eigen::Vector3d torqueAboutCentre(const Eigen::Isometry3d& X_body_sensor,
+                                  const WrenchMeasurement& wrench) {
+  const auto R_body_sensor = X_body_sensor.linear();
+  const Eigen::Vector3d lever_body = X_body_sensor.translation();
+  const Eigen::Vector3d force_body = R_body_sensor * wrench.force;
+  return R_body_sensor * wrench.torque + lever_body.cross(force_body);
+}
+
+}  // namespace
 
 OrientationMeasurement orientationFromMarkerPose(const Registration& registration,
                                                  const MarkerPoseMeasurement& pose) {
@@ -21,10 +33,14 @@ MarkerPoseMeasurement markerPoseFromOrientation(const Registration& registration
 
 TorqueMeasurement torqueFromWrench(const Registration& registration,
                                    const WrenchMeasurement& wrench) {
-  const auto R_rotor_sensor = registration.X_rotor_sensor.linear();
-  const Eigen::Vector3d lever_rotor = registration.X_rotor_sensor.translation();
-  const Eigen::Vector3d force_rotor = R_rotor_sensor * wrench.force;
-  return {wrench.stamp, R_rotor_sensor * wrench.torque + lever_rotor.cross(force_rotor)};
+  return {wrench.stamp, torqueAboutCentre(registration.X_rotor_sensor, wrench)};
+}
+
+TorqueMeasurement torqueFromStatorWrench(const Eigen::Isometry3d& X_stator_sensor,
+                                         const Eigen::Quaterniond& q_stator_rotor,
+                                         const WrenchMeasurement& wrench) {
+  const Eigen::Vector3d torque_stator = torqueAboutCentre(X_stator_sensor, wrench);
+  return {wrench.stamp, -(q_stator_rotor.conjugate() * torque_stator)};
 }
 
 WrenchMeasurement wrenchFromTorque(const Registration& registration,

@@ -47,6 +47,12 @@ MarkerPoseMeasurement markerPoseFromOrientation(const Registration& registration
 TorqueMeasurement torqueFromWrench(const Registration& registration,
                                    const WrenchMeasurement& wrench);
 
+/// The same for a sensor that carries the stator, `X_stator_sensor` its place: what it feels acts
+/// on the stator and is the rotor's reaction, T_c = −R_rotor_stator R_stator_sensor (T_s + p × F).
+TorqueMeasurement torqueFromStatorWrench(const Eigen::Isometry3d& X_stator_sensor,
+                                         const Eigen::Quaterniond& q_stator_rotor,
+                                         const WrenchMeasurement& wrench);
+
 /// Wrench in the sensor frame of a torque about the rotor centre and a force, both in the rotor
 /// frame: the inverse of torqueFromWrench().
 WrenchMeasurement wrenchFromTorque(const Registration& registration,
