@@ -65,6 +65,19 @@ TEST(Registration, LeverArmEntersTheTorque) {
   EXPECT_EQ(torque.stamp, 9);
 }
 
+TEST(Registration, SensorUnderTheStatorFeelsTheReaction) {
+  // The stator turns the rotor about z; a sensor 0.1 m below the centre feels the opposite, and 2 N
+  // along x that turn the stator about −y, hence the rotor about y. The rotor lies a quarter about
+  // z, so that its x is the stator's y.
+  Eigen::Isometry3d X_stator_sensor = Eigen::Isometry3d::Identity();
+  X_stator_sensor.translation() = Eigen::Vector3d(0.0, 0.0, -0.1);
+  const Eigen::Quaterniond q_stator_rotor(rotationExp({0.0, 0.0, M_PI_2}));
+  const WrenchMeasurement wrench{9, {2.0, 0.0, 0.0}, {0.0, 0.0, -0.5}};
+  const TorqueMeasurement torque = torqueFromStatorWrench(X_stator_sensor, q_stator_rotor, wrench);
+  EXPECT_LT((torque.torque - Eigen::Vector3d(0.2, 0.0, 0.5)).norm(), 1e-15);
+  EXPECT_EQ(torque.stamp, 9);
+}
+
 TEST(Registration, WrenchOfATorqueGivesItBack) {
   const Registration registration = laboratoryRegistration();
   const Eigen::Vector3d torque(0.1, -0.2, 0.3);
