@@ -73,8 +73,11 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
   } else {
     result.zero_reason = zeroReason(now);
     const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
-    amplifier_.write(result.zero_reason.empty() ? limiter_.follow(*command_, elapsed)
-                                                : limiter_.stop());
+    if (result.zero_reason.empty()) {
+      amplifier_.write(limiter_.follow(*command_, elapsed), OutputStages::kOn);
+    } else {
+      amplifier_.write(limiter_.stop(), OutputStages::kOff);
+    }
   }
   last_beat_ = now;
   result.measured = amplifier_.read();

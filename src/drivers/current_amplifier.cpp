@@ -55,7 +55,7 @@ CurrentAmplifier::CurrentAmplifier(const CurrentAmplifierOptions& options,
                                    ModbusTransport& transport)
     : options_(options), coils_(coils), transport_(transport) {}
 
-void CurrentAmplifier::write(const Eigen::VectorXd& currents) {
+void CurrentAmplifier::write(const Eigen::VectorXd& currents, OutputStages stages) {
   const RegisterField& field = options_.setpoints;
   std::vector<std::uint16_t> words;
   words.reserve(coils_ * static_cast<std::size_t>(field.words()));
@@ -67,9 +67,10 @@ void CurrentAmplifier::write(const Eigen::VectorXd& currents) {
   if (options_.heartbeat_address) {
     transport_.write(field.unit, *options_.heartbeat_address, {++heartbeat_});
   }
-  if (options_.enable_address && !is_enabled_) {
-    transport_.write(field.unit, *options_.enable_address, {1});
-    is_enabled_ = true;
+  if (options_.enable_address && stages_ != stages) {
+    const std::uint16_t word = stages == OutputStages::kOn ? 1 : 0;
+    transport_.write(field.unit, *options_.enable_address, {word});
+    stages_ = stages;
   }
 }
 
@@ -106,8 +107,8 @@ bool CurrentAmplifier::isTripped() {
 }
 
 void CurrentAmplifier::disable() {
-  // Whatever happens to the setpoints, the output stages are switched off on the way back in.
-  is_enabled_ = false;
+  // Should this fail, nothing is known of the output stages.
+  stages_.reset();
   const RegisterField& field = options_.setpoints;
   if (options_.enable_address) {
     transport_.write(field.unit, *options_.enable_address, {0});

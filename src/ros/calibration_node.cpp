@@ -40,6 +40,17 @@ void writeOnce(const std::string& path, const std::string& content) {
   }
 }
 
+/// The cycle that a plan is asked for; the refinement where none is named.
+CycleRequest plannedCycle(const PlanPoses::Request& request) {
+  for (const Cycle cycle : {Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine}) {
+    const bool needs_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
+    if (request.cycle == cycleName(cycle) || (request.cycle.empty() && cycle == Cycle::kRefine)) {
+      return {cycle, needs_coil ? request.coil : 0U};
+    }
+  }
+  throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
+}
+
 bool anyIdentified(const CalibrationState& state) {
   return std::find(state.identified.begin(), state.identified.end(), true) !=
          state.identified.end();
@@ -95,6 +106,7 @@ void CalibrationNode::advertiseServices() {
   advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
   advertise("refine", &CalibrationNode::refine);
   advertise("validate", &CalibrationNode::validate);
+  advertise("plan_poses", &CalibrationNode::planPoses);
   advertise("reset", &CalibrationNode::reset);
   advertise("restore", &CalibrationNode::restore);
   advertise("save", &CalibrationNode::save);
@@ -241,6 +253,35 @@ bool CalibrationNode::validate(Calibrate::Request& /*request*/, Calibrate::Respo
   response.report = topics_.stamped(validationToRos(validation));
   response.success = response.report.success;
   response.message = response.report.message;
+  return true;
+}
+
+// Planning takes seconds: it works on a copy, so that nothing waits for it.
+bool CalibrationNode::planPoses(PlanPoses::Request& request, PlanPoses::Response& response) {
+  try {
+    PosePlanOptions plan_options;
+    plan_options.max_poses = request.max_poses;
+    plan_options.wanted_stddev = request.wanted_stddev;
+    PlanningProblem problem;
+    problem.request = plannedCycle(request);
+    std::vector<Sample> held;
+    {
+      const std::lock_guard<std::mutex> lock(session_mutex_);
+      const CalibrationSession& calibration = session_.calibration();
+      // The model never changes while the node runs.
+      problem.model = &calibration.model();
+      problem.state = calibration.state();
+      problem.estimation = calibration.config().estimation;
+      held = calibration.samples();
+      plan_options.start =
+          held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
+    }
+    problem.held = &held;
+    response = planToRos(spherical_actuator_calibration::planPoses(problem, plan_options));
+  } catch (const Error& error) {
+    response.success = 0;
+    response.message = error.what();
+  }
   return true;
 }
 

@@ -125,8 +125,10 @@ void CoilDriverNode::beat() {
     link_diagnostics_.update(driver_.link());
     const std::lock_guard<std::mutex> lock(mutex_);
     if (beat.zero_reason != zero_reason_) {
-      ROS_INFO_STREAM(beat.zero_reason.empty() ? "The coils follow the commands."
-                                               : "The currents are zero: " + beat.zero_reason);
+      const std::string state = beat.zero_reason.empty()
+                                    ? "The coils follow the commands."
+                                    : "The currents are zero: " + beat.zero_reason;
+      ROS_INFO_STREAM(state);
       state_changed_ = true;
     }
     zero_reason_ = beat.zero_reason;

@@ -220,4 +220,22 @@ CalibrationReport validationToRos(const HeldOutValidation& validation) {
   return message;
 }
 
+PlanPoses::Response planToRos(const PosePlan& plan) {
+  PlanPoses::Response message;
+  message.success = static_cast<std::uint8_t>(plan.success);
+  message.message = plan.message;
+  for (const PlannedPose& pose : plan.poses) {
+    PlannedPoseMessage& item = message.poses.emplace_back();
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      item.joint_position[k] = pose.joint_position[static_cast<Eigen::Index>(k)];
+    }
+    item.coils.assign(pose.coils.begin(), pose.coils.end());
+  }
+  std::transform(plan.expected.begin(),
+                 plan.expected.end(),
+                 std::back_inserter(message.expected),
+                 estimateToRos);
+  return message;
+}
+
 }  // namespace spherical_actuator_calibration

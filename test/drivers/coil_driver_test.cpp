@@ -67,6 +67,9 @@ TEST_F(CoilDriverTest, FollowsACommandAndMeasures) {
   follow(pattern(3, 1.5));
   EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
   EXPECT_TRUE(enabled());
+  follow(pattern(3, 0.0));
+  EXPECT_TRUE(allZero());
+  EXPECT_TRUE(enabled());  // a commanded zero is a command
   const CoilDriver::Beat measured = beat();
   ASSERT_TRUE(measured.measured);
   EXPECT_NEAR((*measured.measured)[3], 1.49, 1e-12);
@@ -87,6 +90,7 @@ TEST_F(CoilDriverTest, GoesToZeroWithoutAFreshCommand) {
   now_ += 0.1;
   EXPECT_EQ(beat().zero_reason, "no fresh command");
   EXPECT_TRUE(allZero());
+  EXPECT_FALSE(enabled());
 }
 
 TEST_F(CoilDriverTest, ARefusedCommandLetsTheOneBeforeRunOut) {
@@ -223,7 +227,7 @@ TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
   CurrentAmplifier amplifier(options, kMany, bus);
   Eigen::VectorXd currents =
       Eigen::VectorXd::LinSpaced(kMany, -1.0, 1.0).cast<float>().cast<double>();
-  amplifier.write(currents);
+  amplifier.write(currents, OutputStages::kOn);
   EXPECT_EQ(bus.writes().size(), 3U);
   for (const ScriptedTransport::Write& write : bus.writes()) {
     EXPECT_LE(write.words.size(), 123U);
@@ -238,7 +242,7 @@ TEST(CurrentAmplifier, WritesNothingOfACommandThatDoesNotFit) {
   ScriptedTransport bus;
   bus.open();
   CurrentAmplifier amplifier(options, 2, bus);
-  EXPECT_THROW(amplifier.write(Eigen::Vector2d(1.0, 40.0)), DataError);
+  EXPECT_THROW(amplifier.write(Eigen::Vector2d(1.0, 40.0), OutputStages::kOn), DataError);
   EXPECT_TRUE(bus.writes().empty());
 }
 

@@ -35,6 +35,9 @@ struct CurrentAmplifierOptions {
 /// Throws ConfigError that names the key.
 CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map);
 
+/// Whether the amplifier's output stages are switched on.
+enum class OutputStages { kOff, kOn };
+
 /// The current amplifier over a Modbus link. Not thread-safe.
 class CurrentAmplifier {
  public:
@@ -43,10 +46,10 @@ class CurrentAmplifier {
                    std::size_t coils,
                    ModbusTransport& transport);
 
-  /// Sets the current of every coil [A], and switches the output stages on if they are off. Throws
+  /// Sets the current of every coil [A], then switches the output stages, where they can be. Throws
   /// TransportError, and DataError when a current does not fit into its register: then none is
   /// written.
-  void write(const Eigen::VectorXd& currents);
+  void write(const Eigen::VectorXd& currents, OutputStages stages);
   /// Measured current of every coil [A]. Throws TransportError, and DataError when one is not
   /// finite.
   Eigen::VectorXd read();
@@ -62,7 +65,7 @@ class CurrentAmplifier {
   CurrentAmplifierOptions options_;
   std::size_t coils_;
   ModbusTransport& transport_;
-  bool is_enabled_ = false;
+  std::optional<OutputStages> stages_;  ///< as written last; nothing: not known
   std::uint16_t heartbeat_ = 0;
 };
 

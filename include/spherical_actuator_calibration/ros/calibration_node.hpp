@@ -59,6 +59,7 @@ class CalibrationNode {
   bool calibrateCoil(Calibrate::Request& request, Calibrate::Response& response);
   bool refine(Calibrate::Request& request, Calibrate::Response& response);
   bool validate(Calibrate::Request& request, Calibrate::Response& response);
+  bool planPoses(PlanPoses::Request& request, PlanPoses::Response& response);
   void run(const CycleRequest& request, Calibrate::Response& response);
 
   // Parameters.

@@ -10,6 +10,7 @@
 #define CoilAxis CoilAxisMessage
 #define ParameterEstimate ParameterEstimateMessage
 #define SampleResidual SampleResidualMessage
+#define PlannedPose PlannedPoseMessage
 
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/Calibrate.h"
@@ -21,3 +22,4 @@
 #undef CoilAxis
 #undef ParameterEstimate
 #undef SampleResidual
+#undef PlannedPose

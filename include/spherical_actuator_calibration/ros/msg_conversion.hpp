@@ -21,6 +21,7 @@
 #include "spherical_actuator_calibration/core/calibration_report.hpp"
 #include "spherical_actuator_calibration/core/held_out_validation.hpp"
 #include "spherical_actuator_calibration/core/measurements.hpp"
+#include "spherical_actuator_calibration/core/pose_planner.hpp"
 #include "spherical_actuator_calibration/core/sample.hpp"
 #include "spherical_actuator_calibration/ros/message_types.hpp"
 
@@ -73,5 +74,8 @@ CalibrationReport reportToRos(const CycleReport& report);
 /// A validation in the form of a report: cycle "validate", residuals of the held-out samples.
 /// `success` tells whether they agree. The header stays empty.
 CalibrationReport validationToRos(const HeldOutValidation& validation);
+
+/// Answer of the service plan_poses.
+PlanPoses::Response planToRos(const PosePlan& plan);
 
 }  // namespace spherical_actuator_calibration

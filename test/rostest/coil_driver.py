@@ -1,0 +1,247 @@
+#!/usr/bin/python3
+"""The coil driver node against an independent Modbus device. Every way to zero is tried."""
+
+import math
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NAMESPACE, PACKAGE, wait_for
+from driver_node import ERROR, OK, DriverNode
+from modbus_device import ModbusDevice, RudeServer, SerialPair, free_port
+from spherical_actuator_calibration.msg import CoilCurrents
+
+UNIT = 2
+COILS = 24
+ENABLE = 100
+TRIPPED = 100
+MILLI = 1e-3
+
+
+def amperes(word):
+    return (word - 0x10000 if word & 0x8000 else word) * MILLI
+
+
+class Commander:
+    """Publishes one command again and again, as a controller does."""
+
+    def __init__(self):
+        self.publisher = rospy.Publisher(
+            NAMESPACE + "/coil_command", CoilCurrents, queue_size=1, tcp_nodelay=True
+        )
+        self.command = None
+        self.age = 0.0
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        while not self._ended.wait(0.02):
+            if self.command is not None:
+                message = CoilCurrents(current=self.command)
+                message.header.stamp = rospy.Time.now() - rospy.Duration(self.age)
+                self.publisher.publish(message)
+
+    def close(self):
+        self._ended.set()
+        self._thread.join()
+        self.publisher.unregister()
+
+
+class CoilDriver(unittest.TestCase):
+    def setUp(self):
+        self.measured = []
+        self.device = ModbusDevice(UNIT)
+        self.port = free_port()
+        self.commander = Commander()
+        subscriber = rospy.Subscriber(
+            NAMESPACE + "/coil_currents", CoilCurrents, self.measured.append, queue_size=10000
+        )
+        self.addCleanup(self.device.stop)
+        self.addCleanup(subscriber.unregister)
+        self.addCleanup(self.commander.close)
+
+    def start(self, **changes):
+        parameters = rospy.get_param("/shipped/coil_driver")
+        parameters["diagnostic_period"] = 0.1
+        parameters["link"]["port"] = self.port
+        parameters.update(changes)
+        node = DriverNode("coil_driver", parameters)
+        self.addCleanup(node.close)
+        return node
+
+    def started(self, **changes):
+        self.device.start_tcp(self.port)
+        return self.start(**changes)
+
+    @staticmethod
+    def pattern(coil, current):
+        command = [0.0] * COILS
+        command[coil - 1] = current
+        return command
+
+    def setpoints(self):
+        return [amperes(word) for word in self.device.holding_at(0, COILS)]
+
+    def is_zero(self):
+        return not any(self.device.holding_at(0, COILS))
+
+    def follow(self, coil=3, current=1.5):
+        self.commander.command = self.pattern(coil, current)
+        wait_for(lambda: abs(self.setpoints()[coil - 1] - current) < MILLI, "the commanded current")
+
+    def wait_for_zero(self):
+        wait_for(self.is_zero, "zero currents")
+        self.assertEqual(self.device.holding_at(ENABLE), [0])
+
+    def largest_written(self):
+        """Largest current of one coil, and largest sum, that was ever written [A]."""
+        blocks = [values for address, values in self.device.holding.history if address == 0]
+        amounts = [[abs(amperes(word)) for word in block] for block in blocks]
+        return max(map(max, amounts)), max(map(sum, amounts))
+
+    # -- what it is for ------------------------------------------------------------------------------
+
+    def test_follows_commands_and_publishes_what_is_measured(self):
+        node = self.started()
+        self.device.input.setValues(2, [1490])
+        self.follow(3, 1.5)
+        wait_for(lambda: self.measured and abs(self.measured[-1].current[2] - 1.49) < 1e-9, "1.49 A")
+        self.assertEqual(len(self.measured[-1].current), COILS)
+        stamps = [message.header.stamp for message in self.measured]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        self.follow(3, -0.7)
+        self.assertEqual(self.device.holding_at(ENABLE), [1])
+        node.wait_for_level("output", OK)
+        wait_for(lambda: node.message("output") == "commands are followed", "that it follows")
+
+    def test_follows_commands_over_a_serial_line(self):
+        pair = SerialPair()
+        self.addCleanup(pair.close)
+        self.device.start_serial(pair.device_end)
+        link = {"type": "rtu", "device": pair.driver_end, "baud": 115200, "parity": "none"}
+        node = self.start(link=link, rate=30.0, watchdog=1.0)
+        self.follow(3, 1.5)
+        node.end(signal.SIGTERM)
+        self.assertTrue(self.is_zero())
+
+    def test_never_goes_beyond_the_limits(self):
+        self.started()
+        self.commander.command = [50.0] * COILS
+        wait_for(lambda: sum(self.setpoints()) > 7.5, "the largest sum")
+        self.commander.command = self.pattern(1, -9.0)
+        wait_for(lambda: abs(self.setpoints()[0] + 2.5) < MILLI, "the largest current")
+        coil, total = self.largest_written()
+        self.assertLessEqual(coil, 2.5)
+        self.assertLessEqual(total, 8.0 + COILS * 0.5 * MILLI)
+
+    def test_changes_currents_no_faster_than_allowed(self):
+        limits = {"coil": 2.5, "total": 8.0, "slew": 5.0}
+        self.started(limits=limits)
+        self.follow(3, 2.0)
+        blocks = [block for address, block in self.device.holding.history if address == 0]
+        steps = [amperes(b[2]) - amperes(a[2]) for a, b in zip(blocks, blocks[1:])]
+        # At most 50 ms count for one step, whatever the computer does meanwhile.
+        self.assertLessEqual(max(steps), 5.0 * 0.05 + MILLI)
+        self.assertGreater(sum(step > 0 for step in steps), 6)
+
+    # -- ways to zero --------------------------------------------------------------------------------
+
+    def test_zero_without_a_fresh_command(self):
+        node = self.started()
+        self.follow()
+        self.commander.command = None
+        wait_for(self.is_zero, "zero currents")
+        wait_for(lambda: "no fresh command" in node.message("output"), "the reason")
+
+    def test_zero_on_sigterm(self):
+        node = self.started()
+        self.follow()
+        node.end(signal.SIGTERM)
+        self.assertTrue(self.is_zero())
+        self.assertEqual(self.device.holding_at(ENABLE), [0])
+
+    def test_zero_on_sigint(self):
+        node = self.started()
+        self.follow()
+        node.end(signal.SIGINT)
+        self.assertTrue(self.is_zero())
+
+    def test_zero_on_rosnode_kill(self):
+        node = self.started()
+        self.follow()
+        subprocess.run(["rosnode", "kill", node.name], check=True, stdout=subprocess.DEVNULL)
+        node.process.communicate(timeout=30)
+        self.assertTrue(self.is_zero())
+
+    def test_zero_first_when_the_link_is_back(self):
+        node = self.started()
+        self.follow()
+        self.device.stop()
+        node.wait_for_level("link", ERROR)
+        # The amplifier keeps what it was told last; commands go on, and must not act on return.
+        self.assertFalse(self.is_zero())
+        self.commander.command = None
+        wait_for(lambda: int(node.value("link", "failures")) >= 3, "further attempts")
+        self.device.holding.history.clear()
+        self.device.start_tcp(self.port)
+        self.wait_for_zero()
+        self.assertEqual(self.device.holding.history[0], (ENABLE, [0]))
+        node.wait_for_level("link", OK)
+        self.follow()
+
+    def test_zero_when_the_amplifier_trips(self):
+        node = self.started()
+        self.follow()
+        self.device.input.setValues(TRIPPED, [1])
+        self.wait_for_zero()
+        wait_for(lambda: "tripped" in node.message("output"), "the reason")
+        self.device.input.setValues(TRIPPED, [0])
+        self.follow()
+
+    def test_zero_after_commands_that_are_refused(self):
+        node = self.started()
+        for command, reason in (
+            ([1.0] * 3, "3 currents for 24 coils"),
+            ([math.nan] + [0.0] * (COILS - 1), "not finite"),
+            ([math.inf] + [0.0] * (COILS - 1), "not finite"),
+        ):
+            self.follow()
+            self.commander.command = command
+            wait_for(self.is_zero, "zero currents")
+            wait_for(lambda: reason in node.value("output", "last refusal"), reason)  # noqa: B023
+
+    def test_stale_commands_are_refused(self):
+        node = self.started()
+        self.follow()
+        self.commander.age = 1.0
+        wait_for(self.is_zero, "zero currents")
+        wait_for(lambda: "s old" in node.value("output", "last refusal"), "the reason")
+
+    def test_zero_when_a_register_is_refused(self):
+        field = {"unit": UNIT, "table": "input", "address": 190, "type": "int16", "scale": MILLI}
+        node = self.started(currents=field)
+        self.commander.command = self.pattern(3, 1.5)
+        node.wait_for_level("link", ERROR)
+        self.assertIn("Illegal data address", node.message("link"))
+        wait_for(lambda: int(node.value("link", "failures")) >= 3, "further attempts")
+        self.wait_for_zero()
+        self.assertEqual(self.measured, [])
+
+    def test_garbage_is_never_taken_for_an_answer(self):
+        server = RudeServer(self.port, bytes(range(1, 40)))
+        self.addCleanup(server.close)
+        node = self.start()
+        self.commander.command = self.pattern(3, 1.5)
+        node.wait_for_level("link", ERROR)
+        wait_for(lambda: server.requests >= 3, "further attempts")
+        self.assertEqual(self.measured, [])
+
+
+if __name__ == "__main__":
+    rospy.init_node("coil_driver_test")
+    rostest.rosrun(PACKAGE, "coil_driver", CoilDriver, sys.argv)

@@ -1,0 +1,59 @@
+"""What the tests of the driver nodes share: a node under test, and its diagnostics."""
+
+import os
+import subprocess
+
+import rospy
+from calibration_client import NAMESPACE, program, wait_for
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+OK = DiagnosticStatus.OK
+ERROR = DiagnosticStatus.ERROR
+
+
+class DriverNode:
+    """A node's program with private parameters from a map, started and ended by the test."""
+
+    def __init__(self, name, parameters):
+        self.name = f"{NAMESPACE}/{name}"
+        if rospy.has_param(self.name):
+            rospy.delete_param(self.name)
+        rospy.set_param(self.name, parameters)
+        self._status = {}
+        self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive)
+        self.process = subprocess.Popen(
+            [program(name), f"__name:={name}"],
+            env={**os.environ, "ROS_NAMESPACE": NAMESPACE},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def _receive(self, message):
+        for status in message.status:
+            if status.name.startswith(self.name.lstrip("/") + ": "):
+                self._status[status.name.split(": ", 1)[1]] = status
+
+    def level(self, task):
+        status = self._status.get(task)
+        return None if status is None else status.level
+
+    def message(self, task):
+        return self._status[task].message
+
+    def value(self, task, key):
+        values = {item.key: item.value for item in self._status[task].values}
+        return values[key]
+
+    def wait_for_level(self, task, level):
+        wait_for(lambda: self.level(task) == level, f"{task} at level {level}")
+
+    def end(self, signal_number):
+        """Ends the node by a signal and returns what it wrote to its standard error."""
+        self.process.send_signal(signal_number)
+        return self.process.communicate(timeout=30)[1]
+
+    def close(self):
+        self._subscriber.unregister()
+        if self.process.poll() is None:
+            self.process.terminate()
+        self.process.communicate(timeout=30)

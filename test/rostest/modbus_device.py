@@ -1,0 +1,160 @@
+"""Modbus devices by an independent implementation (pymodbus), over TCP or a pair of serial lines."""
+
+import asyncio
+import os
+import socket
+import subprocess
+import tempfile
+import threading
+
+from calibration_client import wait_for
+from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
+from pymodbus.transaction import ModbusRtuFramer, ModbusSocketFramer
+
+REGISTERS = 200
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Block(ModbusSequentialDataBlock):
+    """Registers that remember every request which wrote them."""
+
+    def __init__(self):
+        super().__init__(0, [0] * REGISTERS)
+        self.history = []
+
+    def setValues(self, address, values):  # noqa: N802, pylint: disable=invalid-name
+        self.history.append((address, list(values)))
+        super().setValues(address, values)
+
+
+class ModbusDevice:
+    """One unit with input and holding registers; lives in a thread of the test."""
+
+    def __init__(self, unit):
+        self.input = Block()
+        self.holding = Block()
+        slave = ModbusSlaveContext(ir=self.input, hr=self.holding, zero_mode=True)
+        self._context = ModbusServerContext(slaves={unit: slave}, single=False)
+        self._loop = None
+        self._thread = None
+        self._server = None
+        self._ended = None
+
+    def start_tcp(self, port):
+        self._start(
+            lambda: ModbusTcpServer(
+                self._context,
+                ModbusSocketFramer,
+                address=("127.0.0.1", port),
+                allow_reuse_address=True,
+            )
+        )
+
+    def start_serial(self, line):
+        async def serial():
+            server = ModbusSerialServer(
+                self._context, ModbusRtuFramer, port=line, baudrate=115200, timeout=0.005
+            )
+            await server.start()
+            return server
+
+        self._start(serial)
+
+    def _start(self, make):
+        ready = threading.Event()
+
+        async def serve():
+            made = make()
+            self._server = await made if asyncio.iscoroutine(made) else made
+            self._ended = asyncio.Event()
+            ready.set()
+            serving = asyncio.ensure_future(self._server.serve_forever())
+            await self._ended.wait()
+            await self._server.shutdown()
+            serving.cancel()
+
+        def run():
+            self._loop = asyncio.new_event_loop()
+            asyncio.set_event_loop(self._loop)
+            self._loop.run_until_complete(serve())
+
+        self._thread = threading.Thread(target=run, daemon=True)
+        self._thread.start()
+        ready.wait()
+
+    def stop(self):
+        """The device vanishes, and with it every link to it."""
+        if self._thread is None:
+            return
+        self._loop.call_soon_threadsafe(self._ended.set)
+        self._thread.join()
+        self._thread = None
+
+    def holding_at(self, address, count=1):
+        return self.holding.getValues(address, count)
+
+
+class SerialPair:
+    """Two ends of a serial line (socat)."""
+
+    def __init__(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.device_end = os.path.join(self._folder.name, "device")
+        self.driver_end = os.path.join(self._folder.name, "driver")
+        self._socat = subprocess.Popen(
+            [
+                "socat",
+                f"pty,raw,echo=0,link={self.device_end}",
+                f"pty,raw,echo=0,link={self.driver_end}",
+            ]
+        )
+        wait_for(
+            lambda: os.path.exists(self.device_end) and os.path.exists(self.driver_end),
+            "a pair of serial lines",
+        )
+
+    def close(self):
+        self._socat.terminate()
+        self._socat.wait()
+        self._folder.cleanup()
+
+
+class RudeServer:
+    """Accepts links and answers every request with the same bytes, or with none."""
+
+    def __init__(self, port, answer):
+        self._answer = answer
+        self._listener = socket.create_server(("127.0.0.1", port), reuse_port=False)
+        self.requests = 0
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self):
+        while True:
+            try:
+                link, _ = self._listener.accept()
+            except OSError:
+                return
+            threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+
+    def _serve(self, link):
+        with link:
+            while True:
+                try:
+                    if not link.recv(1024):
+                        return
+                    self.requests += 1
+                    if self._answer:
+                        link.sendall(self._answer)
+                except OSError:
+                    return
+
+    def close(self):
+        # Wakes the thread that accepts.
+        self._listener.shutdown(socket.SHUT_RDWR)
+        self._listener.close()
