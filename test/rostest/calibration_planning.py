@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+"""The service plan_poses of the calibration node."""
+
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NODE, PACKAGE, CalibrationClient, CalibrationNode
+from spherical_actuator_calibration.srv import PlanPoses
+
+TILT_LIMIT = 0.6
+
+
+class Planning(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.client = CalibrationClient()
+        self.node = CalibrationNode(folder.name + "/calibration")
+        self.addCleanup(self.node.stop)
+        self.client.start(self.node)
+        rospy.wait_for_service(NODE + "/plan_poses")
+        self.plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)
+
+    def test_plans_a_session_inside_the_workspace(self):
+        answer = self.plan(cycle="refine", max_poses=8)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(len(answer.poses), 8)
+        for pose in answer.poses:
+            self.assertLessEqual(max(abs(angle) for angle in pose.joint_position[:2]), TILT_LIMIT)
+            self.assertTrue(all(1 <= coil <= 24 for coil in pose.coils))
+        self.assertEqual(len(answer.expected), 9 + 2 * 8 + 2 * 24)
+        self.assertLess(max(estimate.stddev for estimate in answer.expected), 2e-3)
+
+    def test_plans_single_cycles(self):
+        joint = self.plan(cycle="joint", max_poses=6)
+        self.assertTrue(joint.success, joint.message)
+        self.assertTrue(all(not pose.coils for pose in joint.poses))
+        self.assertEqual(len(joint.expected), 9)
+        poles = self.plan(cycle="poles", coil=3, max_poses=12)
+        self.assertTrue(poles.success, poles.message)
+        self.assertTrue(all(list(pose.coils) == [3] for pose in poles.poses))
+
+    def test_refuses_what_it_cannot_plan(self):
+        for request, word in (
+            ({"cycle": "everything", "max_poses": 5}, "everything"),
+            ({"cycle": "coil", "coil": 99, "max_poses": 5}, "99"),
+            ({"cycle": "refine", "max_poses": 0}, "max_poses"),
+        ):
+            answer = self.plan(**request)
+            self.assertFalse(answer.success)
+            self.assertIn(word, answer.message)
+            self.assertTrue(self.node.alive())
+
+
+if __name__ == "__main__":
+    rospy.init_node("calibration_planning")
+    rostest.rosrun(PACKAGE, "calibration_planning", Planning, sys.argv)
