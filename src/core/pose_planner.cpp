@@ -22,8 +22,11 @@ constexpr double kPi = 3.14159265358979323846;
 /// the first poses, which cannot determine everything; the result does not contain it.
 constexpr double kWeakPrior = 0.03;
 
-/// Exchanges pay until the plan settles; further passes gain little.
+/// Exchanges pay until the plan settles. Passes over a plan that is to grow need not settle, and a
+/// large plan gains little by them: together they try this many exchanges, some seconds' work.
 constexpr int kMostPasses = 8;
+constexpr int kPassesWhileGrowing = 2;
+constexpr std::size_t kMostExchanges = 300;
 /// An exchange lowers the largest standard deviation by less than this factor.
 constexpr double kExchangePromise = 1.6;
 
@@ -55,6 +58,7 @@ void validateRequest(const PlanningProblem& problem) {
 std::vector<Eigen::Vector3d> jointPositions(const std::vector<PoseCandidate>& candidates,
                                             const std::vector<SelectedPose>& poses) {
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(poses.size());
   for (const SelectedPose& pose : poses) {
     positions.push_back(candidates[pose.candidate].joint_position);
   }
@@ -64,6 +68,7 @@ std::vector<Eigen::Vector3d> jointPositions(const std::vector<PoseCandidate>& ca
 std::vector<std::size_t> coilsOf(const std::vector<PoseCandidate>& candidates,
                                  const SelectedPose& pose) {
   std::vector<std::size_t> coils;
+  coils.reserve(pose.torques.size());
   for (const std::size_t torque : pose.torques) {
     coils.push_back(candidates[pose.candidate].coils[torque]);
   }
@@ -92,13 +97,13 @@ class Planner {
            selection_.add()) {
       const bool is_last = selection_.poses().size() == options_.max_poses;
       if (is_last || selection_.worstStddev() < kExchangePromise * options_.wanted_stddev) {
-        improve();
+        improve(is_last ? kMostPasses : kPassesWhileGrowing);
         expect(plan);
       }
     }
     // Candidates may have run out before the last pose was reached.
     if (!plan.reached_wanted && selection_.poses().size() < options_.max_poses) {
-      improve();
+      improve(kMostPasses);
       expect(plan);
     }
     lay(plan);
@@ -122,8 +127,12 @@ class Planner {
     return result;
   }
 
-  void improve() {
-    for (int pass = 0; pass < kMostPasses && selection_.exchange(); ++pass) {
+  void improve(int most_passes) {
+    for (int pass = 0; pass < most_passes && exchanges_ < kMostExchanges; ++pass) {
+      exchanges_ += selection_.poses().size();
+      if (!selection_.exchange()) {
+        return;
+      }
     }
   }
 
@@ -244,8 +253,9 @@ class Planner {
   std::vector<Eigen::Index> coordinates_;
   std::vector<PoseCandidate> candidates_;
   PoseSelection selection_;
-  std::vector<Sample> held_;  ///< with the values that fit the parameters in force
-  CycleOutcome outcome_;      ///< of the last expect()
+  std::vector<Sample> held_;   ///< with the values that fit the parameters in force
+  std::size_t exchanges_ = 0;  ///< tried
+  CycleOutcome outcome_;       ///< of the last expect()
 };
 
 }  // namespace

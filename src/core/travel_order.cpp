@@ -1,21 +1,28 @@
 #include "spherical_actuator_calibration/core/travel_order.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace spherical_actuator_calibration {
 namespace {
 
 /// Shorter by less than this is not shorter [rad].
 constexpr double kLeastGain = 1e-9;
+/// A way that no change shortens need not be the shortest, so several first poses are tried: fewer
+/// where there are many poses, because the time of one trial grows with their third power.
+constexpr std::size_t kMostVisits = 300;
 
 using Order = std::vector<std::size_t>;
 
-Order nearestFirst(const Eigen::Vector3d& start, const std::vector<Eigen::Vector3d>& poses) {
+/// Pose `first`, then from each pose to the nearest that is left.
+Order nearestAfter(std::size_t first, const std::vector<Eigen::Vector3d>& poses) {
   Order order(poses.size());
   std::iota(order.begin(), order.end(), 0);
-  Eigen::Vector3d at = start;
-  for (auto next = order.begin(); next != order.end(); ++next) {
+  std::swap(order.front(), order[first]);
+  Eigen::Vector3d at = poses[first];
+  for (auto next = order.begin() + 1; next != order.end(); ++next) {
     std::iter_swap(next, std::min_element(next, order.end(), [&](std::size_t a, std::size_t b) {
                      return moveLength(at, poses[a]) < moveLength(at, poses[b]);
                    }));
@@ -72,11 +79,21 @@ double travelLength(const Eigen::Vector3d& start,
 
 std::vector<std::size_t> travelOrder(const Eigen::Vector3d& start,
                                      const std::vector<Eigen::Vector3d>& poses) {
-  Order order = nearestFirst(start, poses);
-  // Each change shortens the way, and there are finitely many ways.
-  while (shorten(start, poses, order)) {
+  Order shortest;
+  double least = std::numeric_limits<double>::infinity();
+  const std::size_t trials = std::min(poses.size(), 1 + kMostVisits / (1 + poses.size()));
+  for (std::size_t first = 0; first < trials; ++first) {
+    Order order = nearestAfter(first, poses);
+    // Each change shortens the way, and there are finitely many ways.
+    while (shorten(start, poses, order)) {
+    }
+    const double length = travelLength(start, poses, order);
+    if (length < least) {
+      least = length;
+      shortest = std::move(order);
+    }
   }
-  return order;
+  return shortest;
 }
 
 }  // namespace spherical_actuator_calibration

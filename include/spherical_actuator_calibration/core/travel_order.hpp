@@ -16,8 +16,8 @@ double travelLength(const Eigen::Vector3d& start,
                     const std::vector<std::size_t>& order);
 
 /// Order in which to visit the poses (joint angles [rad]) from `start`, not coming back, for a
-/// short way: from each pose to the nearest, then reversing and shifting parts of the way as long
-/// as that shortens it.
+/// short way: from a first pose always to the nearest, then reversing and shifting parts of the
+/// way as long as that shortens it; the best over several first poses.
 std::vector<std::size_t> travelOrder(const Eigen::Vector3d& start,
                                      const std::vector<Eigen::Vector3d>& poses);
 
