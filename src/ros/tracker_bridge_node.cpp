@@ -54,7 +54,7 @@ TrackerBridgeNode::TrackerBridgeNode(const ros::NodeHandle& node,
                                      const Actuator& actuator,
                                      const TrackerBridgeOptions& options)
     : options_(options),
-      measures_torque_(actuator.hasTorqueModel()),
+      needs_torque_(actuator.hasTorqueModel()),
       mount_frame_(options.bridge.sensor_mount == SensorMount::kRotor ? options.frames.rotor
                                                                       : options.frames.stator),
       bridge_(options.bridge),
@@ -68,10 +68,8 @@ TrackerBridgeNode::TrackerBridgeNode(const ros::NodeHandle& node,
       receiver_(1, &queue_) {
   orientation_publisher_ =
       node_.advertise<geometry_msgs::QuaternionStamped>("measured_orientation", kQueueLength);
-  if (measures_torque_) {
-    torque_publisher_ =
-        node_.advertise<geometry_msgs::Vector3Stamped>("measured_torque", kQueueLength);
-  }
+  torque_publisher_ =
+      node_.advertise<geometry_msgs::Vector3Stamped>("measured_torque", kQueueLength);
   addDiagnostics(actuator);
   subscribe();
   receiver_.start();
@@ -91,9 +89,6 @@ void TrackerBridgeNode::subscribe() {
       static_cast<void (Self::*)(const geometry_msgs::PoseStamped::ConstPtr&)>(&Self::receive),
       this,
       hints));
-  if (!measures_torque_) {
-    return;
-  }
   subscribers_.push_back(node_.subscribe(
       "ft_sensor/wrench",
       kQueueLength,
@@ -105,7 +100,7 @@ void TrackerBridgeNode::subscribe() {
 void TrackerBridgeNode::addDiagnostics(const Actuator& actuator) {
   diagnostics_.setHardwareID(actuator.serial.empty() ? actuator.name : actuator.serial);
   diagnostics_.add(poses_);
-  if (measures_torque_) {
+  if (needs_torque_) {
     diagnostics_.add(wrenches_);
   }
   diagnostics_.add("registrations", this, &TrackerBridgeNode::diagnoseRegistrations);
@@ -194,7 +189,7 @@ void TrackerBridgeNode::tellClockResets() {
 std::vector<TrackerBridgeNode::Registered> TrackerBridgeNode::registrations() const {
   const BridgeFrames& frames = options_.frames;
   std::vector<Registered> all = {{frames.stator, tracker_frame_}, {frames.rotor, frames.marker}};
-  if (measures_torque_) {
+  if (needs_torque_) {
     all.push_back({mount_frame_, ft_sensor_frame_});
   }
   return all;

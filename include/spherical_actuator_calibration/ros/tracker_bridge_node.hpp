@@ -27,8 +27,8 @@ namespace spherical_actuator_calibration {
 /// `ft_sensor/wrench`, with their stamps, by the registrations that tf2 knows at those stamps. What
 /// is refused is told with its reason on /diagnostics and, now and then, as a warning.
 ///
-/// Measurements are received in a thread of their own. Wrenches are received only for an actuator
-/// with a torque model.
+/// Measurements are received in a thread of their own. Without wrenches an actuator with a torque
+/// model is in error, one without is not.
 class TrackerBridgeNode {
  public:
   TrackerBridgeNode(const ros::NodeHandle& node,
@@ -58,7 +58,7 @@ class TrackerBridgeNode {
   void diagnoseRegistrations(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const TrackerBridgeOptions options_;
-  const bool measures_torque_;
+  const bool needs_torque_;
   const std::string mount_frame_;  ///< of the body that carries the force/torque sensor
 
   // Used by the receiving thread alone, or thread-safe by themselves.
