@@ -179,7 +179,7 @@ class OptionWriter {
 };
 
 CalibrationConfig readWholeConfig(const YamlMap& file, const std::string& name) {
-  const CalibrationConfig config = readCalibrationConfig(file, name);
+  CalibrationConfig config = readCalibrationConfig(file, name);
   file.finish();
   return config;
 }

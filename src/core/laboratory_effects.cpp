@@ -34,13 +34,13 @@ std::vector<std::string> components(LaboratoryEffect effect) {
   return {name + "/x", name + "/y", name + "/z"};
 }
 
-std::vector<std::string> numbered(const std::string& before,
-                                  std::size_t first,
-                                  std::size_t last,
-                                  const std::string& after) {
+/// pole_1/gain, pole_2/gain and so on.
+std::vector<std::string> gainNames(const std::string& of, std::size_t first, std::size_t last) {
   std::vector<std::string> names;
   for (std::size_t n = first; n <= last; ++n) {
-    names.push_back(before + std::to_string(n) + after);
+    std::string name = of;
+    name += std::to_string(n);
+    names.push_back(name.append("/gain"));
   }
   return names;
 }
@@ -60,17 +60,17 @@ Eigen::MatrixXd chebyshevShapes(const TorqueCurveDescription& curve) {
   const auto count = static_cast<Eigen::Index>(curve.coefficients.size());
   const double slope = 2.0 / curve.support_begin;
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(count, count);
-  const auto timesT = [&](Eigen::Index n) {
+  const auto times_t = [&](Eigen::Index n) {
     Eigen::VectorXd product = -shapes.col(n);
     product.tail(count - 1) += slope * shapes.col(n).head(count - 1);
     return product;
   };
   shapes(0, 0) = 1.0;
   if (count > 1) {
-    shapes.col(1) = timesT(0);
+    shapes.col(1) = times_t(0);
   }
   for (Eigen::Index n = 1; n + 1 < count; ++n) {
-    shapes.col(n + 1) = 2.0 * timesT(n) - shapes.col(n - 1);
+    shapes.col(n + 1) = 2.0 * times_t(n) - shapes.col(n - 1);
   }
   return peakOf(TorqueCurve(curve)) * shapes;
 }
@@ -103,15 +103,13 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
     add(Effect::kStrengthScale, {"strength_scale"}, 1.0);
   }
   if (selection.has(Effect::kPoleGains)) {
-    add(Effect::kPoleGains, numbered("pole_", 1, nominal.poles.size(), "/gain"), 1.0);
+    add(Effect::kPoleGains, gainNames("pole_", 1, nominal.poles.size()), 1.0);
   }
   if (selection.has(Effect::kCoilGains)) {
     const bool is_relative =
         selection.has(Effect::kPoleGains) || selection.has(Effect::kStrengthScale);
     coils_without_gain_ = is_relative ? 1 : 0;
-    add(Effect::kCoilGains,
-        numbered("coil_", 1 + coils_without_gain_, nominal.coils.size(), "/gain"),
-        1.0);
+    add(Effect::kCoilGains, gainNames("coil_", 1 + coils_without_gain_, nominal.coils.size()), 1.0);
   }
   if (selection.has(Effect::kEncoderHarmonics)) {
     add(Effect::kEncoderHarmonics,

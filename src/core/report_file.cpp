@@ -3,6 +3,8 @@
 #include <optional>
 #include <sstream>
 
+#include "spherical_actuator_calibration/core/model_choice.hpp"
+#include "spherical_actuator_calibration/core/sample_influence.hpp"
 #include "spherical_actuator_calibration/core/yaml_writer.hpp"
 
 namespace spherical_actuator_calibration {
@@ -131,6 +133,45 @@ void writeOrigin(ReportWriter& writer,
   writer.list(1, "source", sources);
 }
 
+/// Of the observations of the last cycle, where it succeeded.
+void writeInfluences(ReportWriter& writer, const CalibrationSession& session) {
+  if (session.reports().empty()) {
+    return;
+  }
+  std::vector<std::string> lines;
+  for (const SampleInfluence& influence : sampleInfluences(session.model(),
+                                                           session.samples(),
+                                                           session.reports().back(),
+                                                           session.state(),
+                                                           session.config().estimation)) {
+    YamlLine line;
+    line.add("id", std::to_string(influence.id));
+    line.add("quantity", influence.quantity == Quantity::kOrientation ? "orientation" : "torque");
+    line.add("leverage", yamlNumber(influence.leverage));
+    line.add("largest_shift", yamlNumber(influence.largest_shift));
+    line.add("parameter", influence.parameter);
+    lines.push_back(line.text());
+  }
+  writer.list(1, "influences", lines);
+}
+
+void writeModelChoice(ReportWriter& writer, const CalibrationSession& session) {
+  std::vector<std::string> lines;
+  for (const ModelFit& fit : compareEffects(session.start(), session.samples(), session.config())) {
+    YamlLine line;
+    line.add("effects", yamlText(fit.effects));
+    line.add("converged", truthText(fit.converged));
+    line.add("parameters", std::to_string(fit.parameters));
+    line.add("chi_square", yamlNumber(fit.chi_square));
+    line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
+    line.add("bic", yamlNumber(fit.bic));
+    lines.push_back(line.text());
+  }
+  if (!lines.empty()) {
+    writer.list(1, "model_choice", lines);
+  }
+}
+
 }  // namespace
 
 std::string renderReport(const CalibrationSession& session,
@@ -158,6 +199,8 @@ std::string renderReport(const CalibrationSession& session,
     writeValidation(writer, *validation);
   }
   writer.list(1, "parameters", estimateLines(session.parameters(), false));
+  writeInfluences(writer, session);
+  writeModelChoice(writer, session);
   return writer.text();
 }
 

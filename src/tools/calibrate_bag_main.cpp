@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/core/description_file.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/core/model_choice.hpp"
 #include "spherical_actuator_calibration/core/report_file.hpp"
 #include "spherical_actuator_calibration/core/urdf_file.hpp"
 #include "spherical_actuator_calibration/ros/file_checksum.hpp"
@@ -150,6 +151,11 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
     std::cout << validationParagraph(*validation);
   }
   std::cout << "\n" << parameterTable(session, truth);
+  std::cout << influenceParagraph(session);
+  for (const std::string& line :
+       describe(compareEffects(session.start(), session.samples(), session.config()))) {
+    std::cout << line << "\n";
+  }
   const std::vector<std::string> open = session.openParameters();
   if (!open.empty()) {
     std::cout << "Not observable, left as they were:";

@@ -1,10 +1,12 @@
 #include "calibration_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "spherical_actuator_calibration/core/sample_influence.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -137,6 +139,28 @@ std::string cycleParagraph(const CycleReport& report) {
     }
   }
   return text;
+}
+
+std::string influenceParagraph(const CalibrationSession& session) {
+  const std::vector<SampleInfluence> influences = sampleInfluences(session.model(),
+                                                                   session.samples(),
+                                                                   session.reports().back(),
+                                                                   session.state(),
+                                                                   session.config().estimation);
+  if (influences.empty()) {
+    return {};
+  }
+  const auto most = std::max_element(
+      influences.begin(), influences.end(), [](const SampleInfluence& a, const SampleInfluence& b) {
+        return a.largest_shift < b.largest_shift;
+      });
+  return format(
+      "Most influential: the %s of sample %u; without it %s would move by %.2g of its "
+      "standard deviations.\n",
+      most->quantity == Quantity::kOrientation ? "orientation" : "torque",
+      most->id,
+      most->parameter.c_str(),
+      most->largest_shift);
 }
 
 std::string validationParagraph(const HeldOutValidation& validation) {

@@ -12,6 +12,9 @@ namespace spherical_actuator_calibration {
 /// One cycle for people: its message, errors of all iterations, misfit, rejected samples.
 std::string cycleParagraph(const CycleReport& report);
 
+/// The observation that moves the result of the last cycle most; empty when that one failed.
+std::string influenceParagraph(const CalibrationSession& session);
+
 /// How the held-out samples agree.
 std::string validationParagraph(const HeldOutValidation& validation);
 
