@@ -103,6 +103,7 @@ class BadDay(unittest.TestCase):
         self.assertEqual(self.client.held(), held)
         self.assertEqual(self.client.revision(), revision)
         self.assertTrue(self.node.alive())
+        self.assertTrue(self.client.latest("status").next_step)
 
     # -- streams -------------------------------------------------------------------------------------
 

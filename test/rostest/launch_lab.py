@@ -1,0 +1,95 @@
+#!/usr/bin/python3
+"""lab.launch starts what is there, puts the parameters where the nodes look for them, and records."""
+
+import glob
+import os
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
+from geometry_msgs.msg import PoseStamped, QuaternionStamped
+from launch_client import Launch, launch_file, missing_programs, nodes_of
+
+NODES = ["calibration", "coil_driver", "joint_sensor", "tracker_bridge"]
+RECORDED = {"measured_orientation", "parameters", "status", "tracker/pose"}
+REGISTRATION = "0 0 0.1 0 0 0 1"
+
+
+def names(nodes):
+    return sorted(node.name for node in nodes)
+
+
+class LaunchLab(unittest.TestCase):
+    def test_every_program_is_there(self):
+        nodes = nodes_of(
+            launch_file("lab.launch"),
+            record=True,
+            stator_tracker=REGISTRATION,
+            rotor_marker=REGISTRATION,
+            rotor_ft_sensor=REGISTRATION,
+        )
+        expected = NODES + ["record", "rotor_ft_sensor", "rotor_marker", "stator_tracker"]
+        self.assertEqual(names(nodes), sorted(expected))
+        self.assertEqual(missing_programs(nodes), [])
+
+    def test_arguments_choose_what_is_started(self):
+        path = launch_file("lab.launch")
+        self.assertEqual(names(nodes_of(path)), NODES)
+        self.assertEqual(names(nodes_of(path, drivers=False)), ["calibration", "tracker_bridge"])
+        self.assertIn("rviz", names(nodes_of(path, rviz=True)))
+        self.assertEqual({node.namespace for node in nodes_of(path, ns="second")}, {"/second/"})
+
+    def test_runs_and_records(self):
+        with tempfile.TemporaryDirectory() as folder:
+            launch = Launch(
+                launch_file("lab.launch"),
+                environment={"ROS_HOME": folder},
+                drivers=False,
+                record=True,
+                frame_prefix="unit_1/",
+                stator_tracker=REGISTRATION,
+                rotor_marker=REGISTRATION,
+            )
+            self.addCleanup(launch.stop)
+            self.check_session()
+            launch.stop()
+            self.check_recording(os.path.join(folder, PACKAGE, "unit-001"))
+
+    def check_session(self):
+        client = CalibrationClient()
+        wait_for(lambda: client.latest("status"), "status")
+        self.assertEqual(client.latest("parameters").header.frame_id, "unit_1/stator")
+        measured = []
+        rospy.Subscriber(f"{NAMESPACE}/measured_orientation", QuaternionStamped, measured.append)
+        poses = rospy.Publisher(f"{NAMESPACE}/tracker/pose", PoseStamped, queue_size=10)
+        # The bridge, and the recorder.
+        wait_for(lambda: poses.get_num_connections() == 2, "subscribers of the tracker")
+        message = PoseStamped()
+        message.header.frame_id = "unit_1/tracker"
+        message.pose.orientation.w = 1.0
+
+        def is_measured():
+            message.header.stamp = rospy.Time.now()
+            poses.publish(message)
+            return measured
+
+        wait_for(is_measured, "measured orientation")
+        self.assertEqual(measured[0].header.frame_id, "unit_1/stator")
+
+    def check_recording(self, directory):
+        self.assertTrue(os.path.exists(os.path.join(directory, "session.db")))
+        bags = glob.glob(os.path.join(directory, "recordings", "session_*.bag"))
+        self.assertEqual(len(bags), 1, os.listdir(directory))
+        with rosbag.Bag(bags[0]) as bag:
+            recorded = set(bag.get_type_and_topic_info().topics)
+        self.assertLessEqual({f"{NAMESPACE}/{stream}" for stream in RECORDED}, recorded)
+        self.assertIn("/tf_static", recorded)
+
+
+if __name__ == "__main__":
+    rospy.init_node("launch_lab_test")
+    rostest.rosrun(PACKAGE, "launch_lab", LaunchLab, sys.argv)
