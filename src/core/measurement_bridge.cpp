@@ -50,7 +50,7 @@ OrientationMeasurement MeasurementBridge::orientation(const MarkerPoseMeasuremen
   Registration registration;
   registration.X_stator_tracker = X_stator_tracker;
   registration.X_rotor_marker = X_rotor_marker;
-  const OrientationMeasurement orientation = orientationFromMarkerPose(registration, pose);
+  OrientationMeasurement orientation = orientationFromMarkerPose(registration, pose);
   const Eigen::Quaterniond q_stator_rotor = orientation.q_stator_rotor.normalized();
   if (!jumps_.judge(pose.stamp, q_stator_rotor)) {
     throw DataError(

@@ -6,7 +6,7 @@
 namespace spherical_actuator_calibration {
 
 CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
-  const std::string name = private_node.getNamespace();
+  const std::string& name = private_node.getNamespace();
   const YamlMap map = YamlMap::parse(privateParameterText(private_node), name);
   CalibrationNodeOptions options;
   options.calibration = readCalibrationConfig(map, name);

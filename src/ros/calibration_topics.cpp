@@ -7,16 +7,19 @@
 #include "spherical_actuator_calibration/ros/time_conversion.hpp"
 
 namespace spherical_actuator_calibration {
+namespace {
+
+constexpr bool kLatched = true;
+constexpr std::uint32_t kQueueLength = 1000;
+
+}  // namespace
 
 CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
-    : frame_(std::move(frame)) {
-  constexpr bool kLatched = true;
-  parameters_ = node.advertise<ActuatorParameters>("parameters", 1, kLatched);
-  report_ = node.advertise<CalibrationReport>("report", 1, kLatched);
-  status_ = node.advertise<CalibrationStatus>("status", 1, kLatched);
-  constexpr std::uint32_t kQueueLength = 1000;
-  samples_ = node.advertise<CalibrationSample>("samples", kQueueLength);
-}
+    : frame_(std::move(frame)),
+      parameters_(node.advertise<ActuatorParameters>("parameters", 1, kLatched)),
+      report_(node.advertise<CalibrationReport>("report", 1, kLatched)),
+      status_(node.advertise<CalibrationStatus>("status", 1, kLatched)),
+      samples_(node.advertise<CalibrationSample>("samples", kQueueLength)) {}
 
 void CalibrationTopics::publishParameters(const LiveSession& session) {
   ActuatorParameters message = parametersToRos(session.actuator());

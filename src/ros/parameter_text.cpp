@@ -23,11 +23,17 @@ std::string sequenceText(const XmlRpcValue& value, const std::string& key) {
   return "[" + text + "]";
 }
 
+std::string nestedKey(const std::string& key, const std::string& name) {
+  return key + "/" + name;
+}
+
 std::string mapText(const XmlRpcValue& value, const std::string& key) {
   std::string text;
   for (const auto& [name, entry] : value) {
-    text +=
-        (text.empty() ? "" : ", ") + quoted(name) + ": " + yamlOfParameter(entry, key + "/" + name);
+    text += text.empty() ? "" : ", ";
+    text += quoted(name);
+    text += ": ";
+    text += yamlOfParameter(entry, nestedKey(key, name));
   }
   return "{" + text + "}";
 }

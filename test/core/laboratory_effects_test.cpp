@@ -25,7 +25,6 @@ using Effect = LaboratoryEffect;
 
 constexpr double kOrientationNoise = 1e-3;
 constexpr double kTorqueNoise = 5e-4;
-constexpr double kCurrent = 2.0;
 
 EffectSelection only(const std::vector<Effect>& effects) {
   EffectSelection selection;
@@ -139,7 +138,7 @@ Actuator madeUnit(scenarios::Generator& generator) {
 /// One hundred sessions with the effect modelled reach the bound of that model with intervals that
 /// hold; with the effect ignored the result is visibly wrong.
 template <typename MakeCase>
-void expectModelledAtTheBound(const EffectSelection& effects, MakeCase makeCase) {
+void expectModelledAtTheBound(const EffectSelection& effects, MakeCase make_case) {
   constexpr int kTrials = 100;
   constexpr int kIgnoredTrials = 10;
   EffectTrials modelled(effects);
@@ -148,7 +147,7 @@ void expectModelledAtTheBound(const EffectSelection& effects, MakeCase makeCase)
     scenarios::Generator generator(static_cast<std::uint64_t>(seed));
     const Actuator geometry = madeUnit(generator);
     std::vector<double> values;
-    const std::vector<Sample> samples = makeCase(geometry, generator, values);
+    const std::vector<Sample> samples = make_case(geometry, generator, values);
     modelled.add(geometry, samples, values);
     if (seed <= kIgnoredTrials) {
       ignored.add(geometry, samples, {});

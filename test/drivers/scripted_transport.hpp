@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -61,10 +62,8 @@ class ScriptedTransport : public ModbusTransport {
   std::vector<std::uint16_t> read(int unit, RegisterTable table, int address, int count) override {
     request();
     ++reads_;
-    std::vector<std::uint16_t> words;
-    for (int n = 0; n < count; ++n) {
-      words.push_back(at(unit, table, address + n));
-    }
+    std::vector<std::uint16_t> words(static_cast<std::size_t>(count));
+    std::generate(words.begin(), words.end(), [&] { return at(unit, table, address++); });
     return words;
   }
 
