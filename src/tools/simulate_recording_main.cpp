@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/core/session_plan.hpp"
+#include "spherical_actuator_calibration/core/session_plan_file.hpp"
 #include "spherical_actuator_calibration/core/session_simulator.hpp"
 #include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
 
@@ -37,6 +38,11 @@ Actuator truthOf(const Actuator& nominal, const SimulateRecordingOptions& option
   Actuator truth = loadActuator(*options.truth_in_path);
   requireSameDesign(nominal, truth);
   return truth;
+}
+
+SessionPlan planOf(const Actuator& nominal, const SimulateRecordingOptions& options) {
+  return options.plan_path ? sessionOf(loadSessionPlan(*options.plan_path), nominal)
+                           : planSession(nominal, options.plan, options.simulation.seed);
 }
 
 /// Nothing is simulated for a file that could not be written in the end.
@@ -70,7 +76,7 @@ void printSummary(const SimulateRecordingOptions& options,
 void simulateRecording(const SimulateRecordingOptions& options) {
   const Actuator nominal = loadActuator(options.actuator_path);
   const Actuator truth = truthOf(nominal, options);
-  const SessionPlan plan = planSession(nominal, options.plan, options.simulation.seed);
+  const SessionPlan plan = planOf(nominal, options);
   requireNewFile(options.output_path, options.bag.overwrite);
   requireNewFile(options.truth_path, options.bag.overwrite);
 

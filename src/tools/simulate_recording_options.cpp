@@ -30,6 +30,7 @@ constexpr char kIntroduction[] =
 /// Options that need a translation before they enter the structs.
 struct RawValues {
   std::string truth_in;
+  std::string plan_path;
   std::uint64_t seed = 0;
   std::size_t main_coil = 0;
   std::size_t tracker_poses = 0;
@@ -96,6 +97,10 @@ po::options_description truthOptions(SimulateRecordingOptions& options, RawValue
 po::options_description planOptions(SimulateRecordingOptions& options, RawValues& raw) {
   po::options_description group("Session");
   SessionPlanOptions& plan = options.plan;
+  group.add_options()("plan",
+                      po::value(&raw.plan_path)->value_name("YAML"),
+                      "session planned by plan_session; takes the place of all options below, "
+                      "except tracker-poses");
   group.add_options()("joint-poses", stored(plan.joint_poses, "N"), "poses without current");
   group.add_options()("main-coil",
                       stored(raw.main_coil, "J"),
@@ -229,6 +234,23 @@ void applyStreamDefects(const RawValues& raw, SimulationOptions& simulation) {
   simulation.wrench_sensor.stream.glitches = raw.glitches;
 }
 
+/// A session that is planned already has no room for other wishes.
+void requireNoOtherPlan(const po::variables_map& given) {
+  for (const char* option : {"joint-poses",
+                             "main-coil",
+                             "main-coil-poses",
+                             "coil-poses",
+                             "coils-per-dwell",
+                             "validation-poses",
+                             "current",
+                             "joint-tilt",
+                             "torque-tilt"}) {
+    if (!given[option].defaulted()) {
+      throw ConfigError("--" + std::string(option) + " has no meaning beside --plan.");
+    }
+  }
+}
+
 void apply(const RawValues& raw,
            const po::variables_map& given,
            SimulateRecordingOptions& options) {
@@ -242,6 +264,10 @@ void apply(const RawValues& raw,
   }
   if (given.count("truth-in") != 0) {
     options.truth_in_path = raw.truth_in;
+  }
+  if (given.count("plan") != 0) {
+    requireNoOtherPlan(given);
+    options.plan_path = raw.plan_path;
   }
   if (given.count("truth-out") == 0) {
     options.truth_path = besideRecording(options.output_path);

@@ -19,6 +19,7 @@ struct SimulateRecordingOptions {
   std::string truth_path;                    ///< where the truth is written
   std::optional<std::string> truth_in_path;  ///< a given truth, instead of a drawn one
   SessionPlanOptions plan;
+  std::optional<std::string> plan_path;  ///< a planned session, instead of `plan`
   ManufacturingErrors errors;
   SimulationOptions simulation;
   SessionBagOptions bag;

@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plan_session_options.hpp"
+#include "spherical_actuator_calibration/core/calibration_session.hpp"
+#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/sample_file.hpp"
+#include "spherical_actuator_calibration/core/session_plan_file.hpp"
+#include "spherical_actuator_calibration/ros/recording_reader.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr int kSuccess = 0;
+constexpr int kUnusable = 2;
+
+/// Samples measured already, of all files.
+std::vector<Sample> heldSamples(const PlanSessionOptions& options,
+                                const Actuator& actuator,
+                                const CalibrationConfig& config) {
+  std::vector<Sample> samples;
+  if (!options.bags.empty()) {
+    RecordingOptions reading;
+    reading.ns = options.ns;
+    reading.frames = config.frames;
+    reading.samples = config.samples;
+    samples = readRecordings(options.bags, actuator, reading).samples;
+  }
+  if (options.samples_path) {
+    std::vector<Sample> more = loadSamples(*options.samples_path, actuator.coils.size());
+    samples.insert(
+        samples.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      samples[n].id = static_cast<std::uint32_t>(n + 1);
+    }
+  }
+  return samples;
+}
+
+/// Parameters that the samples held give, as far as they do.
+CalibrationState stateFrom(CalibrationSession& session) {
+  for (const CycleRequest& request :
+       possibleCycles(session.model(), session.samples(), session.config().estimation)) {
+    session.run(request);
+  }
+  return session.state();
+}
+
+/// The cycles that come before the planned one will have been run by then; those that were not yet
+/// count as exact.
+void assumeEarlierCycles(const CalibrationModel& model,
+                         const CycleRequest& request,
+                         CalibrationState& state) {
+  if (request.cycle != Cycle::kPoles && request.cycle != Cycle::kCoil) {
+    return;
+  }
+  const ParameterSpace& space = model.space();
+  const Eigen::Index last = request.cycle == Cycle::kPoles ? space.pole(0) : space.coil(0);
+  for (Eigen::Index p = 0; p < last; ++p) {
+    const auto place = static_cast<std::size_t>(p);
+    if (!state.identified[place]) {
+      state.identified[place] = true;
+      state.belief.covariance.row(p).setZero();
+      state.belief.covariance.col(p).setZero();
+    }
+  }
+}
+
+SessionPlanRecord recordOf(const PlanSessionOptions& options,
+                           const Actuator& actuator,
+                           std::size_t samples_held,
+                           PosePlan plan) {
+  SessionPlanRecord record;
+  record.actuator = actuator.name;
+  record.serial = actuator.serial;
+  record.software = PACKAGE_VERSION;
+  record.cycle = cycleText(options.cycle);
+  record.current = options.plan.current;
+  record.tracker_on = options.plan.tracker_on;
+  record.joint_stddev = options.plan.joint_stddev;
+  record.orientation_stddev = options.plan.orientation_stddev;
+  record.torque_stddev = options.plan.torque_stddev;
+  record.samples_held = samples_held;
+  record.plan = std::move(plan);
+  return record;
+}
+
+void printPlan(const PosePlan& plan) {
+  for (std::size_t n = 0; n < plan.poses.size(); ++n) {
+    const PlannedPose& pose = plan.poses[n];
+    const Eigen::Vector3d& q = pose.joint_position;
+    std::printf("%3zu  joints %7.3f %7.3f %7.3f rad  coils", n + 1, q[0], q[1], q[2]);
+    for (const std::size_t coil : pose.coils) {
+      std::printf(" %zu", coil);
+    }
+    std::printf("%s\n", pose.coils.empty() ? " none" : "");
+  }
+  const std::ptrdiff_t open = std::count_if(
+      plan.expected.begin(), plan.expected.end(), [](const auto& e) { return !e.observable; });
+  std::printf("%s\n%zu parameters, of which %td stay open; travel %.1f rad\n",
+              plan.message.c_str(),
+              plan.expected.size(),
+              open,
+              plan.travel);
+}
+
+void writePlan(const PlanSessionOptions& options) {
+  if (options.overwrite == OverwritePolicy::kRefuse &&
+      std::filesystem::exists(options.output_path)) {
+    throw DataError(options.output_path +
+                    ": the file exists already; choose another name or give --force.");
+  }
+  const CalibrationConfig config =
+      options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
+  const CalibratedDescription start = loadDescription(options.actuator_path);
+  CalibrationSession session(start, heldSamples(options, start.actuator, config), config);
+
+  PlanningProblem problem;
+  problem.model = &session.model();
+  problem.held = &session.samples();
+  problem.request = options.cycle;
+  problem.estimation = session.config().estimation;
+  problem.state = stateFrom(session);
+  assumeEarlierCycles(session.model(), options.cycle, problem.state);
+  PosePlan plan = planPoses(problem, options.plan);
+  if (!plan.success) {
+    throw DataError(plan.message);
+  }
+  printPlan(plan);
+  const SessionPlanRecord record =
+      recordOf(options, start.actuator, session.samples().size(), std::move(plan));
+  writeFileAtomically(options.output_path, renderSessionPlan(record), options.overwrite);
+  std::printf("Plan: %s\n", options.output_path.c_str());
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
+
+int main(int argc, char** argv) {
+  namespace sac = spherical_actuator_calibration;
+  try {
+    const auto options = sac::parsePlanSessionOptions(argc, argv, std::cout);
+    if (options) {
+      sac::writePlan(*options);
+    }
+    return sac::kSuccess;
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "plan_session: %s\n", error.what());
+    return sac::kUnusable;
+  }
+}
