@@ -149,6 +149,7 @@ void writeInfluences(ReportWriter& writer, const CalibrationSession& session) {
     line.add("quantity", influence.quantity == Quantity::kOrientation ? "orientation" : "torque");
     line.add("leverage", yamlNumber(influence.leverage));
     line.add("largest_shift", yamlNumber(influence.largest_shift));
+    line.add("irreplaceable", influence.irreplaceable ? "true" : "false");
     line.add("parameter", influence.parameter);
     lines.push_back(line.text());
   }

@@ -1,9 +1,10 @@
 #include "spherical_actuator_calibration/core/sample_influence.hpp"
 
-#include <cmath>
+#include <optional>
 #include <set>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "spherical_actuator_calibration/core/linearization.hpp"
 
@@ -75,6 +76,32 @@ std::vector<Whitened> whitenedObservations(const EstimationProblem& problem,
   return used;
 }
 
+/// An observation as the fit without it sees it.
+struct LeftOut {
+  double leverage = 0.0;
+  Eigen::Vector3d predicted_residual;  ///< (I − H)⁻¹ r, where other observations predict it
+  std::optional<Eigen::Vector3d> sole_direction;  ///< that no other observation predicts
+};
+
+LeftOut leaveOut(const Eigen::Matrix3d& hat, const Eigen::Vector3d& residual) {
+  // A standard deviation that would grow a thousandfold is no prediction.
+  constexpr double kSmallestCheck = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (hat + hat.transpose()));
+  LeftOut result;
+  result.leverage = hat.trace() / 3.0;
+  result.predicted_residual.setZero();
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d direction = eigen.eigenvectors().col(k);
+    const double check = 1.0 - eigen.eigenvalues()[k];
+    if (check < kSmallestCheck) {
+      result.sole_direction = direction;
+    } else {
+      result.predicted_residual += direction * (direction.dot(residual) / check);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
@@ -107,15 +134,20 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
   influences.reserve(used.size());
   for (const Whitened& item : used) {
     const Eigen::MatrixXd gain = covariance * item.jacobian.transpose();
-    const Eigen::Matrix3d hat = item.jacobian * gain;
-    const Eigen::Matrix3d checked = Eigen::Matrix3d::Identity() - hat;
-    const Eigen::VectorXd shift = gain * checked.ldlt().solve(item.residual);
+    const LeftOut left_out = leaveOut(item.jacobian * gain, item.residual);
+    const auto largest = [&stddevs](const Eigen::VectorXd& change, Eigen::Index& place) {
+      return change.cwiseAbs().cwiseQuotient(stddevs).maxCoeff(&place);
+    };
     SampleInfluence influence;
     influence.id = samples[problem.observations[item.observation].sample].id;
     influence.quantity = problem.observations[item.observation].quantity;
-    influence.leverage = hat.trace() / 3.0;
+    influence.leverage = left_out.leverage;
     Eigen::Index worst = 0;
-    influence.largest_shift = shift.cwiseAbs().cwiseQuotient(stddevs).maxCoeff(&worst);
+    influence.largest_shift = largest(gain * left_out.predicted_residual, worst);
+    influence.irreplaceable = left_out.sole_direction.has_value();
+    if (left_out.sole_direction) {
+      largest(gain * *left_out.sole_direction, worst);
+    }
     influence.parameter = model.space().name(coordinates[static_cast<std::size_t>(worst)]);
     influences.push_back(influence);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <vector>
 
@@ -57,6 +58,27 @@ std::string rejectedLine(const SampleResidual& residual) {
   return format("  rejected: sample %u, ", residual.id) +
          (residual.quantity == Quantity::kOrientation ? "orientation" : "torque") + ": " +
          residual.reason + "\n";
+}
+
+/// "torque of sample 53"
+std::string observationName(const SampleInfluence& influence) {
+  return format("%s of sample %u",
+                influence.quantity == Quantity::kOrientation ? "orientation" : "torque",
+                influence.id);
+}
+
+/// Names one of the samples that nothing checks.
+std::string irreplaceableSentence(const std::vector<SampleInfluence>& influences) {
+  const auto is_sole = [](const SampleInfluence& influence) { return influence.irreplaceable; };
+  const auto first = std::find_if(influences.begin(), influences.end(), is_sole);
+  if (first == influences.end()) {
+    return {};
+  }
+  return format(
+      "%td measurements are irreplaceable: without the %s, for one, %s could not be told.\n",
+      std::count_if(influences.begin(), influences.end(), is_sole),
+      observationName(*first).c_str(),
+      first->parameter.c_str());
 }
 
 struct Row {
@@ -155,12 +177,12 @@ std::string influenceParagraph(const CalibrationSession& session) {
         return a.largest_shift < b.largest_shift;
       });
   return format(
-      "Most influential: the %s of sample %u; without it %s would move by %.2g of its "
-      "standard deviations.\n",
-      most->quantity == Quantity::kOrientation ? "orientation" : "torque",
-      most->id,
-      most->parameter.c_str(),
-      most->largest_shift);
+             "Most influential: the %s; without it %s would move by %.2g of its standard "
+             "deviations.\n",
+             observationName(*most).c_str(),
+             most->parameter.c_str(),
+             most->largest_shift) +
+         irreplaceableSentence(influences);
 }
 
 std::string validationParagraph(const HeldOutValidation& validation) {

@@ -80,6 +80,23 @@ TEST(SampleInfluence, LeveragesSumUpToTheNumberOfParameters) {
   EXPECT_NEAR(sum, 73.0, 1e-6);
 }
 
+TEST(SampleInfluence, NamesTheSampleThatNothingReplaces) {
+  std::vector<Sample> samples = paperSamples(4);
+  const auto excites_coil_7 = [](const Sample& sample) {
+    return sample.has_torque && sample.current[6] != 0.0;
+  };
+  const auto only = std::find_if(samples.begin(), samples.end(), excites_coil_7);
+  samples.erase(std::remove_if(only + 1, samples.end(), excites_coil_7), samples.end());
+
+  for (const SampleInfluence& influence : influencesOf(refined(samples))) {
+    EXPECT_EQ(influence.irreplaceable, influence.id == only->id) << influence.id;
+    EXPECT_LT(influence.largest_shift, 10.0) << influence.id;
+    if (influence.irreplaceable) {
+      EXPECT_EQ(influence.parameter.rfind("coil_7/", 0), 0U) << influence.parameter;
+    }
+  }
+}
+
 TEST(SampleInfluence, AFailedCycleHasNone) {
   CalibrationSession session({scenarios::paperNominal()}, {}, {});
   session.run({Cycle::kRefine, 0});

@@ -21,7 +21,10 @@ struct SampleInfluence {
   double leverage = 0.0;
   /// Largest change of a parameter, in its standard deviations, if the observation were left out.
   double largest_shift = 0.0;
-  std::string parameter;  ///< the one that changes most
+  /// Without it some parameter could not be told at all: nothing checks it there, and only the rest
+  /// of it shifts anything.
+  bool irreplaceable = false;
+  std::string parameter;  ///< the one that changes most, or that could not be told
 };
 
 /// Influence of every observation that a successful cycle used, by leave-one-out from one
