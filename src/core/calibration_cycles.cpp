@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/core/operator_advice.hpp"
+#include "spherical_actuator_calibration/core/unidentified_part.hpp"
 #include "spherical_actuator_calibration/core/workspace_uncertainty.hpp"
 
 namespace spherical_actuator_calibration {
@@ -139,6 +140,21 @@ std::string failure(const Estimate& estimate,
   return {};
 }
 
+/// Names what stays open across the parameters, and what to do about it; or empty.
+std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::size_t unknowns) {
+  if (open.empty()) {
+    return {};
+  }
+  std::string words = format(
+      " %zu of %zu directions identified; held at the prior:", unknowns - open.size(), unknowns);
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    words += k == 0 ? " " : ", ";
+    words += open[k].name;
+    words += format(" (± %.2g mrad)", 1e3 * open[k].stddev);
+  }
+  return words + ". Measure the orientation at 3 or more poses.";
+}
+
 std::vector<ParameterEstimate> parameterEstimates(const ParameterSpace& space,
                                                   const std::vector<Eigen::Index>& requested,
                                                   const std::vector<Eigen::Index>& unobservable,
@@ -196,6 +212,7 @@ std::string errorInWords(const CycleReport& report) {
 
 std::string successInWords(const CycleRequest& request,
                            const CycleReport& report,
+                           std::size_t unknowns,
                            const std::vector<std::string>& advice) {
   std::string words = cycleInWords(request) +
                       format(" calibrated from %u samples in %u iterations: ",
@@ -205,6 +222,7 @@ std::string successInWords(const CycleRequest& request,
   if (report.samples_rejected > 0) {
     words += format(" %u samples rejected as outliers.", report.samples_rejected);
   }
+  words += openDirectionsInWords(report.open_directions, unknowns);
   for (const std::string& sentence : advice) {
     words += " " + sentence;
   }
@@ -407,14 +425,27 @@ CycleOutcome runCycle(const CalibrationModel& model,
 
   fillReport(samples, problem.observations, estimate, report);
   report.success = true;
-  report.message = successInWords(request, report, advice);
+  report.open_directions =
+      nameOpenDirections(model.space(), estimate.open_directions, estimate.belief);
+  report.message =
+      successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice);
+  const std::vector<Eigen::Index> in_directions = coordinatesOf(estimate.open_directions);
+  std::vector<Eigen::Index> open;
+  std::set_union(unobservable.begin(),
+                 unobservable.end(),
+                 in_directions.begin(),
+                 in_directions.end(),
+                 std::back_inserter(open));
   report.estimates =
-      parameterEstimates(model.space(), requested, unobservable, state.belief, estimate.belief);
+      parameterEstimates(model.space(), requested, open, state.belief, estimate.belief);
   outcome.state.belief = estimate.belief;
   for (const Eigen::Index p : requested) {
-    if (!std::binary_search(unobservable.begin(), unobservable.end(), p)) {
+    if (!std::binary_search(open.begin(), open.end(), p)) {
       outcome.state.identified[static_cast<std::size_t>(p)] = true;
     }
+  }
+  for (const Eigen::Index p : in_directions) {
+    outcome.state.identified[static_cast<std::size_t>(p)] = false;
   }
   const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, outcome.state.belief);
   report.orientation_uncertainty = uncertainty.orientation;

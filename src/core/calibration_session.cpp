@@ -71,10 +71,18 @@ class StatedUncertainty {
 };
 
 CalibrationState startState(const ParameterSpace& space,
-                            const ParameterStddevs& stddevs,
+                            const CalibratedDescription& start,
                             const ManufacturingTolerance& tolerance) {
   CalibrationState state = nominalState(space, tolerance);
-  StatedUncertainty(space, state).enter(stddevs);
+  StatedUncertainty(space, state).enter(start.stddevs);
+  if (start.calibration) {
+    const std::vector<std::string>& open = start.calibration->unidentified;
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      if (std::find(open.begin(), open.end(), space.name(p)) != open.end()) {
+        state.identified[static_cast<std::size_t>(p)] = false;
+      }
+    }
+  }
   return state;
 }
 
@@ -113,8 +121,8 @@ CalibrationSession::CalibrationSession(CalibratedDescription start,
           std::move(samples), start_.actuator, validated(config))),
       config_(std::move(config)),
       model_(ParameterSpace(start_.actuator, config_.effects)),
-      state_(spherical_actuator_calibration::startState(
-          model_.space(), start_.stddevs, config_.tolerance)) {}
+      state_(
+          spherical_actuator_calibration::startState(model_.space(), start_, config_.tolerance)) {}
 
 CalibrationSession::CalibrationSession(CalibratedDescription start,
                                        std::vector<Sample> samples,
@@ -146,8 +154,7 @@ bool CalibrationSession::remove(std::uint32_t id) {
 }
 
 CalibrationState CalibrationSession::startState() const {
-  return spherical_actuator_calibration::startState(
-      model_.space(), start_.stddevs, config_.tolerance);
+  return spherical_actuator_calibration::startState(model_.space(), start_, config_.tolerance);
 }
 
 void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport> reports) {
@@ -222,9 +229,11 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   const auto moved = [this](Eigen::Index first, Eigen::Index count) {
     return !state_.belief.x.segment(first, count).isZero(0.0);
   };
-  const auto stddev = [&values](Eigen::Index at) {
+  // A value that moved has its uncertainty beside it, be it identified or only within an open
+  // direction.
+  const auto stddev = [&](Eigen::Index at) {
     const ParameterEstimate& estimate = values[static_cast<std::size_t>(at)];
-    return estimate.observable ? std::optional(estimate.stddev) : std::nullopt;
+    return estimate.observable || moved(at, 1) ? std::optional(estimate.stddev) : std::nullopt;
   };
 
   CalibratedDescription result = start_;

@@ -121,9 +121,7 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
   const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most)) + 1;
   requests.push_back({Cycle::kPoles, coil});
   requests.push_back({Cycle::kCoil, 0});
-  if (has_orientations) {
-    requests.push_back({Cycle::kRefine, 0});
-  }
+  requests.push_back({Cycle::kRefine, 0});
   return expandCoils(requests, model, samples, options);
 }
 

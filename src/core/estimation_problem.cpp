@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/core/linearization.hpp"
 #include "spherical_actuator_calibration/core/normal_equations.hpp"
 #include "spherical_actuator_calibration/core/observability.hpp"
+#include "spherical_actuator_calibration/core/unidentified_part.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -65,11 +66,12 @@ class Estimator {
   Estimate run();
 
  private:
-  void setFree(const std::vector<Eigen::Index>& weak);
+  void setFree(const UnidentifiedPart& part);
   bool updateWeights(const Eigen::VectorXd& x);
   NormalEquations normalEquations(const Eigen::VectorXd& x,
                                   const std::vector<Eigen::Index>& coordinates) const;
-  std::vector<Eigen::Index> weakCoordinates(const Eigen::VectorXd& x) const;
+  UnidentifiedPart unidentifiedAt(const Eigen::VectorXd& x) const;
+  Eigen::MatrixXd priorInformation() const;
   LeastSquaresResult solve(const Eigen::VectorXd& start, Loss loss, double transition);
   std::vector<double> whitenedSquares(const Eigen::VectorXd& x) const;
   bool solveWithoutOutliers();
@@ -102,6 +104,7 @@ class Estimator {
   std::vector<bool> active_;
   std::vector<bool> free_;
   std::vector<Eigen::Index> estimated_;
+  LinearPrior prior_;               ///< of the directions that are held
   Eigen::MatrixXd inverse_;         ///< F×F: inverse information of estimated_
   Eigen::MatrixXd own_covariance_;  ///< F×F: of estimated_, from stated noise and held coordinates
   Eigen::MatrixXd with_held_;       ///< F×P: between estimated_ and held coordinates
@@ -110,8 +113,10 @@ class Estimator {
   Estimate result_;
 };
 
-/// Chooses the coordinates to estimate: the free ones of the problem without the weak ones.
-void Estimator::setFree(const std::vector<Eigen::Index>& weak) {
+/// Chooses the coordinates to estimate, the free ones of the problem without those held whole, and
+/// the prior of the directions that are held.
+void Estimator::setFree(const UnidentifiedPart& part) {
+  const std::vector<Eigen::Index>& weak = part.coordinates;
   estimated_.clear();
   std::set_difference(problem_.free.begin(),
                       problem_.free.end(),
@@ -122,6 +127,9 @@ void Estimator::setFree(const std::vector<Eigen::Index>& weak) {
   for (const Eigen::Index parameter : estimated_) {
     free_[static_cast<std::size_t>(parameter)] = true;
   }
+  prior_.directions = part.directions;
+  prior_.mean = part.directions.transpose() * problem_.prior.x;
+  prior_.covariance = part.directions.transpose() * problem_.prior.covariance * part.directions;
 }
 
 /// Recomputes whitening_ at x. Returns whether it changed noticeably.
@@ -147,15 +155,17 @@ NormalEquations Estimator::normalEquations(const Eigen::VectorXd& x,
   return accumulateNormalEquations({&evaluator_, &whitening_, active_}, x, coordinates);
 }
 
-/// Free coordinates of the problem that the active observations leave open at x.
-std::vector<Eigen::Index> Estimator::weakCoordinates(const Eigen::VectorXd& x) const {
+/// What the active observations leave open of the free coordinates of the problem, at x.
+UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x) const {
   const NormalEquations normal = normalEquations(x, problem_.free);
-  std::vector<Eigen::Index> weak;
-  for (const Eigen::Index k :
-       judgeInformation(normal.information, options_.unobservable_stddev).weak) {
-    weak.push_back(problem_.free[static_cast<std::size_t>(k)]);
-  }
-  return weak;
+  return unidentifiedPart(
+      normal.information, problem_.free, problem_.model->space(), options_.unobservable_stddev);
+}
+
+/// F×F: what the prior of held directions tells of the estimated coordinates.
+Eigen::MatrixXd Estimator::priorInformation() const {
+  const Eigen::MatrixXd directions = prior_.directions(estimated_, Eigen::all);
+  return directions * prior_.covariance.ldlt().solve(directions.transpose());
 }
 
 /// One least-squares solution over the active observations; its path is kept for the error history.
@@ -167,6 +177,7 @@ LeastSquaresResult Estimator::solve(const Eigen::VectorXd& start, Loss loss, dou
   input.active = active_;
   input.free = free_;
   input.start = start;
+  input.prior = prior_;
   input.loss = loss;
   input.loss_transition = transition;
   input.max_iterations = options_.max_iterations;
@@ -270,12 +281,16 @@ bool Estimator::solveWithoutOutliers() {
 
 Estimate Estimator::run() {
   constexpr int kFreeRounds = 2;
-  setFree({});
+  UnidentifiedPart open;
+  open.directions.resize(problem_.prior.x.size(), 0);
+  setFree(open);
   updateWeights(problem_.prior.x);
   result_.belief = problem_.prior;
-  result_.unobservable = weakCoordinates(problem_.prior.x);
+  open = unidentifiedAt(problem_.prior.x);
   for (int round = 0;; ++round) {
-    setFree(result_.unobservable);
+    setFree(open);
+    result_.unobservable = open.coordinates;
+    result_.open_directions = open.directions;
     if (estimated_.empty()) {
       result_.termination = Termination::kNothingObservable;
       return result_;
@@ -285,20 +300,21 @@ Estimate Estimator::run() {
     }
     // The solution may see what the prior did not, and the other way round. Should the two views
     // not agree soon, what either calls weak stays at the prior, and the set can only grow.
-    std::vector<Eigen::Index> weak = weakCoordinates(x_);
+    UnidentifiedPart seen = unidentifiedAt(x_);
+    const bool same_directions = seen.directions.cols() == open.directions.cols();
     if (round >= kFreeRounds) {
       std::vector<Eigen::Index> either;
-      std::set_union(weak.begin(),
-                     weak.end(),
-                     result_.unobservable.begin(),
-                     result_.unobservable.end(),
+      std::set_union(seen.coordinates.begin(),
+                     seen.coordinates.end(),
+                     open.coordinates.begin(),
+                     open.coordinates.end(),
                      std::back_inserter(either));
-      weak = std::move(either);
+      seen.coordinates = std::move(either);
     }
-    if (weak == result_.unobservable) {
+    if (seen.coordinates == open.coordinates && (same_directions || round >= kFreeRounds)) {
       break;
     }
-    result_.unobservable = std::move(weak);
+    open = std::move(seen);
   }
   concludeChiSquare();
   concludeCovariance();
@@ -315,7 +331,8 @@ void Estimator::concludeChiSquare() {
     chi_square += active_[n] ? squares[n] : 0.0;
   }
   result_.degrees_of_freedom =
-      kComponents * static_cast<int>(activeCount()) - static_cast<int>(estimated_.size());
+      kComponents * static_cast<int>(activeCount()) -
+      (static_cast<int>(estimated_.size()) - static_cast<int>(prior_.directions.cols()));
   if (result_.degrees_of_freedom == 0) {
     return;
   }
@@ -327,15 +344,18 @@ void Estimator::concludeChiSquare() {
 }
 
 /// Fills belief and condition number from the solution. With N the information of the estimated
-/// coordinates, δx = −N⁻¹ Σ JᵀS⁻¹ (noise + J_held δheld), and noise and held coordinates are
-/// independent of each other.
+/// coordinates, that of the prior of held directions included, δx = −N⁻¹ Σ JᵀS⁻¹ (noise + J_held
+/// δheld), and noise, prior and held coordinates are independent of each other.
 void Estimator::concludeCovariance() {
   const NormalEquations normal = normalEquations(x_, estimated_);
   const auto count = static_cast<Eigen::Index>(estimated_.size());
-  result_.condition_number =
-      judgeInformation(normal.information, options_.unobservable_stddev).condition_number;
-  inverse_ = normal.information.llt().solve(Eigen::MatrixXd::Identity(count, count));
+  result_.condition_number = judgeInformation(normal.information, options_.unobservable_stddev)
+                                 .identified_condition_number;
+  const Eigen::MatrixXd prior_information = priorInformation();
+  inverse_ =
+      (normal.information + prior_information).llt().solve(Eigen::MatrixXd::Identity(count, count));
   const Eigen::MatrixXd noise_covariance = inverse_ * normal.noise * inverse_;
+  const Eigen::MatrixXd prior_covariance = inverse_ * prior_information * inverse_;
   Eigen::MatrixXd covariance = problem_.prior.covariance;
   for (const Eigen::Index a : estimated_) {
     covariance.row(a).setZero();
@@ -343,7 +363,7 @@ void Estimator::concludeCovariance() {
   }
   const Eigen::MatrixXd gain = -inverse_ * normal.others;  // F×P: ∂estimated/∂held
   with_held_ = gain * covariance;
-  own_covariance_ = noise_covariance + with_held_ * gain.transpose();
+  own_covariance_ = noise_covariance + prior_covariance + with_held_ * gain.transpose();
 
   const double scale = result_.covariance_scale * result_.covariance_scale;
   const Eigen::MatrixXd own = own_covariance_ + (scale - 1.0) * noise_covariance;

@@ -40,25 +40,41 @@ std::unique_ptr<ceres::LossFunction> makeLoss(Loss loss, double transition) {
   return nullptr;
 }
 
+/// Coordinates that the solver holds as one block.
+struct ParameterBlock {
+  Eigen::Index first = 0;
+  Eigen::Index size = 0;
+};
+
+/// Joints, poles, each coil, laboratory effects.
+std::vector<ParameterBlock> parameterBlocks(const ParameterSpace& space) {
+  std::vector<ParameterBlock> blocks{{0, space.pole(0)},
+                                     {space.pole(0), space.coil(0) - space.pole(0)}};
+  for (std::size_t j = 0; j < space.coils(); ++j) {
+    blocks.push_back({space.coil(j), ParameterSpace::kPerAxis});
+  }
+  blocks.push_back({space.effect(), space.effects().size()});
+  return blocks;
+}
+
 /// Frees the free coordinates of one block and holds the others exactly.
 void constrainBlock(ceres::Problem& problem,
-                    double* block,
-                    Eigen::Index first,
-                    Eigen::Index size,
+                    double* data,
+                    const ParameterBlock& block,
                     const std::vector<bool>& free) {
-  if (!problem.HasParameterBlock(block)) {
+  if (!problem.HasParameterBlock(data)) {
     return;
   }
   std::vector<int> held;
-  for (Eigen::Index c = 0; c < size; ++c) {
-    if (!free[static_cast<std::size_t>(first + c)]) {
+  for (Eigen::Index c = 0; c < block.size; ++c) {
+    if (!free[static_cast<std::size_t>(block.first + c)]) {
       held.push_back(static_cast<int>(c));
     }
   }
-  if (static_cast<Eigen::Index>(held.size()) == size) {
-    problem.SetParameterBlockConstant(block);
+  if (static_cast<Eigen::Index>(held.size()) == block.size) {
+    problem.SetParameterBlockConstant(data);
   } else if (!held.empty()) {
-    problem.SetManifold(block, new ceres::SubsetManifold(static_cast<int>(size), held));
+    problem.SetManifold(data, new ceres::SubsetManifold(static_cast<int>(block.size), held));
   }
 }
 
@@ -100,6 +116,68 @@ void addObservations(const LeastSquaresInput& input,
   }
 }
 
+/// Whitened deviation of directionsᵀ x from its prior, over the given blocks of x.
+class LinearPriorCost final : public ceres::CostFunction {
+ public:
+  LinearPriorCost(const LinearPrior& prior,
+                  const std::vector<Eigen::Index>& firsts,
+                  const std::vector<Eigen::Index>& sizes)
+      : firsts_(firsts) {
+    const Eigen::MatrixXd lower = prior.covariance.llt().matrixL();
+    const auto whiten = lower.triangularView<Eigen::Lower>();
+    whitened_ = whiten.solve(prior.directions.transpose());
+    mean_ = whiten.solve(prior.mean);
+    set_num_residuals(static_cast<int>(mean_.size()));
+    for (const Eigen::Index size : sizes) {
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(size));
+    }
+  }
+
+  bool Evaluate(double const* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> residual(residuals, mean_.size());
+    residual = -mean_;
+    for (std::size_t b = 0; b < firsts_.size(); ++b) {
+      const Eigen::Index size = parameter_block_sizes()[b];
+      const auto block = whitened_.middleCols(firsts_[b], size);
+      residual += block * Eigen::Map<const Eigen::VectorXd>(parameters[b], size);
+      if (jacobians != nullptr && jacobians[b] != nullptr) {
+        using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        Eigen::Map<RowMajor>(jacobians[b], mean_.size(), size) = block;
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::vector<Eigen::Index> firsts_;
+  Eigen::MatrixXd whitened_;  ///< d×P
+  Eigen::VectorXd mean_;      ///< whitened, too
+};
+
+/// Adds the prior over the blocks that its directions reach.
+void addPrior(const LeastSquaresInput& input,
+              const std::vector<ParameterBlock>& blocks,
+              Eigen::VectorXd& x,
+              ceres::Problem& problem) {
+  const Eigen::MatrixXd& directions = input.prior.directions;
+  if (directions.cols() == 0) {
+    return;
+  }
+  std::vector<Eigen::Index> firsts;
+  std::vector<Eigen::Index> sizes;
+  std::vector<double*> reached;
+  for (const ParameterBlock& block : blocks) {
+    if (!directions.middleRows(block.first, block.size).isZero(0.0)) {
+      firsts.push_back(block.first);
+      sizes.push_back(block.size);
+      reached.push_back(x.data() + block.first);
+    }
+  }
+  problem.AddResidualBlock(new LinearPriorCost(input.prior, firsts, sizes), nullptr, reached);
+}
+
 ceres::Solver::Options solverOptions(const LeastSquaresInput& input, int residuals) {
   // Above this many rows the orthogonal factorisation costs more time than it saves digits.
   constexpr int kLargestOrthogonal = 3000;
@@ -132,15 +210,11 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
   addObservations(input, loss.get(), x, problem);
-  constrainBlock(problem, x.data(), 0, space.pole(0), input.free);
-  constrainBlock(
-      problem, x.data() + space.pole(0), space.pole(0), space.coil(0) - space.pole(0), input.free);
-  for (std::size_t j = 0; j < space.coils(); ++j) {
-    const Eigen::Index first = space.coil(j);
-    constrainBlock(problem, x.data() + first, first, ParameterSpace::kPerAxis, input.free);
+  const std::vector<ParameterBlock> blocks = parameterBlocks(space);
+  addPrior(input, blocks, x, problem);
+  for (const ParameterBlock& block : blocks) {
+    constrainBlock(problem, x.data() + block.first, block, input.free);
   }
-  constrainBlock(
-      problem, x.data() + space.effect(), space.effect(), space.effects().size(), input.free);
 
   PathRecorder recorder(x, result.path);
   ceres::Solver::Options options = solverOptions(input, problem.NumResiduals());

@@ -15,18 +15,22 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
     return result;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  Eigen::VectorXd participation = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (eigen.eigenvalues()[k] * limit * limit >= 1.0) {
-      ++result.rank;
-    } else {
-      participation += eigen.eigenvectors().col(k).cwiseAbs2();
-    }
+  // Eigenvalues ascend: the open directions come first.
+  Eigen::Index open = 0;
+  while (open < n && eigen.eigenvalues()[open] * limit * limit < 1.0) {
+    ++open;
   }
+  result.rank = n - open;
+  result.open_directions = eigen.eigenvectors().leftCols(open);
+  const Eigen::VectorXd participation = result.open_directions.rowwise().squaredNorm();
   for (Eigen::Index k = 0; k < n; ++k) {
     if (participation[k] > kParticipation) {
       result.weak.push_back(k);
     }
+  }
+  if (open < n) {
+    result.identified_condition_number =
+        std::sqrt(eigen.eigenvalues()[n - 1] / eigen.eigenvalues()[open]);
   }
   const double smallest = eigen.eigenvalues()[0];
   result.condition_number = smallest > 0.0 ? std::sqrt(eigen.eigenvalues()[n - 1] / smallest)

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include "spherical_actuator_calibration/core/linearization.hpp"
 
@@ -20,13 +21,20 @@ struct Whitened {
   Eigen::Vector3d residual;
 };
 
-/// Coordinates that the cycle has estimated.
+/// Coordinates that the cycle has estimated, at least in part.
 std::vector<Eigen::Index> estimatedCoordinates(const ParameterSpace& space,
                                                const CycleReport& report) {
   std::set<std::string> names;
   for (const ParameterEstimate& estimate : report.estimates) {
     if (estimate.observable) {
       names.insert(estimate.name);
+    }
+  }
+  for (const OpenDirection& open : report.open_directions) {
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      if (open.direction[p] != 0.0) {
+        names.insert(space.name(p));
+      }
     }
   }
   std::vector<Eigen::Index> coordinates;
@@ -74,6 +82,27 @@ std::vector<Whitened> whitenedObservations(const EstimationProblem& problem,
     used.push_back(std::move(item));
   }
   return used;
+}
+
+/// What held the open directions of the cycle: the prior, whose uncertainty along them is still
+/// that of the belief after it.
+Eigen::MatrixXd priorInformation(const std::vector<OpenDirection>& open,
+                                 const ParameterBelief& after,
+                                 const std::vector<Eigen::Index>& coordinates) {
+  const auto size = static_cast<Eigen::Index>(coordinates.size());
+  if (open.empty()) {
+    return Eigen::MatrixXd::Zero(size, size);
+  }
+  Eigen::MatrixXd spanning(after.x.size(), static_cast<Eigen::Index>(open.size()));
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    spanning.col(static_cast<Eigen::Index>(k)) = open[k].direction;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factor(spanning);
+  const Eigen::MatrixXd basis =
+      factor.householderQ() * Eigen::MatrixXd::Identity(spanning.rows(), spanning.cols());
+  const Eigen::MatrixXd covariance = basis.transpose() * after.covariance * basis;
+  const Eigen::MatrixXd directions = basis(coordinates, Eigen::all);
+  return directions * covariance.ldlt().solve(directions.transpose());
 }
 
 /// An observation as the fit without it sees it.
@@ -126,6 +155,7 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
   for (const Whitened& item : used) {
     information += item.jacobian.transpose() * item.jacobian;
   }
+  information += priorInformation(report.open_directions, after.belief, coordinates);
   const Eigen::LDLT<Eigen::MatrixXd> factor(information);
   const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(count, count));
   const Eigen::VectorXd stddevs = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

@@ -80,7 +80,7 @@ TEST(CycleSelection, CoilsAreAllOthersThatHaveSamples) {
 
 TEST(CycleSelection, PolesGoWithTheCoilThatHasMostSamples) {
   std::vector<Sample> samples = samplesWithCoils({2, 2, 3, 3, 3, 5});
-  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "poles:3,coil:2,coil:5");
+  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "poles:3,coil:2,coil:5,refine");
   samples.push_back(orientationSample());
   EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})),
             "joint,poles:3,coil:2,coil:5,refine");
@@ -92,7 +92,7 @@ TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {
   samples[1].current[9] = 1.0;
   samples.push_back(orientationSample());
   samples.back().validation = true;
-  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "poles:6");
+  EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})), "poles:6,refine");
 }
 
 TEST(CycleSelection, WithoutTorqueModelOnlyTheJointIsPossible) {

@@ -40,6 +40,7 @@ struct Laboratory {
   Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
   Eigen::Vector4d harmonics = Eigen::Vector4d::Zero();
   Eigen::Matrix2d tilt = Eigen::Matrix2d::Zero();
+  Eigen::Vector3d marker = Eigen::Vector3d::Zero();  ///< rotation of the marker on the rotor
 
   /// Joint angles when the sensors read q.
   Eigen::Vector3d angles(const Eigen::Vector3d& q) const {
@@ -63,7 +64,8 @@ std::vector<Sample> sessionIn(const Laboratory& laboratory,
   const TorqueCurve curve(*truth.torque_curve);
   for (Sample& sample : samples) {
     const Eigen::Matrix3d R = rotorOrientation(joints, laboratory.angles(sample.joint_position));
-    sample.R_stator_rotor = rotationExp(scenarios::uniformNoise(kOrientationNoise, generator)) * R;
+    sample.R_stator_rotor = rotationExp(scenarios::uniformNoise(kOrientationNoise, generator)) * R *
+                            rotationExp(laboratory.marker);
     if (sample.has_torque) {
       const Eigen::Vector3d gravity = R.transpose() * Eigen::Vector3d(0.0, 0.0, -1.0);
       sample.torque = rotorTorque(curve, geometry, R, sample.current) + laboratory.bias +
@@ -305,6 +307,38 @@ TEST(LaboratoryEffects, TorqueCurve) {
         made.torque_curve = curve;
         return sessionIn({}, made, generator);
       });
+}
+
+/// Torques are measured in the rotor's frame, so that they tell where the marker is.
+TEST(LaboratoryEffects, MarkerRegistration) {
+  expectModelledAtTheBound(
+      only({Effect::kMarkerRegistration}),
+      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
+        Laboratory laboratory;
+        laboratory.marker = {4e-3, -3e-3, 5e-3};
+        values = {4e-3, -3e-3, 5e-3};
+        return sessionIn(laboratory, geometry, generator);
+      });
+}
+
+TEST(LaboratoryEffects, ATrackerRegistrationThatNothingTellsIsRefusedByName) {
+  scenarios::Generator generator(8);
+  CalibrationConfig config;
+  config.effects = only({Effect::kTrackerRegistration});
+  config.tolerance.effect = 1e-3;
+  CalibrationSession session(
+      {scenarios::paperNominal()}, sessionIn({}, madeUnit(generator), generator), config);
+  session.run({Cycle::kJoint, 0});
+  session.run({Cycle::kPoles, 1});
+  const CycleReport& report = session.run({Cycle::kRefine, 0});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_NE(report.message.find("switch off effects.tracker_registration"), std::string::npos)
+      << report.message;
+  EXPECT_TRUE(report.open_directions.empty());
+  for (const ParameterEstimate& estimate : report.estimates) {
+    const bool refused = estimate.name.rfind("tracker_registration/", 0) == 0;
+    EXPECT_EQ(estimate.observable, !refused) << estimate.name;
+  }
 }
 
 TEST(LaboratoryEffects, AreInTheCalibratedDescription) {

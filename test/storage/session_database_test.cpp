@@ -114,9 +114,12 @@ TEST_F(SessionDatabaseTest, TheStartOfACalibratedDescriptionIsIdentified) {
   calibrated.start =
       CalibrationSession(calibrated.start, {}, {}).description({kDate, {}, "0.1.0", 3});
   calibrated.start.stddevs.joints[0].offset = 1e-3;
+  calibrated.start.calibration->unidentified.erase(
+      calibrated.start.calibration->unidentified.begin());
   const SessionDatabase database(path(), calibrated);
   EXPECT_EQ(database.current().source, "identified");
   EXPECT_TRUE(database.current().state.identified[0]);
+  EXPECT_FALSE(database.current().state.identified[1]);
   EXPECT_EQ(database.current().state.belief.covariance(0, 0), 1e-6);
 }
 

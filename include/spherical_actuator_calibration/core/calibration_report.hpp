@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
+#include "spherical_actuator_calibration/core/open_directions.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -21,8 +22,10 @@ struct ParameterEstimate {
   double nominal = 0.0;
   double initial = 0.0;  ///< before the cycle
   double value = 0.0;
-  double stddev = 0.0;      ///< of value; of the prior where not observable
-  bool observable = false;  ///< false: the value is the initial one
+  double stddev = 0.0;  ///< of value; of the prior where not observable
+  /// False: the value is the initial one, or, where the parameter takes part in an open direction,
+  /// differs from it by no more than what the data tell.
+  bool observable = false;
 };
 
 /// One observation after a cycle (message SampleResidual).
@@ -50,6 +53,7 @@ struct CycleReport {
   double condition_number = 0.0;
   double solve_time = 0.0;  ///< [s]
   std::vector<ParameterEstimate> estimates;
+  std::vector<OpenDirection> open_directions;  ///< beside single unobservable parameters
   std::vector<SampleResidual> residuals;
   double orientation_uncertainty = 0.0;  ///< see workspace_uncertainty.hpp [rad]
   double torque_uncertainty = 0.0;       ///< [N·m/A]

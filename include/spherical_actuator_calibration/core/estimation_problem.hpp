@@ -82,13 +82,16 @@ struct Estimate {
   Termination termination = Termination::kNumericalFailure;
   ParameterBelief belief;                  ///< all coordinates, full covariance
   std::vector<Eigen::Index> unobservable;  ///< free coordinates held at the prior for want of data
+  /// P×d, orthonormal columns: directions across many coordinates, held at the prior likewise.
+  /// Their prior uncertainty is in `belief`.
+  Eigen::MatrixXd open_directions;
   int iterations = 0;
   std::vector<double> error_history;  ///< ε before the first and after each iteration
   int degrees_of_freedom = 0;
   double reduced_chi_square = 0.0;  ///< 0 without degrees of freedom
   /// Factor ≥ 1 on standard deviations where the residuals exceed their stated noise significantly.
   double covariance_scale = 1.0;
-  double condition_number = 0.0;  ///< of the whitened Jacobian of the observable free coordinates
+  double condition_number = 0.0;  ///< of the whitened Jacobian of what was identified
   std::vector<ObservationResidual> residuals;
   double solve_time = 0.0;  ///< [s]
 };
@@ -100,9 +103,9 @@ ErrorMeasure errorMeasure(const std::vector<Observation>& observations);
 
 /// Solves the problem: weighted least squares by Levenberg–Marquardt (Ceres) on the manifold. Where
 /// the first solution shows misfits, a robust pass finds outliers and a final solution runs without
-/// them. Coordinates that the data cannot tell keep their prior. Never throws for poor data: see
-/// termination. Throws DataError on inconsistent input (index out of range, torque without a torque
-/// model).
+/// them. What the data cannot tell keeps its prior: see unidentified_part.hpp. Never throws for
+/// poor data: see termination. Throws DataError on inconsistent input (index out of range, torque
+/// without a torque model).
 Estimate estimate(const EstimationProblem& problem, const EstimationOptions& options);
 
 }  // namespace spherical_actuator_calibration

@@ -16,6 +16,13 @@ enum class Loss {
   kCauchy,  ///< fades beyond the transition: gross errors lose their pull
 };
 
+/// What is known beforehand of some directions of the coordinates.
+struct LinearPrior {
+  Eigen::MatrixXd directions;  ///< P×d, orthonormal columns
+  Eigen::VectorXd mean;        ///< of directionsᵀ x [rad]
+  Eigen::MatrixXd covariance;  ///< of directionsᵀ x [rad²], d×d
+};
+
 /// One nonlinear least-squares solution over chosen observations and coordinates.
 struct LeastSquaresInput {
   const EstimationProblem* problem = nullptr;
@@ -24,6 +31,7 @@ struct LeastSquaresInput {
   std::vector<bool> active;                                 ///< per observation
   std::vector<bool> free;                                   ///< per coordinate
   Eigen::VectorXd start;                                    ///< all coordinates
+  LinearPrior prior;                                        ///< counts beside the observations
   Loss loss = Loss::kSquared;
   double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
   int max_iterations = 50;
@@ -39,8 +47,8 @@ struct LeastSquaresResult {
   const Eigen::VectorXd& solution() const { return path.back(); }
 };
 
-/// Minimises Σ ρ(‖W r(x)‖²) by Levenberg–Marquardt (Ceres), analytic Jacobians, one thread, so that
-/// the same input gives the same bits.
+/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt (Ceres), analytic Jacobians, one
+/// thread, so that the same input gives the same bits.
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
 
 }  // namespace spherical_actuator_calibration

@@ -11,8 +11,12 @@ struct Observability {
   /// Positions (0…n−1, ascending) of coordinates that take part in a direction whose standard
   /// deviation exceeds the limit.
   std::vector<Eigen::Index> weak;
+  /// n×d, orthonormal columns: directions whose standard deviation exceeds the limit.
+  Eigen::MatrixXd open_directions;
   /// Number of directions within the limit.
   Eigen::Index rank = 0;
+  /// √(λ_max/λ_min) over the directions within the limit; 0 when there is none.
+  double identified_condition_number = 0.0;
   /// √(λ_max/λ_min) of the given matrix; infinite when λ_min is not positive.
   double condition_number = 0.0;
 };
