@@ -41,15 +41,15 @@ std::unique_ptr<ceres::LossFunction> makeLoss(Loss loss, double transition) {
 }
 
 /// Coordinates that the solver holds as one block.
-struct ParameterBlock {
+struct CoordinateBlock {
   Eigen::Index first = 0;
   Eigen::Index size = 0;
 };
 
 /// Joints, poles, each coil, laboratory effects.
-std::vector<ParameterBlock> parameterBlocks(const ParameterSpace& space) {
-  std::vector<ParameterBlock> blocks{{0, space.pole(0)},
-                                     {space.pole(0), space.coil(0) - space.pole(0)}};
+std::vector<CoordinateBlock> parameterBlocks(const ParameterSpace& space) {
+  std::vector<CoordinateBlock> blocks{{0, space.pole(0)},
+                                      {space.pole(0), space.coil(0) - space.pole(0)}};
   for (std::size_t j = 0; j < space.coils(); ++j) {
     blocks.push_back({space.coil(j), ParameterSpace::kPerAxis});
   }
@@ -60,7 +60,7 @@ std::vector<ParameterBlock> parameterBlocks(const ParameterSpace& space) {
 /// Frees the free coordinates of one block and holds the others exactly.
 void constrainBlock(ceres::Problem& problem,
                     double* data,
-                    const ParameterBlock& block,
+                    const CoordinateBlock& block,
                     const std::vector<bool>& free) {
   if (!problem.HasParameterBlock(data)) {
     return;
@@ -158,7 +158,7 @@ class LinearPriorCost final : public ceres::CostFunction {
 
 /// Adds the prior over the blocks that its directions reach.
 void addPrior(const LeastSquaresInput& input,
-              const std::vector<ParameterBlock>& blocks,
+              const std::vector<CoordinateBlock>& blocks,
               Eigen::VectorXd& x,
               ceres::Problem& problem) {
   const Eigen::MatrixXd& directions = input.prior.directions;
@@ -168,7 +168,7 @@ void addPrior(const LeastSquaresInput& input,
   std::vector<Eigen::Index> firsts;
   std::vector<Eigen::Index> sizes;
   std::vector<double*> reached;
-  for (const ParameterBlock& block : blocks) {
+  for (const CoordinateBlock& block : blocks) {
     if (!directions.middleRows(block.first, block.size).isZero(0.0)) {
       firsts.push_back(block.first);
       sizes.push_back(block.size);
@@ -210,9 +210,9 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
   addObservations(input, loss.get(), x, problem);
-  const std::vector<ParameterBlock> blocks = parameterBlocks(space);
+  const std::vector<CoordinateBlock> blocks = parameterBlocks(space);
   addPrior(input, blocks, x, problem);
-  for (const ParameterBlock& block : blocks) {
+  for (const CoordinateBlock& block : blocks) {
     constrainBlock(problem, x.data() + block.first, block, input.free);
   }
 

@@ -32,12 +32,14 @@ Eigen::Matrix<double, 3, 9> rotationJacobian(const ParameterSpace& space,
 /// tell it.
 Eigen::Matrix<double, 9, 3> jointRotations(const ParameterSpace& space, const Eigen::VectorXd& x) {
   constexpr double kAngle = 0.7;  // [rad]
-  constexpr int kCorners = 8;
+  constexpr Eigen::Index kCorners = 8;
   const JointGeometry joints = jointGeometry(space.actuatorAt(x).joints);
   Eigen::Matrix<double, 3 * kCorners, 9> jacobian;
   Eigen::Matrix<double, 3 * kCorners, 3> rotation;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const auto angle = [corner](int bit) { return (corner >> bit) % 2 == 0 ? kAngle : -kAngle; };
+  for (Eigen::Index corner = 0; corner < kCorners; ++corner) {
+    const auto angle = [corner](Eigen::Index bit) {
+      return (corner >> bit) % 2 == 0 ? kAngle : -kAngle;
+    };
     const Eigen::Vector3d q(angle(0), angle(1), angle(2));
     jacobian.middleRows<3>(3 * corner) = rotationJacobian(space, joints, x, q);
     rotation.middleRows<3>(3 * corner).setIdentity();

@@ -86,10 +86,11 @@ TEST(SampleInfluence, NamesTheSampleThatNothingReplaces) {
     return sample.has_torque && sample.current[6] != 0.0;
   };
   const auto only = std::find_if(samples.begin(), samples.end(), excites_coil_7);
+  const std::uint32_t only_id = only->id;
   samples.erase(std::remove_if(only + 1, samples.end(), excites_coil_7), samples.end());
 
   for (const SampleInfluence& influence : influencesOf(refined(samples))) {
-    EXPECT_EQ(influence.irreplaceable, influence.id == only->id) << influence.id;
+    EXPECT_EQ(influence.irreplaceable, influence.id == only_id) << influence.id;
     EXPECT_LT(influence.largest_shift, 10.0) << influence.id;
     if (influence.irreplaceable) {
       EXPECT_EQ(influence.parameter.rfind("coil_7/", 0), 0U) << influence.parameter;
