@@ -13,6 +13,10 @@ constexpr double kLongestStep = 0.05;
 
 constexpr int kStopAttempts = 3;
 
+std::string lostReason(const std::string& error) {
+  return "the link is lost: " + error;
+}
+
 }  // namespace
 
 CoilDriver::CoilDriver(const CurrentAmplifierOptions& options,
@@ -36,7 +40,7 @@ std::string CoilDriver::command(const Eigen::VectorXd& currents, double now) {
 CoilDriver::Beat CoilDriver::beat(double now) {
   if (!link_.mayTry(now)) {
     forget();
-    return {std::nullopt, "the link is lost: " + link_.lastError()};
+    return {std::nullopt, lostReason(link_.lastError())};
   }
   try {
     if (!link_.isUp()) {
@@ -49,7 +53,7 @@ CoilDriver::Beat CoilDriver::beat(double now) {
     forget();
     tryToDisable();
     link_.failure(now, error.what());
-    return {std::nullopt, error.what()};
+    return {std::nullopt, lostReason(error.what())};
   } catch (const Error& error) {
     forget();
     tryToDisable();

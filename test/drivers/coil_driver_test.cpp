@@ -113,6 +113,19 @@ TEST_F(CoilDriverTest, StaysWithinTheLimitsWhateverIsCommanded) {
   EXPECT_LE(sum, 8.0 + 0.5e-3 * kCoils);
 }
 
+TEST_F(CoilDriverTest, TellsALostLinkOnceThoughItIsTriedAgain) {
+  follow(pattern(3, 1.5));
+  bus_.setReachable(false);
+  beat();  // told by the request that failed; from now on by the attempts to open it
+  now_ += 0.2;
+  const std::string reason = beat().zero_reason;
+  EXPECT_EQ(reason.rfind("the link is lost: ", 0), 0U) << reason;
+  for (int n = 0; n < 100; ++n) {
+    now_ += 0.05;
+    EXPECT_EQ(beat().zero_reason, reason);
+  }
+}
+
 TEST_F(CoilDriverTest, ALostLinkMeansZeroFirstAndAFreshCommandAfterwards) {
   follow(pattern(3, 1.5));
   bus_.setReachable(false);
