@@ -115,13 +115,16 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
   }
   const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
   const auto most = std::max_element(counts.begin(), counts.end());
-  if (most == counts.end() || *most == 0) {
-    return requests;
+  const bool has_torques = most != counts.end() && *most > 0;
+  if (has_torques) {
+    const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most)) + 1;
+    requests.push_back({Cycle::kPoles, coil});
+    requests.push_back({Cycle::kCoil, 0});
   }
-  const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most)) + 1;
-  requests.push_back({Cycle::kPoles, coil});
-  requests.push_back({Cycle::kCoil, 0});
-  requests.push_back({Cycle::kRefine, 0});
+  const bool models_effects = model.space().effects().size() > 0;
+  if (has_torques || (has_orientations && models_effects)) {
+    requests.push_back({Cycle::kRefine, 0});
+  }
   return expandCoils(requests, model, samples, options);
 }
 

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/core/least_squares.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <ceres/ceres.h>
@@ -46,14 +47,17 @@ struct CoordinateBlock {
   Eigen::Index size = 0;
 };
 
-/// Joints, poles, each coil, laboratory effects.
-std::vector<CoordinateBlock> parameterBlocks(const ParameterSpace& space) {
+/// Joints, poles, each coil, laboratory effects; without those that are empty, which would have the
+/// address of the next one.
+std::vector<CoordinateBlock> coordinateBlocks(const ParameterSpace& space) {
   std::vector<CoordinateBlock> blocks{{0, space.pole(0)},
                                       {space.pole(0), space.coil(0) - space.pole(0)}};
   for (std::size_t j = 0; j < space.coils(); ++j) {
     blocks.push_back({space.coil(j), ParameterSpace::kPerAxis});
   }
   blocks.push_back({space.effect(), space.effects().size()});
+  const auto is_empty = [](const CoordinateBlock& block) { return block.size == 0; };
+  blocks.erase(std::remove_if(blocks.begin(), blocks.end(), is_empty), blocks.end());
   return blocks;
 }
 
@@ -210,7 +214,7 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
   addObservations(input, loss.get(), x, problem);
-  const std::vector<CoordinateBlock> blocks = parameterBlocks(space);
+  const std::vector<CoordinateBlock> blocks = coordinateBlocks(space);
   addPrior(input, blocks, x, problem);
   for (const CoordinateBlock& block : blocks) {
     constrainBlock(problem, x.data() + block.first, block, input.free);

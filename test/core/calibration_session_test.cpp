@@ -10,6 +10,7 @@
 
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/model_choice.hpp"
 #include "spherical_actuator_calibration/core/sample_file.hpp"
 #include "support/scenarios.hpp"
 
@@ -331,6 +332,26 @@ TEST(CalibrationSession, RealPositionerHasNoThirdJointAndFitsTheRest) {
   EXPECT_EQ(result.actuator.joints[2].axis, nominal.actuator.joints[2].axis);
   EXPECT_FALSE(result.stddevs.joints[2].axis_u || result.stddevs.joints[2].axis_v);
   EXPECT_TRUE(result.stddevs.joints[1].axis_u && result.stddevs.joints[1].axis_v);
+}
+
+TEST(CalibrationSession, RealPositionerSupportsTheScaleOfItsTiltingJoint) {
+  const std::string folder = SOURCE_DIR "/config/examples/two_axis_positioner/";
+  const CalibratedDescription nominal = loadDescription(folder + "actuator.yaml");
+  const CalibrationConfig config = loadCalibrationConfig(folder + "calibration.yaml");
+  const std::vector<Sample> samples = loadSamples(folder + "samples.yaml", 0);
+  CalibrationSession session(nominal, samples, config);
+  session.run({Cycle::kJoint, 0});
+  ASSERT_TRUE(session.run({Cycle::kRefine, 0}).success);
+  const Eigen::Index scale = session.model().space().effect();
+  const ParameterEstimate estimate = session.parameters()[static_cast<std::size_t>(scale)];
+  EXPECT_EQ(estimate.name, "tilt_matrix/11");
+  EXPECT_TRUE(estimate.observable);
+  EXPECT_NEAR(estimate.value, 1.04e-3, 0.02e-3);
+  EXPECT_LT(estimate.stddev, 0.2e-3);
+  const std::vector<ModelFit> fits = compareEffects(nominal, samples, config);
+  ASSERT_EQ(fits.size(), 2U);
+  EXPECT_LT(fits[1].bic, fits[0].bic - 50.0);
+  EXPECT_LT(fits[1].reduced_chi_square, 0.8);
 }
 
 }  // namespace

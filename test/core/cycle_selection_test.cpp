@@ -103,6 +103,10 @@ TEST(CycleSelection, WithoutTorqueModelOnlyTheJointIsPossible) {
   EXPECT_EQ(textOf(possibleCycles(model, samples, {})), "");
   samples.push_back(orientationSample());
   EXPECT_EQ(textOf(possibleCycles(model, samples, {})), "joint");
+  EffectSelection effects;
+  effects[LaboratoryEffect::kTiltCrossAxis] = true;
+  const CalibrationModel with_effects{ParameterSpace(actuator, effects)};
+  EXPECT_EQ(textOf(possibleCycles(with_effects, samples, {})), "joint,refine");
 }
 
 }  // namespace

@@ -289,6 +289,33 @@ TEST(LaboratoryEffects, TiltScaleAndCrossAxis) {
       });
 }
 
+/// Without poles and coils, where nothing lies between the coordinates of joints and effects.
+TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
+  scenarios::Generator generator(9);
+  Laboratory laboratory;
+  laboratory.tilt << 0.01, -0.006, 0.008, -0.01;
+  Actuator nominal = scenarios::paperNominal();
+  std::vector<Sample> samples = sessionIn(laboratory, madeUnit(generator), generator);
+  for (Sample& sample : samples) {
+    sample.has_torque = false;
+    sample.current.resize(0);
+  }
+  nominal.poles.clear();
+  nominal.coils.clear();
+  nominal.torque_curve.reset();
+  CalibrationConfig config;
+  config.effects = only({Effect::kTiltCrossAxis});
+  CalibrationSession session({nominal}, samples, config);
+  session.run({Cycle::kJoint, 0});
+  const CycleReport& report = session.run({Cycle::kRefine, 0});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_LT(report.reduced_chi_square, 1.5);
+  const ParameterSpace& space = session.model().space();
+  const Eigen::VectorXd values = space.reportedValues(session.state().belief.x);
+  EXPECT_NEAR(values[space.effect()], 0.01, 2e-3);
+  EXPECT_NEAR(values[space.effect() + 3], -0.01, 2e-3);
+}
+
 TEST(LaboratoryEffects, TorqueCurve) {
   expectModelledAtTheBound(
       only({Effect::kTorqueCurve}),

@@ -24,7 +24,7 @@ std::vector<CycleRequest> expandCoils(const std::vector<CycleRequest>& requests,
 
 /// All that the data allow: the joint when orientations were measured, poles with the coil that was
 /// excited alone most often, the other coils that were excited alone, and the refinement when there
-/// are torques.
+/// are torques or modelled laboratory effects.
 std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
                                          const std::vector<Sample>& samples,
                                          const EstimationOptions& options);
