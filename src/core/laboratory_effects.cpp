@@ -81,6 +81,17 @@ const char* effectName(LaboratoryEffect effect) {
   return kNames[static_cast<std::size_t>(effect)];
 }
 
+std::string describe(const EffectSelection& selection) {
+  std::string names;
+  for (std::size_t e = 0; e < kLaboratoryEffects; ++e) {
+    if (selection.modelled[e]) {
+      names += names.empty() ? "" : ", ";
+      names += kNames[e];
+    }
+  }
+  return names.empty() ? "none" : names;
+}
+
 bool EffectSelection::any() const {
   return std::find(modelled.begin(), modelled.end(), true) != modelled.end();
 }

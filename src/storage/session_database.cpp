@@ -28,7 +28,7 @@ std::string presentDate(const SQLite::Database& database) {
 }
 
 void fillNewDatabase(const SQLite::Database& database, const SessionIdentity& identity) {
-  unit_table::insert(database, identity.start);
+  unit_table::insert(database, identity.start, identity.config.effects);
   Revision revision;
   revision.date = presentDate(database);
   revision.software = identity.software;
@@ -63,8 +63,9 @@ SessionDatabase::SessionDatabase(const std::string& path, const SessionIdentity&
                                              fillNewDatabase(database, identity);
                                            }),
                          identity.software}) {
-  tables_->connection.read(kNotRead,
-                           [&] { unit_table::check(tables_->database(), path, identity.start); });
+  tables_->connection.read(kNotRead, [&] {
+    unit_table::check(tables_->database(), path, identity.start, identity.config.effects);
+  });
 }
 
 SessionDatabase::~SessionDatabase() = default;

@@ -19,7 +19,8 @@ CREATE TABLE unit (
   id INTEGER PRIMARY KEY CHECK (id = 1),
   name TEXT NOT NULL,
   serial TEXT NOT NULL,
-  description TEXT NOT NULL
+  description TEXT NOT NULL,
+  effects TEXT NOT NULL
 ) STRICT;
 
 CREATE TABLE samples (

@@ -26,16 +26,20 @@ std::string nameOf(const std::string& name, const std::string& serial) {
 
 }  // namespace
 
-void insert(const SQLite::Database& database, const CalibratedDescription& start) {
-  RowWriter row(database, "INSERT INTO unit (id, name, serial, description) VALUES (1, ?, ?, ?)");
+void insert(const SQLite::Database& database,
+            const CalibratedDescription& start,
+            const EffectSelection& effects) {
+  RowWriter row(database,
+                "INSERT INTO unit (id, name, serial, description, effects) VALUES (1, ?, ?, ?, ?)");
   row.put(start.actuator.name).put(start.actuator.serial);
-  row.put(renderDescription(start, kTextName)).write();
+  row.put(renderDescription(start, kTextName)).put(describe(effects)).write();
 }
 
 void check(const SQLite::Database& database,
            const std::string& path,
-           const CalibratedDescription& start) {
-  RowReader row(database, "SELECT name, serial, description FROM unit");
+           const CalibratedDescription& start,
+           const EffectSelection& effects) {
+  RowReader row(database, "SELECT name, serial, description, effects FROM unit");
   if (!row.next()) {
     throwDamaged(path, "no unit");
   }
@@ -52,6 +56,12 @@ void check(const SQLite::Database& database,
     throw DataError(path + ": this session was started with another description of " +
                     nameOf(name, serial) +
                     "; give the one it was started with, or another directory.");
+  }
+  const std::string started_with = row.text();
+  if (started_with != describe(effects)) {
+    throw DataError(path + ": this session models the laboratory effects \"" + started_with +
+                    "\", but the configuration asks for \"" + describe(effects) +
+                    "\"; set effects as they were, or give another directory.");
   }
 }
 

@@ -86,7 +86,7 @@ TEST(StatorRotations, TurnTheRotorAtEveryPoseAndChangeNoTorque) {
 }
 
 TEST(TorqueOnlyRefinement, NamesTheThreeRotationsThatNoTorqueTells) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Trial trial(seed);
     const CycleReport& report = trial.outcome.report;
     ASSERT_TRUE(report.success) << report.message;

@@ -92,6 +92,14 @@ TEST_F(OpeningTest, AnotherDescriptionOfTheUnitIsRefused) {
   expectRefusal("started with another description", other);
 }
 
+TEST_F(OpeningTest, OtherLaboratoryEffectsAreRefused) {
+  make();
+  SessionIdentity other = identity();
+  other.config.effects[LaboratoryEffect::kTorqueBias] = true;
+  expectRefusal("models the laboratory effects \"none\"", other);
+  expectRefusal("asks for \"torque_bias\"", other);
+}
+
 TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
   make();
   SessionIdentity other = identity();

@@ -41,6 +41,9 @@ struct EffectSelection {
   bool any() const;
 };
 
+/// "torque_bias, coil_gains", or "none".
+std::string describe(const EffectSelection& selection);
+
 /// Coordinates of the modelled effects: which there are, what they are called, and their scale.
 ///
 /// A coordinate is the effect's value over its unit. Units are chosen so that coordinates compare
