@@ -9,6 +9,8 @@ namespace {
 
 /// Open directions in more coordinates each than an axis has are held as directions.
 constexpr std::size_t kFewCoordinates = 2;
+/// A coordinate whose square lies in open directions to this share is held whole.
+constexpr double kWholly = 0.9;
 
 /// The free coordinates that are not held yet, and their information.
 class OpenCoordinates {
@@ -88,7 +90,7 @@ UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
     const bool spread = isSpread(observability);
     if (held.empty() && spread) {
       held = open.hold(weak, [&](Eigen::Index k) {
-        return observability.open_directions.row(k).squaredNorm() > 0.5;
+        return observability.open_directions.row(k).squaredNorm() > kWholly;
       });
     }
     if (held.empty() && spread) {

@@ -156,14 +156,7 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
        describe(compareEffects(session.start(), session.samples(), session.config()))) {
     std::cout << line << "\n";
   }
-  const std::vector<std::string> open = session.openParameters();
-  if (!open.empty()) {
-    std::cout << "Not observable, left as they were:";
-    for (const std::string& name : open) {
-      std::cout << " " << name;
-    }
-    std::cout << "\n";
-  }
+  std::cout << openParagraph(session);
 }
 
 void writeResult(const CalibrationSession& session,

@@ -101,6 +101,12 @@ std::vector<Row> rowsOf(const CalibrationSession& session, const std::optional<A
   return rows;
 }
 
+/// Whether the parameter has a value with an uncertainty: one that takes part in an open direction
+/// has, though it is not identified.
+bool hasValue(const ParameterEstimate& parameter) {
+  return parameter.observable || parameter.value != parameter.nominal;
+}
+
 double errorOf(const Row& row) {
   return row.parameter.value - *row.truth;
 }
@@ -108,7 +114,7 @@ double errorOf(const Row& row) {
 std::string rowText(const Row& row) {
   const ParameterEstimate& p = row.parameter;
   std::string text = format("%-18s %12.6f", p.name.c_str(), p.nominal);
-  if (!p.observable) {
+  if (!hasValue(p)) {
     text += format(" %16s %13s %11s", "not identified", "-", "-");
   } else {
     text += format(" %16.6f %13.3f %11.3f", p.value, 1e3 * (p.value - p.nominal), 1e3 * p.stddev);
@@ -117,7 +123,7 @@ std::string rowText(const Row& row) {
     return text + "\n";
   }
   text += format(" %12.6f", *row.truth);
-  if (!p.observable) {
+  if (!hasValue(p)) {
     return text + format(" %13s %10s\n", "-", "-");
   }
   return text + format(" %13.3f %10.2f\n", 1e3 * errorOf(row), errorOf(row) / p.stddev);
@@ -187,6 +193,27 @@ std::string influenceParagraph(const CalibrationSession& session) {
 
 std::string validationParagraph(const HeldOutValidation& validation) {
   return "Validation: " + verdict(validation) + "\n";
+}
+
+std::string openParagraph(const CalibrationSession& session) {
+  const std::vector<std::string> open = session.openParameters();
+  std::string held;
+  std::string relative;
+  for (const ParameterEstimate& parameter : session.parameters()) {
+    if (std::find(open.begin(), open.end(), parameter.name) != open.end()) {
+      std::string& list = hasValue(parameter) ? relative : held;
+      list += " ";
+      list += parameter.name;
+    }
+  }
+  std::string text;
+  if (!held.empty()) {
+    text += "Not observable, left as they were:" + held + "\n";
+  }
+  if (!relative.empty()) {
+    text += "Not identified, known only relative to each other:" + relative + "\n";
+  }
+  return text;
 }
 
 std::string parameterTable(const CalibrationSession& session,

@@ -18,9 +18,13 @@ std::string influenceParagraph(const CalibrationSession& session);
 /// How the held-out samples agree.
 std::string validationParagraph(const HeldOutValidation& validation);
 
-/// All parameters: nominal, identified, change and standard deviation; what is not identified shows
-/// no numbers. With the truth also error and error by standard deviation, and how many of the 95 %
-/// intervals hold it.
+/// Names of the parameters that are not identified: those left as they were, and those that take
+/// part in an open direction; empty when there is none.
+std::string openParagraph(const CalibrationSession& session);
+
+/// All parameters: nominal, identified, change and standard deviation; what the data leave at the
+/// nominal value shows no numbers. With the truth also error and error by standard deviation, and
+/// how many of the 95 % intervals hold it.
 std::string parameterTable(const CalibrationSession& session, const std::optional<Actuator>& truth);
 
 }  // namespace spherical_actuator_calibration

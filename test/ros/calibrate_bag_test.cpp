@@ -49,19 +49,22 @@ class CalibrateBag : public testing::Test {
     shared = new TemporaryFolder;
     saveDescription(actuator(), {nominalUnit()}, OverwritePolicy::kRefuse);
     saveDescription(truth(), {trueUnit()}, OverwritePolicy::kRefuse);
-    SessionPlanOptions plan_options;
-    plan_options.validation_poses = 0;
-    SimulationOptions simulation;
-    SessionBagOptions options;
-    options.registration = simulation.registration;
-    options.begin = simulation.begin;
-    SessionBagWriter writer(session(), nominalUnit(), options);
-    simulateSession(trueUnit(), planSession(nominalUnit(), plan_options, 1), simulation, writer);
-    writer.close();
+    record(session(), {});
   }
   static void TearDownTestSuite() {
     delete shared;
     shared = nullptr;
+  }
+
+  static void record(const std::string& bag, const SimulationOptions& simulation) {
+    SessionPlanOptions plan_options;
+    plan_options.validation_poses = 0;
+    SessionBagOptions options;
+    options.registration = simulation.registration;
+    options.begin = simulation.begin;
+    SessionBagWriter writer(bag, nominalUnit(), options);
+    simulateSession(trueUnit(), planSession(nominalUnit(), plan_options, 1), simulation, writer);
+    writer.close();
   }
 
   static Actuator trueUnit() { return manufacturedActuator(nominalUnit(), {}, 5); }
@@ -209,6 +212,24 @@ TEST_F(CalibrateBag, RealPositionerMissesTheAxisThatItHasNot) {
   ASSERT_TRUE(std::regex_search(outcome.output, rms, std::regex("orientation rms ([0-9.]+) mrad")));
   EXPECT_LE(std::stod(rms[1]), 0.90);
   EXPECT_EQ(loadActuator(output()).joints[2].axis, loadActuator(kPositioner).joints[2].axis);
+}
+
+TEST_F(CalibrateBag, WithoutTrackerTheRotationOfTheStatorStaysOpen) {
+  SimulationOptions simulation;
+  simulation.tracker.poses = 0;
+  record(path("torques.bag"), simulation);
+  const Outcome outcome = run("--actuator " + actuator() + " --truth " + truth() + " --output " +
+                              output() + " " + path("torques.bag"));
+  EXPECT_EQ(outcome.status, 1) << outcome.errors;
+  EXPECT_NE(outcome.output.find("28 of 31 directions identified"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("about stator z"), std::string::npos);
+  EXPECT_NE(outcome.output.find("known only relative to each other:"), std::string::npos);
+  const CalibratedDescription result = loadDescription(output());
+  EXPECT_TRUE(result.stddevs.poles[0].polar);
+  const std::vector<std::string>& open = result.calibration->unidentified;
+  EXPECT_NE(std::find(open.begin(), open.end(), "coil_1/azimuth"), open.end());
+  EXPECT_EQ(std::find(open.begin(), open.end(), "pole_1/azimuth"), open.end());
 }
 
 TEST_F(CalibrateBag, WritesTheUrdfFromTheShippedTemplate) {
