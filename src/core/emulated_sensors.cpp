@@ -44,7 +44,7 @@ std::vector<std::optional<Eigen::Matrix3d>> drawDwellErrors(const TrackerOptions
 
 }  // namespace
 
-void validate(const JointSensorOptions& options) {
+void validate(const EmulatedJointOptions& options) {
   validate("joint sensor", options.stream);
   const ValueRange angle = ValueRange::nonNegative("rad");
   requireInRange("joint sensor noise", options.noise, angle);
@@ -80,7 +80,7 @@ void validate(const CurrentSensorOptions& options) {
   requireInRange("current glitch", options.glitch, current);
 }
 
-EmulatedJointSensor::EmulatedJointSensor(const JointSensorOptions& options, std::uint64_t seed)
+EmulatedJointSensor::EmulatedJointSensor(const EmulatedJointOptions& options, std::uint64_t seed)
     : options_(options), noise_(seed, kJointNoise) {}
 
 JointMeasurement EmulatedJointSensor::measure(Stamp stamp,

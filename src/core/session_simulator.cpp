@@ -6,9 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "spherical_actuator_calibration/core/rotations.hpp"
-#include "spherical_actuator_calibration/core/spherical_joint.hpp"
-#include "spherical_actuator_calibration/core/torque_curve.hpp"
-#include "spherical_actuator_calibration/core/torque_model.hpp"
 #include "spherical_actuator_calibration/core/value_range.hpp"
 
 namespace spherical_actuator_calibration {
@@ -25,44 +22,6 @@ Eigen::Isometry3d transform(const Eigen::Vector3d& translation, const Eigen::Vec
   X.linear() = rotationExp(rotation);
   return X;
 }
-
-/// The physics: orientation and load of the true actuator.
-class TrueActuator {
- public:
-  TrueActuator(const Actuator& truth, const RotorLoad& load)
-      : joints_(jointGeometry(truth.joints)), torques_(torqueGeometry(truth)), load_(load) {
-    if (truth.hasTorqueModel()) {
-      curve_.emplace(*truth.torque_curve);
-    }
-  }
-
-  bool hasTorque() const { return curve_.has_value(); }
-
-  Eigen::Matrix3d orientation(const SessionState& state) const {
-    return rotorOrientation(joints_, state.joint_position);
-  }
-
-  /// Weight in the rotor frame [N].
-  Eigen::Vector3d weight(const Eigen::Matrix3d& R_stator_rotor) const {
-    return load_.weight * down(R_stator_rotor);
-  }
-
-  /// Torque of the coils and of gravity about the rotor centre, rotor frame [N·m].
-  Eigen::Vector3d torque(const SessionState& state, const Eigen::Matrix3d& R_stator_rotor) const {
-    return rotorTorque(*curve_, torques_, R_stator_rotor, state.current) +
-           load_.unbalance.cross(down(R_stator_rotor));
-  }
-
- private:
-  static Eigen::Vector3d down(const Eigen::Matrix3d& R_stator_rotor) {
-    return -R_stator_rotor.row(2).transpose();
-  }
-
-  JointGeometry joints_;
-  TorqueGeometry torques_;
-  std::optional<TorqueCurve> curve_;
-  RotorLoad load_;
-};
 
 class Simulation {
  public:
@@ -143,10 +102,10 @@ class Simulation {
       deliver(current_sensor_.measure(stamp, state.current, scheduled), scheduled);
       return;
     }
-    const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(state);
+    const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(state.joint_position);
     if (&stream == &wrench_stream_) {
       deliver(wrench_sensor_.measure(stamp,
-                                     actuator_.torque(state, R_stator_rotor),
+                                     actuator_.torque(R_stator_rotor, state.current),
                                      actuator_.weight(R_stator_rotor),
                                      scheduled),
               scheduled);

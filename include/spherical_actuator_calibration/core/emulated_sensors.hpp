@@ -15,7 +15,7 @@
 namespace spherical_actuator_calibration {
 
 /// Joint angle sensors (topic joint_states).
-struct JointSensorOptions {
+struct EmulatedJointOptions {
   StreamOptions stream = {/*rate=*/200.0, /*phase=*/0.0};
   double noise = 2e-5;                ///< stddev of a reading [rad]
   double quantisation = 4.793690e-5;  ///< step of a reading: a turn / 2¹⁷ [rad]; 0: none
@@ -52,7 +52,7 @@ struct CurrentSensorOptions {
 };
 
 /// Throw ConfigError that names the option, its value and the allowed range.
-void validate(const JointSensorOptions& options);
+void validate(const EmulatedJointOptions& options);
 void validate(const TrackerOptions& options);
 void validate(const WrenchSensorOptions& options);
 void validate(const CurrentSensorOptions& options);
@@ -61,14 +61,14 @@ void validate(const CurrentSensorOptions& options);
 /// tells whether the measurement is a glitch or not a number.
 class EmulatedJointSensor {
  public:
-  EmulatedJointSensor(const JointSensorOptions& options, std::uint64_t seed);
+  EmulatedJointSensor(const EmulatedJointOptions& options, std::uint64_t seed);
   /// `position`: exact sensor angles [rad].
   JointMeasurement measure(Stamp stamp,
                            const Eigen::Vector3d& position,
                            const ScheduledMeasurement& scheduled);
 
  private:
-  JointSensorOptions options_;
+  EmulatedJointOptions options_;
   NoiseSource noise_;
 };
 

@@ -13,16 +13,9 @@
 #include "spherical_actuator_calibration/core/registration.hpp"
 #include "spherical_actuator_calibration/core/session_plan.hpp"
 #include "spherical_actuator_calibration/core/session_trajectory.hpp"
+#include "spherical_actuator_calibration/core/true_actuator.hpp"
 
 namespace spherical_actuator_calibration {
-
-/// What gravity (along −z of the stator) does to the rotor.
-struct RotorLoad {
-  double weight = 8.0;  ///< of rotor and load, seen by the force/torque sensor [N]
-  /// Weight times the position of the centre of gravity, rotor frame [N·m]: T_g = unbalance ×
-  /// Rᵀ(−z) (doc/method.md, Laboratory).
-  Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
-};
 
 /// Registration of a plausible laboratory: every transform away from the identity.
 Registration laboratoryRegistration();
@@ -33,7 +26,7 @@ struct SimulationOptions {
   Stamp begin = 1'700'000'000'000'000'000;  ///< stamp of the begin of the session
   SessionTiming timing;
   Registration registration = laboratoryRegistration();
-  JointSensorOptions joint_sensor;
+  EmulatedJointOptions joint_sensor;
   TrackerOptions tracker;
   WrenchSensorOptions wrench_sensor;
   CurrentSensorOptions current_sensor;

@@ -1,0 +1,98 @@
+"""The emulated laboratory under test, with ports of its own, and what an operator does in it."""
+
+import os
+import pathlib
+import socket
+
+import rospy
+import yaml
+from calibration_client import NAMESPACE, wait_for
+from launch_client import Launch, launch_file
+from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.msg import CoilCurrents
+from std_srvs.srv import SetBool, Trigger
+
+COILS = 24
+JOINTS = ["joint_1", "joint_2", "joint_3"]
+WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+def configuration_with_free_ports(folder):
+    """A copy of the shipped configuration whose devices listen at free ports."""
+    shipped = pathlib.Path(rospy.get_param("~config"))
+    copy = pathlib.Path(folder) / "config"
+    copy.mkdir()
+    for file in shipped.glob("*.yaml"):
+        content = yaml.safe_load(file.read_text())
+        if isinstance(content.get("link"), dict):
+            content["link"]["port"] = free_port()
+        (copy / file.name).write_text(yaml.safe_dump(content))
+    return str(copy)
+
+
+class EmulatedLab:
+    """emulated_lab.launch on the master of the test; `folder` keeps its files."""
+
+    def __init__(self, folder, **arguments):
+        self.folder = folder
+        self.truth = os.path.join(folder, "truth.yaml")
+        self.directory = os.path.join(folder, "calibration")
+        self._arguments = {
+            "config": configuration_with_free_ports(folder),
+            "directory": self.directory,
+            "truth": self.truth,
+            **arguments,
+        }
+        self._launch = None
+        self._position = None
+        self._command = CoilCurrents(current=[0.0] * COILS)
+        self._commands = rospy.Publisher(f"{NAMESPACE}/coil_command", CoilCurrents, queue_size=1)
+        self._targets = rospy.Publisher(f"{NAMESPACE}/fixture/target", JointState, queue_size=1)
+        self._timer = rospy.Timer(rospy.Duration(1.0 / WATCHDOG_RATE), self._repeat)
+        rospy.Subscriber(f"{NAMESPACE}/joint_states", JointState, self._keep)
+
+    def start(self):
+        self._launch = Launch(launch_file("emulated_lab.launch"), **self._arguments)
+        wait_for(lambda: self._position is not None, "joint angles")
+        wait_for(lambda: self._targets.get_num_connections() > 0, "the fixture")
+        wait_for(lambda: self._commands.get_num_connections() > 0, "the coil driver")
+
+    def stop(self):
+        self._timer.shutdown()
+        if self._launch:
+            self._launch.stop()
+
+    def _keep(self, message):
+        self._position = message.position
+
+    def _repeat(self, _event):
+        self._command.header.stamp = rospy.Time.now()
+        self._commands.publish(self._command)
+
+    def excite(self, coil, current):
+        """Only this coil, counted from 1."""
+        self._command = CoilCurrents(current=[0.0] * COILS)
+        if coil:
+            self._command.current[coil - 1] = current
+
+    def is_at(self, target):
+        return max(abs(a - b) for a, b in zip(self._position, target)) < 1e-3
+
+    def move(self, target):
+        """Returns when the joint sensors see the fixture at the target."""
+        self._targets.publish(JointState(name=JOINTS, position=target))
+        wait_for(lambda: self.is_at(target), f"the fixture at {target}")
+
+    def fault(self, name, active):
+        answer = rospy.ServiceProxy(f"{NAMESPACE}/lab_emulator/{name}", SetBool)(active)
+        assert answer.success, answer.message
+
+    def inject_outlier(self):
+        answer = rospy.ServiceProxy(f"{NAMESPACE}/lab_emulator/inject_outlier", Trigger)()
+        assert answer.success, answer.message
