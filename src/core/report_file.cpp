@@ -3,8 +3,11 @@
 #include <optional>
 #include <sstream>
 
+#include "spherical_actuator_calibration/core/calibration_verdict.hpp"
 #include "spherical_actuator_calibration/core/model_choice.hpp"
+#include "spherical_actuator_calibration/core/sample_coverage.hpp"
 #include "spherical_actuator_calibration/core/sample_influence.hpp"
+#include "spherical_actuator_calibration/core/workspace_uncertainty.hpp"
 #include "spherical_actuator_calibration/core/yaml_writer.hpp"
 
 namespace spherical_actuator_calibration {
@@ -14,13 +17,37 @@ std::string truthText(bool value) {
   return value ? "true" : "false";
 }
 
-std::string numberList(const std::vector<double>& values) {
+const char* quantityName(Quantity quantity) {
+  return quantity == Quantity::kOrientation ? "orientation" : "torque";
+}
+
+/// Of a vector of doubles of any kind.
+template <typename Numbers>
+std::string numberList(const Numbers& values) {
   std::vector<std::string> items;
-  items.reserve(values.size());
+  items.reserve(static_cast<std::size_t>(values.size()));
   for (const double value : values) {
     items.push_back(yamlNumber(value));
   }
   return yamlList(items);
+}
+
+std::vector<std::string> texts(const std::vector<std::string>& plain) {
+  std::vector<std::string> lines;
+  lines.reserve(plain.size());
+  for (const std::string& text : plain) {
+    lines.push_back(yamlText(text));
+  }
+  return lines;
+}
+
+std::vector<std::string> matrixLines(const Eigen::MatrixXd& matrix) {
+  std::vector<std::string> lines;
+  lines.reserve(static_cast<std::size_t>(matrix.rows()));
+  for (const auto& row : matrix.rowwise()) {
+    lines.push_back(numberList(row));
+  }
+  return lines;
 }
 
 /// Writes nested maps and lists, two spaces a level.
@@ -50,20 +77,53 @@ class ReportWriter {
   std::ostringstream text_;
 };
 
-std::vector<std::string> estimateLines(const std::vector<ParameterEstimate>& estimates,
-                                       bool with_initial) {
+/// With `initial` and `observable` of a cycle, or with `identified` of the parameters in force.
+YamlLine estimateLine(const ParameterEstimate& estimate, bool is_of_cycle) {
+  YamlLine line;
+  line.add("name", estimate.name).add("nominal", yamlNumber(estimate.nominal));
+  if (is_of_cycle) {
+    line.add("initial", yamlNumber(estimate.initial));
+  }
+  line.add("value", yamlNumber(estimate.value)).add("stddev", yamlNumber(estimate.stddev));
+  line.add(is_of_cycle ? "observable" : "identified", truthText(estimate.observable));
+  return line;
+}
+
+std::vector<std::string> estimateLines(const std::vector<ParameterEstimate>& estimates) {
   std::vector<std::string> lines;
+  lines.reserve(estimates.size());
   for (const ParameterEstimate& estimate : estimates) {
-    YamlLine line;
-    line.add("name", estimate.name).add("nominal", yamlNumber(estimate.nominal));
-    if (with_initial) {
-      line.add("initial", yamlNumber(estimate.initial));
-    }
-    line.add("value", yamlNumber(estimate.value)).add("stddev", yamlNumber(estimate.stddev));
-    line.add(with_initial ? "observable" : "identified", truthText(estimate.observable));
-    lines.push_back(line.text());
+    lines.push_back(estimateLine(estimate, true).text());
   }
   return lines;
+}
+
+const char* unitOf(const ParameterSpace& space, Eigen::Index parameter) {
+  if (parameter < space.effect()) {
+    return "rad";
+  }
+  switch (space.effects().effect(parameter - space.effect())) {
+    case LaboratoryEffect::kTorqueBias:
+    case LaboratoryEffect::kRotorUnbalance:
+      return "N·m";
+    case LaboratoryEffect::kEncoderHarmonics:
+    case LaboratoryEffect::kMarkerRegistration:
+    case LaboratoryEffect::kTrackerRegistration:
+      return "rad";
+    default:
+      return "1";
+  }
+}
+
+void writeParameters(ReportWriter& writer, const CalibrationSession& session) {
+  std::vector<std::string> lines;
+  Eigen::Index parameter = 0;
+  for (const ParameterEstimate& estimate : session.parameters()) {
+    YamlLine line = estimateLine(estimate, false);
+    line.add("unit", yamlText(unitOf(session.model().space(), parameter++)));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "parameters", lines);
 }
 
 std::vector<std::string> residualLines(const std::vector<SampleResidual>& residuals) {
@@ -71,7 +131,7 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
   for (const SampleResidual& residual : residuals) {
     YamlLine line;
     line.add("id", std::to_string(residual.id));
-    line.add("quantity", residual.quantity == Quantity::kOrientation ? "orientation" : "torque");
+    line.add("quantity", quantityName(residual.quantity));
     line.add("residual", yamlNumber(residual.residual));
     line.add("standardized", yamlNumber(residual.standardized));
     line.add("rejected", truthText(residual.rejected));
@@ -100,20 +160,21 @@ void writeCycle(ReportWriter& writer, const CycleReport& report) {
   writer.entry(3, "solve_time", yamlNumber(report.solve_time));
   writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));
   writer.entry(3, "torque_uncertainty", yamlNumber(report.torque_uncertainty));
-  writer.list(3, "estimates", estimateLines(report.estimates, true));
+  writer.list(3, "estimates", estimateLines(report.estimates));
   writer.list(3, "residuals", residualLines(report.residuals));
 }
 
 void writeValidation(ReportWriter& writer, const HeldOutValidation& validation) {
-  YamlLine line;
-  line.add("samples", std::to_string(validation.samples));
-  line.add("orientations", std::to_string(validation.orientations));
-  line.add("orientation_rms", yamlNumber(validation.orientation_rms));
-  line.add("torques", std::to_string(validation.torques));
-  line.add("torque_rms", yamlNumber(validation.torque_rms));
-  line.add("reduced_chi_square", yamlNumber(validation.reduced_chi_square));
-  line.add("probability", yamlNumber(validation.probability));
-  writer.entry(1, "validation", line.text());
+  writer.map(1, "validation");
+  writer.entry(2, "samples", std::to_string(validation.samples));
+  writer.entry(2, "orientations", std::to_string(validation.orientations));
+  writer.entry(2, "orientation_rms", yamlNumber(validation.orientation_rms));
+  writer.entry(2, "torques", std::to_string(validation.torques));
+  writer.entry(2, "torque_rms", yamlNumber(validation.torque_rms));
+  writer.entry(2, "reduced_chi_square", yamlNumber(validation.reduced_chi_square));
+  writer.entry(2, "probability", yamlNumber(validation.probability));
+  writer.entry(2, "verdict", yamlText(verdict(validation)));
+  writer.list(2, "residuals", residualLines(validation.residuals));
 }
 
 void writeOrigin(ReportWriter& writer,
@@ -124,6 +185,9 @@ void writeOrigin(ReportWriter& writer,
   writer.entry(1, "serial", yamlText(actuator.serial));
   writer.entry(1, "date", yamlText(origin.date));
   writer.entry(1, "software", yamlText(origin.software));
+  if (origin.revision) {
+    writer.entry(1, "revision", std::to_string(*origin.revision));
+  }
   std::vector<std::string> sources;
   for (const RecordingSource& source : origin.recordings) {
     YamlLine line;
@@ -133,32 +197,99 @@ void writeOrigin(ReportWriter& writer,
   writer.list(1, "source", sources);
 }
 
-/// Of the observations of the last cycle, where it succeeded.
-void writeInfluences(ReportWriter& writer, const CalibrationSession& session) {
-  if (session.reports().empty()) {
-    return;
-  }
+void writeVerdict(ReportWriter& writer, const CalibrationVerdict& verdict) {
+  YamlLine line;
+  line.add("grade", gradeName(verdict.grade)).add("sentence", yamlText(verdict.sentence));
+  writer.entry(1, "verdict", line.text());
+  writer.list(1, "next_steps", texts(verdict.next_steps));
+}
+
+void writeSamples(ReportWriter& writer, const CalibrationSession& session) {
+  const double threshold = session.config().estimation.current_threshold;
   std::vector<std::string> lines;
-  for (const SampleInfluence& influence : sampleInfluences(session.model(),
-                                                           session.samples(),
-                                                           session.reports().back(),
-                                                           session.state(),
-                                                           session.config().estimation)) {
+  for (const Sample& sample : session.samples()) {
+    std::vector<std::string> coils;
+    for (const Excitation& excitation : excitedCoils(sample, threshold)) {
+      coils.push_back(std::to_string(excitation.coil + 1));
+    }
+    YamlLine line;
+    line.add("id", std::to_string(sample.id));
+    line.add("joint_position", numberList(sample.joint_position));
+    line.add("orientation", truthText(sample.has_orientation));
+    line.add("torque", truthText(sample.has_torque));
+    line.add("coils", yamlList(coils));
+    line.add("validation", truthText(sample.validation));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "samples", lines);
+}
+
+void writeCoverage(ReportWriter& writer, const CalibrationSession& session) {
+  const SampleCoverage coverage = sampleCoverage(session.model(),
+                                                 session.samples(),
+                                                 session.state().belief.x,
+                                                 session.config().estimation.current_threshold);
+  const Actuator& actuator = session.model().space().nominal();
+  std::vector<std::string> joints;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    YamlLine line;
+    line.add("name", yamlText(actuator.joints[k].name));
+    line.add("lowest", yamlNumber(coverage.joints[k].lowest));
+    line.add("highest", yamlNumber(coverage.joints[k].highest));
+    joints.push_back(line.text());
+  }
+  const auto counts = [](const std::vector<std::uint32_t>& numbers) {
+    std::vector<std::string> items;
+    items.reserve(numbers.size());
+    for (const std::uint32_t count : numbers) {
+      items.push_back(std::to_string(count));
+    }
+    return yamlList(items);
+  };
+  writer.map(1, "coverage");
+  writer.list(2, "joints", joints);
+  writer.entry(2, "poles", counts(coverage.poles));
+  writer.entry(2, "coils", counts(coverage.coils));
+}
+
+void writeWorkspace(ReportWriter& writer, const CalibrationSession& session) {
+  const WorkspaceMap map = workspaceMap(session.model(), session.state().belief);
+  writer.map(1, "workspace");
+  writer.entry(2, "tilt", numberList(map.tilt));
+  writer.list(2, "orientation", matrixLines(map.orientation));
+  writer.list(2, "torque", matrixLines(map.torque));
+}
+
+/// Of the observations of the last cycle, where it succeeded.
+std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
+  if (session.reports().empty()) {
+    return {};
+  }
+  return sampleInfluences(session.model(),
+                          session.samples(),
+                          session.reports().back(),
+                          session.state(),
+                          session.config().estimation);
+}
+
+void writeInfluences(ReportWriter& writer, const std::vector<SampleInfluence>& influences) {
+  std::vector<std::string> lines;
+  for (const SampleInfluence& influence : influences) {
     YamlLine line;
     line.add("id", std::to_string(influence.id));
-    line.add("quantity", influence.quantity == Quantity::kOrientation ? "orientation" : "torque");
+    line.add("quantity", quantityName(influence.quantity));
     line.add("leverage", yamlNumber(influence.leverage));
     line.add("largest_shift", yamlNumber(influence.largest_shift));
-    line.add("irreplaceable", influence.irreplaceable ? "true" : "false");
+    line.add("irreplaceable", truthText(influence.irreplaceable));
     line.add("parameter", influence.parameter);
     lines.push_back(line.text());
   }
   writer.list(1, "influences", lines);
 }
 
-void writeModelChoice(ReportWriter& writer, const CalibrationSession& session) {
+void writeModelChoice(ReportWriter& writer, const std::vector<ModelFit>& fits) {
   std::vector<std::string> lines;
-  for (const ModelFit& fit : compareEffects(session.start(), session.samples(), session.config())) {
+  for (const ModelFit& fit : fits) {
     YamlLine line;
     line.add("effects", yamlText(fit.effects));
     line.add("converged", truthText(fit.converged));
@@ -173,25 +304,29 @@ void writeModelChoice(ReportWriter& writer, const CalibrationSession& session) {
   }
 }
 
+void writeConfiguration(ReportWriter& writer, const CalibrationConfig& config) {
+  writer.map(1, "configuration");
+  std::istringstream configuration(renderCalibrationConfig(config));
+  for (std::string line; std::getline(configuration, line);) {
+    writer.line(2, line);
+  }
+}
+
 }  // namespace
 
 std::string renderReport(const CalibrationSession& session,
                          const CalibrationOrigin& origin,
                          const std::vector<std::string>& recording) {
+  const std::vector<SampleInfluence> influences = influencesOf(session);
+  const std::vector<ModelFit> fits =
+      compareEffects(session.start(), session.samples(), session.config());
   ReportWriter writer;
   writer.map(0, "calibration_report");
   writeOrigin(writer, session, origin);
-  std::vector<std::string> lines;
-  lines.reserve(recording.size());
-  for (const std::string& line : recording) {
-    lines.push_back(yamlText(line));
-  }
-  writer.list(1, "recording", lines);
-  writer.map(1, "configuration");
-  std::istringstream configuration(renderCalibrationConfig(session.config()));
-  for (std::string line; std::getline(configuration, line);) {
-    writer.line(2, line);
-  }
+  writeVerdict(writer, judgeCalibration(session, influences, fits));
+  writer.list(1, "recording", texts(recording));
+  writeConfiguration(writer, session.config());
+  writeSamples(writer, session);
   writer.line(1, session.reports().empty() ? "cycles: []" : "cycles:");
   for (const CycleReport& report : session.reports()) {
     writeCycle(writer, report);
@@ -199,9 +334,11 @@ std::string renderReport(const CalibrationSession& session,
   if (const auto validation = session.validation()) {
     writeValidation(writer, *validation);
   }
-  writer.list(1, "parameters", estimateLines(session.parameters(), false));
-  writeInfluences(writer, session);
-  writeModelChoice(writer, session);
+  writeParameters(writer, session);
+  writeCoverage(writer, session);
+  writeWorkspace(writer, session);
+  writeInfluences(writer, influences);
+  writeModelChoice(writer, fits);
   return writer.text();
 }
 

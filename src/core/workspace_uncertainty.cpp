@@ -111,6 +111,11 @@ class PoseUncertainty {
     return std::sqrt(std::max(0.0, own.trace()));
   }
 
+  /// Number of coils whose torque is modelled.
+  Eigen::Index torqueCoils() const {
+    return model_.hasTorqueModel() ? static_cast<Eigen::Index>(space().coils()) : 0;
+  }
+
   /// Torque error of one coil at unit current, at the pose [N·m/A].
   double torque(std::size_t coil) const {
     const AxisPoint& axis = coils_[coil];
@@ -155,6 +160,37 @@ class PoseUncertainty {
   Eigen::MatrixXd moved_covariance_;
 };
 
+/// Where the model puts the rotor at joint angles q.
+Sample poseAt(const JointGeometry& joints, const Eigen::Vector3d& q) {
+  Sample pose;
+  pose.joint_position = q;
+  pose.R_stator_rotor = rotorOrientation(joints, q);
+  return pose;
+}
+
+/// Errors at one tilt, root mean square over the spin, and those of torque over the coils.
+struct SpinAverage {
+  double orientation = 0.0;  ///< [rad]
+  double torque = 0.0;       ///< [N·m/A]
+};
+
+SpinAverage averageOverSpin(PoseUncertainty& uncertainty,
+                            const JointGeometry& joints,
+                            const Eigen::Vector2d& tilt,
+                            int spins) {
+  Eigen::VectorXd orientation(spins);
+  Eigen::MatrixXd torque = Eigen::MatrixXd::Zero(spins, uncertainty.torqueCoils());
+  for (Eigen::Index s = 0; s < spins; ++s) {
+    const double spin = kPi * (2.0 * static_cast<double>(s) / spins - 1.0);
+    orientation[s] = uncertainty.moveTo(poseAt(joints, {tilt[0], tilt[1], spin}));
+    for (Eigen::Index j = 0; j < torque.cols(); ++j) {
+      torque(s, j) = uncertainty.torque(static_cast<std::size_t>(j));
+    }
+  }
+  const auto count = static_cast<double>(std::max<Eigen::Index>(torque.size(), 1));
+  return {orientation.norm() / std::sqrt(spins), torque.norm() / std::sqrt(count)};
+}
+
 }  // namespace
 
 WorkspaceUncertainty workspaceUncertainty(const CalibrationModel& model,
@@ -167,16 +203,42 @@ WorkspaceUncertainty workspaceUncertainty(const CalibrationModel& model,
   std::vector<double> orientation_errors;
   std::vector<double> torque_errors;
   for (int n = 1; n <= poses; ++n) {
-    Sample pose;
-    pose.joint_position << tilt * (2.0 * vanDerCorput(n, 2) - 1.0),
-        tilt * (2.0 * vanDerCorput(n, 3) - 1.0), kPi * (2.0 * vanDerCorput(n, 5) - 1.0);
-    pose.R_stator_rotor = rotorOrientation(joints, pose.joint_position);
-    orientation_errors.push_back(uncertainty.moveTo(pose));
+    const Eigen::Vector3d q(tilt * (2.0 * vanDerCorput(n, 2) - 1.0),
+                            tilt * (2.0 * vanDerCorput(n, 3) - 1.0),
+                            kPi * (2.0 * vanDerCorput(n, 5) - 1.0));
+    orientation_errors.push_back(uncertainty.moveTo(poseAt(joints, q)));
     for (std::size_t j = 0; model.hasTorqueModel() && j < space.coils(); ++j) {
       torque_errors.push_back(uncertainty.torque(j));
     }
   }
   return {percentile95(orientation_errors), percentile95(torque_errors)};
+}
+
+WorkspaceMap workspaceMap(const CalibrationModel& model,
+                          const ParameterBelief& belief,
+                          int tilts,
+                          int spins) {
+  const ParameterSpace& space = model.space();
+  const double limit = space.nominal().workspace.tilt_limit;
+  const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x).joints);
+  PoseUncertainty uncertainty(model, belief);
+  WorkspaceMap map;
+  map.tilt = Eigen::VectorXd::LinSpaced(tilts, -limit, limit);
+  map.orientation.resize(tilts, tilts);
+  if (model.hasTorqueModel()) {
+    map.torque.resize(tilts, tilts);
+  }
+  for (Eigen::Index row = 0; row < tilts; ++row) {
+    for (Eigen::Index column = 0; column < tilts; ++column) {
+      const SpinAverage average =
+          averageOverSpin(uncertainty, joints, {map.tilt[row], map.tilt[column]}, spins);
+      map.orientation(row, column) = average.orientation;
+      if (model.hasTorqueModel()) {
+        map.torque(row, column) = average.torque;
+      }
+    }
+  }
+  return map;
 }
 
 }  // namespace spherical_actuator_calibration

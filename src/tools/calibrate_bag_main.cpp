@@ -18,6 +18,7 @@
 #include "spherical_actuator_calibration/core/urdf_file.hpp"
 #include "spherical_actuator_calibration/ros/file_checksum.hpp"
 #include "spherical_actuator_calibration/ros/recording_reader.hpp"
+#include "spherical_actuator_calibration/ros/report_page.hpp"
 #include "spherical_actuator_calibration/ros/utc_date.hpp"
 
 #include <unistd.h>
@@ -60,7 +61,8 @@ struct Files {
   std::string description;
   std::string urdf_template;  ///< empty: no URDF is wanted
   std::string urdf;
-  std::string report;  ///< empty: no report is wanted
+  std::string report;       ///< empty: no report is wanted
+  std::string report_page;  ///< the same for people
 };
 
 /// Nothing is read for a result that could not be written in the end.
@@ -82,8 +84,9 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
   }
   if (options.report_folder) {
     files.report = (fs::path(*options.report_folder) / "report.yaml").string();
+    files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
-  for (const std::string& path : {files.description, files.urdf, files.report}) {
+  for (const std::string& path : {files.description, files.urdf, files.report, files.report_page}) {
     requireNew(path, options.overwrite);
   }
   if (options.report_folder) {
@@ -176,6 +179,18 @@ void writeResult(const CalibrationSession& session,
   }
 }
 
+/// The page alone may fail: its figures are there then, and the calibration is as good without it.
+void writeReport(const std::string& report, const Files& files, OverwritePolicy policy) {
+  writeFileAtomically(files.report, report, policy);
+  std::cout << "All figures: " << files.report << "\n" << std::flush;
+  const std::string failure = writeReportPage(files.report, files.report_page);
+  if (failure.empty()) {
+    std::cout << "Report: " << files.report_page << "\n";
+  } else {
+    std::fprintf(stderr, "calibrate_bag: warning: %s\n", failure.c_str());
+  }
+}
+
 int calibrateBag(const CalibrateBagOptions& options) {
   const CalibratedDescription start = loadDescription(options.actuator_path);
   const CalibrationConfig config =
@@ -199,8 +214,7 @@ int calibrateBag(const CalibrateBagOptions& options) {
   }
   const CalibrationOrigin origin = originOf(options);
   if (!files.report.empty()) {
-    writeFileAtomically(files.report, renderReport(session, origin, lines), options.overwrite);
-    std::cout << "All figures: " << files.report << "\n";
+    writeReport(renderReport(session, origin, lines), files, options.overwrite);
   }
   if (!has_result) {
     std::cout << "No cycle succeeded: " << files.description << " is not written.\n";

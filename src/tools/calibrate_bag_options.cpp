@@ -42,7 +42,10 @@ po::options_description visibleOptions() {
   known.add_options()("urdf-template",
                       text("URDF"),
                       "robot description to start from; without it the shipped one of that name");
-  known.add_options()("report", text("DIR"), "folder for all figures (report.yaml)");
+  known.add_options()(
+      "report",
+      text("DIR"),
+      "folder for the report: report.html for people, report.yaml with all figures");
   known.add_options()("truth", text("YAML"), "true parameters, to compare with");
   known.add_options()("date", text("ISO8601"), "date of the calibration, in UTC; without it now");
   known.add_options()("force", "replace files that exist");

@@ -7,9 +7,10 @@
 
 namespace spherical_actuator_calibration {
 
-/// All figures of a calibration as YAML, for programs: origin, configuration, every cycle with its
-/// estimates and residuals, validation, parameters in force. Angles in rad, torques in N·m.
-/// `recording` tells in words what became of the recordings, one line each.
+/// All figures of a calibration as YAML, for programs: origin, verdict, configuration, samples,
+/// every cycle with its estimates and residuals, validation, parameters in force, coverage,
+/// uncertainty over the workspace. Angles in rad, torques in N·m. `recording` tells in words what
+/// became of the recordings, one line each.
 std::string renderReport(const CalibrationSession& session,
                          const CalibrationOrigin& origin,
                          const std::vector<std::string>& recording);

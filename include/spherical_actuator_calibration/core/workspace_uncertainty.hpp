@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "spherical_actuator_calibration/core/calibration_model.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
 
@@ -17,5 +19,20 @@ struct WorkspaceUncertainty {
 WorkspaceUncertainty workspaceUncertainty(const CalibrationModel& model,
                                           const ParameterBelief& belief,
                                           int poses = 100);
+
+/// Where the calibration is good and where it is not: the same expected errors over the tilt of the
+/// rotor, as root mean square over its spin.
+struct WorkspaceMap {
+  Eigen::VectorXd tilt;  ///< positions of joint 1 (rows) and of joint 2 (columns), ascending [rad]
+  Eigen::MatrixXd orientation;  ///< [rad]
+  Eigen::MatrixXd torque;       ///< also over the coils [N·m/A]; empty without torque model
+};
+
+/// Propagates the covariance at `tilts`² (at least 2²) positions of joints 1 and 2 over the
+/// workspace, each at `spins` positions of joint 3 around the whole turn.
+WorkspaceMap workspaceMap(const CalibrationModel& model,
+                          const ParameterBelief& belief,
+                          int tilts = 13,
+                          int spins = 12);
 
 }  // namespace spherical_actuator_calibration

@@ -1,0 +1,304 @@
+"""What the page tells: the figures of a report as words, rows and pictures for the template."""
+
+import math
+import re
+
+from report_page import figures
+from report_page.numbers import change_of, plus_minus, signed, significant, with_unit
+
+GRADES = {
+    "complete": "Complete",
+    "incomplete": "Incomplete",
+    "contradicted": "Contradicted",
+    "failed": "Failed",
+}
+CYCLES = {"joint": "Joint", "poles": "Poles with coil {}", "coil": "Coil {}", "refine": "Refinement"}
+QUANTITIES = ("orientation", "torque")
+MOST_INFLUENTIAL = 8
+
+
+class Report:
+    """The report.yaml of one calibration."""
+
+    def __init__(self, report):
+        self._report = report
+        self._cycles = report["cycles"]
+        self._parameters = report["parameters"]
+        self._influences = report["influences"]
+
+    # ---- head ----------------------------------------------------------------------------------------
+
+    def actuator(self):
+        return self._report["actuator"]
+
+    def grade(self):
+        """Key, for the style, and word."""
+        key = self._report["verdict"]["grade"]
+        return {"key": key, "word": GRADES[key]}
+
+    def sentence(self):
+        return self._report["verdict"]["sentence"]
+
+    def next_steps(self):
+        return self._report["next_steps"]
+
+    def facts(self):
+        """What was calibrated, from what and when: pairs of name and value."""
+        facts = [
+            ("Actuator", self._report["actuator"]),
+            ("Serial number", self._report["serial"] or "not stated"),
+            ("Date", self._report["date"].replace("T", " ").replace("Z", " UTC")),
+            ("Software", f"spherical_actuator_calibration {self._report['software']}"),
+        ]
+        if "revision" in self._report:
+            facts.append(("Revision", self._report["revision"]))
+        facts.append(("Samples", self._samples_in_words()))
+        return facts
+
+    def sources(self):
+        """Recordings with their checksums."""
+        return self._report["source"]
+
+    def recording(self):
+        """What became of the recordings, in lines."""
+        return self._report["recording"]
+
+    def cards(self):
+        """The few numbers that matter most."""
+        identified = sum(item["identified"] for item in self._parameters)
+        cards = [("Identified", f"{identified} of {len(self._parameters)}", "parameters")]
+        last = self._last_success()
+        if last:
+            cards.append(("Orientation error", with_unit(last["orientation_uncertainty"], "rad", 2), "expected, 1 σ"))
+            if self._report["coverage"]["coils"]:
+                value = f"{significant(1e3 * last['torque_uncertainty'], 2)} mN·m/A"
+                cards.append(("Torque error", value, "expected, 1 σ"))
+        validation = self.validation()
+        if validation:
+            cards.append(("Held-out χ²", validation["chi_square"], f"probability {validation['probability']}"))
+        return cards
+
+    # ---- parameters ----------------------------------------------------------------------------------
+
+    def parameter_groups(self):
+        """Tables of parameters: joints, poles, coils, laboratory effects."""
+        groups = {"Joints": [], "Magnet poles": [], "Coils": [], "Laboratory effects": []}
+        for item in self._parameters:
+            groups[self._group_of(item["name"])].append(self._parameter_row(item))
+        return [(title, rows) for title, rows in groups.items() if rows]
+
+    @staticmethod
+    def _group_of(name):
+        if re.fullmatch(r"joint_\d+/(offset|axis_[uv])", name):
+            return "Joints"
+        if re.fullmatch(r"pole_\d+/(polar|azimuth)", name):
+            return "Magnet poles"
+        if re.fullmatch(r"coil_\d+/(polar|azimuth)", name):
+            return "Coils"
+        return "Laboratory effects"
+
+    @staticmethod
+    def _parameter_row(item):
+        unit = "" if item["unit"] == "1" else item["unit"]
+        # One that takes part in an open direction moves with the others, though it is not identified.
+        has_moved = item["value"] != item["nominal"]
+        return {
+            "name": item["name"],
+            "nominal": f"{item['nominal']:.6g}".replace("-", "−"),
+            "value": f"{plus_minus(item['value'], item['stddev'])} {unit}".strip(),
+            "change": signed(1e3 * (item["value"] - item["nominal"])) if item["identified"] or has_moved else "–",
+            "identified": item["identified"],
+            "tag": "" if item["identified"] else "not identified" + (", relative only" if has_moved else ""),
+        }
+
+    def unidentified(self):
+        return [item["name"] for item in self._parameters if not item["identified"]]
+
+    # ---- cycles --------------------------------------------------------------------------------------
+
+    def cycle_rows(self):
+        rows = []
+        for cycle in self._cycles:
+            history = cycle["error_history"]
+            rows.append(
+                {
+                    "name": CYCLES[cycle["cycle"]].format(cycle["coil"]),
+                    "success": cycle["success"],
+                    "message": cycle["message"],
+                    "samples": self._samples_of(cycle),
+                    "iterations": cycle["iterations"],
+                    "error": change_of(history[0], history[-1], cycle["error_unit"]) if history else "–",
+                    "chi_square": significant(cycle["reduced_chi_square"]),
+                    "condition": significant(cycle["condition_number"]),
+                    "time": f"{1e3 * cycle['solve_time']:.0f} ms",
+                }
+            )
+        return rows
+
+    @staticmethod
+    def _samples_of(cycle):
+        rejected = cycle["samples_rejected"]
+        return f"{cycle['samples_used']} ({rejected} rejected)" if rejected else f"{cycle['samples_used']}"
+
+    def convergence(self):
+        pictures = []
+        for kind in CYCLES:
+            cycles = [cycle for cycle in self._cycles if cycle["cycle"] == kind and cycle["error_history"]]
+            if cycles:
+                pictures.append(figures.convergence(kind, cycles))
+        return pictures
+
+    # ---- residuals -----------------------------------------------------------------------------------
+
+    def residual_figures(self):
+        pictures = []
+        for quantity in QUANTITIES:
+            residuals = self._residuals(quantity)
+            if residuals:
+                influential = [item["id"] for item in self._most_influential() if item["quantity"] == quantity]
+                pictures.append(figures.residuals_of(quantity, residuals, influential))
+                pictures.append(figures.standardized_of(quantity, residuals, influential))
+        return pictures
+
+    def residual_cycle(self):
+        """Name of the cycle whose residuals are shown."""
+        last = self._last_success()
+        return CYCLES[last["cycle"]].format(last["coil"]) if last else None
+
+    def rejected(self):
+        """Rows of measurements that were taken for outliers by the last successful cycles."""
+        return [
+            {
+                "id": item["id"],
+                "quantity": item["quantity"],
+                "residual": with_unit(item["residual"], "rad" if item["quantity"] == "orientation" else "N·m"),
+                "reason": item["reason"],
+            }
+            for quantity in QUANTITIES
+            for item in self._residuals(quantity)
+            if item["rejected"]
+        ]
+
+    def influential(self):
+        """Rows of the measurements without which the result would change most."""
+        return [
+            {
+                "id": item["id"],
+                "quantity": item["quantity"],
+                "parameter": item["parameter"],
+                "shift": "could not be told" if item["irreplaceable"] else f"{item['largest_shift']:.2g} σ",
+                "leverage": f"{item['leverage']:.2f}",
+            }
+            for item in self._most_influential()
+        ]
+
+    def _most_influential(self):
+        ordered = sorted(self._influences, key=lambda item: (not item["irreplaceable"], -item["largest_shift"]))
+        return ordered[:MOST_INFLUENTIAL]
+
+    def _residuals(self, quantity):
+        """Of the last successful cycle that has any."""
+        for cycle in reversed(self._cycles):
+            chosen = [item for item in cycle["residuals"] if item["quantity"] == quantity]
+            if cycle["success"] and chosen:
+                return chosen
+        return []
+
+    def _last_success(self):
+        return next((cycle for cycle in reversed(self._cycles) if cycle["success"]), None)
+
+    def _samples_in_words(self):
+        samples = self._report["samples"]
+        held_out = sum(sample["validation"] for sample in samples)
+        return f"{len(samples) - held_out} in use, {held_out} held out"
+
+    # ---- validation ----------------------------------------------------------------------------------
+
+    def validation(self):
+        """Numbers of the held-out samples; None where there are none."""
+        validation = self._report.get("validation")
+        if not validation or not validation["residuals"]:
+            return None
+        rows = [("Samples held out", validation["samples"])]
+        if validation["orientations"]:
+            text = f"{with_unit(validation['orientation_rms'], 'rad')} rms of {validation['orientations']}"
+            rows.append(("Orientation error", text))
+        if validation["torques"]:
+            text = f"{with_unit(validation['torque_rms'], 'N·m')} rms of {validation['torques']}"
+            rows.append(("Torque error", text))
+        chi_square = significant(validation["reduced_chi_square"])
+        probability = significant(validation["probability"], 2)
+        rows.append(("Reduced χ²", f"{chi_square} (1 on average)"))
+        rows.append(("Probability of a worse χ²", probability))
+        return {
+            "rows": rows,
+            "verdict": validation["verdict"],
+            "chi_square": chi_square,
+            "probability": probability,
+        }
+
+    def validation_figures(self):
+        return [figures.held_out(self._report["validation"]["residuals"])]
+
+    # ---- coverage and workspace ----------------------------------------------------------------------
+
+    def coverage_figures(self):
+        coverage = self._report["coverage"]
+        pictures = []
+        if self._report["samples"]:
+            tilt_limit = self._report["workspace"]["tilt"][-1]
+            pictures.append(figures.poses(self._report["samples"], coverage["joints"], tilt_limit))
+        for kind, counts in (("pole", coverage["poles"]), ("coil", coverage["coils"])):
+            if counts:
+                stddevs = [self._axis_stddev(f"{kind}_{number}") for number in range(1, len(counts) + 1)]
+                pictures.append(figures.coverage(kind, counts, stddevs))
+        return pictures
+
+    def _axis_stddev(self, axis):
+        """Of the worse angle of a pole or coil [rad]; None unless both are identified."""
+        angles = [item for item in self._parameters if item["name"] in (f"{axis}/polar", f"{axis}/azimuth")]
+        if not all(item["identified"] for item in angles):
+            return None
+        return max(item["stddev"] for item in angles)
+
+    def workspace_figures(self):
+        workspace = self._report["workspace"]
+        joints = self._report["coverage"]["joints"]
+        return [
+            figures.workspace_map(quantity, workspace["tilt"], workspace[quantity], joints)
+            for quantity in QUANTITIES
+            if workspace[quantity] and math.isfinite(workspace[quantity][0][0])
+        ]
+
+    def changes(self):
+        """Picture of what calibration changed; None where nothing is identified."""
+        geometry = [item for item in self._parameters if self._group_of(item["name"]) != "Laboratory effects"]
+        return figures.changes(geometry) if any(item["identified"] for item in geometry) else None
+
+    # ---- laboratory effects --------------------------------------------------------------------------
+
+    def model_choice(self):
+        """Rows of the compared sets of laboratory effects; the best has the smallest BIC."""
+        fits = self._report.get("model_choice", [])
+        best = min((fit["bic"] for fit in fits if fit["converged"]), default=None)
+        return [
+            {
+                "effects": fit["effects"],
+                "parameters": fit["parameters"],
+                "chi_square": significant(fit["reduced_chi_square"]),
+                "bic": f"{fit['bic']:.1f}",
+                "difference": f"{fit['bic'] - best:+.1f}" if best is not None else "–",
+                "best": fit["bic"] == best,
+                "converged": fit["converged"],
+            }
+            for fit in fits
+        ]
+
+    # ---- configuration -------------------------------------------------------------------------------
+
+    def configuration(self):
+        """Sections of the configuration with their keys and values."""
+        return [
+            (section, [(key, value) for key, value in keys.items()])
+            for section, keys in self._report["configuration"].items()
+        ]

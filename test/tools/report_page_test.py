@@ -1,0 +1,215 @@
+#!/usr/bin/python3
+"""The page of a report: complete, self-contained, and harmless whatever names it is given."""
+
+import html.parser
+import os
+import re
+import shutil
+import tempfile
+import unittest
+
+import yaml
+from report_page_case import HOSTILE, SOURCE, actuator_file, calibrated, program, read, run
+
+
+class Page(html.parser.HTMLParser):
+    """Elements and table rows of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements = []
+        self.rows = []
+        self.text = ""
+        self._is_text = True
+        self._is_cell = False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        self._is_text = tag not in ("style", "script")
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("th", "td"):
+            self.rows[-1].append("")
+            self._is_cell = True
+
+    def handle_endtag(self, tag):
+        if tag in ("th", "td"):
+            self._is_cell = False
+
+    def handle_data(self, data):
+        if self._is_text:
+            self.text += data
+            if self._is_cell:
+                self.rows[-1][-1] += data
+
+    def of(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    def row(self, name):
+        """Cells of the only row whose first word is this."""
+        found = [row for row in self.rows if row and row[0].split()[:1] == [name]]
+        assert len(found) == 1, f"{name}: {found}"
+        return found[0]
+
+
+class ReportPage(unittest.TestCase):
+    """One short session: all 24 angles of poles and one coil, two coils that no sample excites."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        actuator = actuator_file(cls.folder.name, 3, HOSTILE)
+        session = ("--joint-poses", "8", "--coil-poses", "0", "--validation-poses", "0", "--bad-dwells", "1")
+        cls.outcome, cls.report = calibrated(cls.folder.name, actuator, session)
+        cls.html = read(os.path.join(cls.report, "report.html"))
+        cls.figures = yaml.safe_load(read(os.path.join(cls.report, "report.yaml")))["calibration_report"]
+        cls.page = Page(cls.html)
+
+    def render(self, figures, name):
+        """Page of other figures."""
+        path = os.path.join(self.folder.name, name)
+        with open(path + ".yaml", "w", encoding="utf-8") as file:
+            yaml.safe_dump({"calibration_report": figures}, file, allow_unicode=True)
+        outcome = run(program("render_report"), path + ".yaml", path + ".html")
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        return Page(read(path + ".html"))
+
+    def test_calibrate_bag_names_it(self):
+        self.assertIn(self.outcome.returncode, (0, 1), self.outcome.stderr)
+        self.assertIn(f"Report: {self.report}/report.html\n", self.outcome.stdout)
+        self.assertEqual(sorted(os.listdir(self.report)), ["report.html", "report.yaml"])
+
+    def test_needs_no_other_file(self):
+        for attributes in self.page.of("img"):
+            self.assertTrue(attributes["src"].startswith("data:image/"), attributes["src"][:40])
+        for attributes in self.page.of("a"):
+            self.assertTrue(attributes["href"].startswith("#"), attributes)
+        for tag in ("link", "script", "iframe", "object", "base", "form"):
+            self.assertEqual(self.page.of(tag), [], tag)
+        for word in ("http:", "https:", "file:", "url(", "@import"):
+            self.assertNotIn(word, self.html)
+
+    def test_links_lead_to_sections(self):
+        targets = {attributes["id"] for _, attributes in self.page.elements if "id" in attributes}
+        for attributes in self.page.of("a"):
+            self.assertIn(attributes["href"][1:], targets)
+
+    def test_pictures_are_described(self):
+        pictures = self.page.of("img")
+        self.assertGreaterEqual(len(pictures), 11)
+        descriptions = [attributes["alt"] for attributes in pictures]
+        self.assertEqual(len(set(descriptions)), len(descriptions))
+        for description in descriptions:
+            self.assertGreater(len(description), 40)
+
+    def test_no_parameter_is_without_uncertainty(self):
+        for parameter in self.figures["parameters"]:
+            cells = self.page.row(parameter["name"])
+            value, stddev = re.fullmatch(r"(\S+) ± (\S+) rad", cells[1]).groups()
+            self.assertAlmostEqual(float(value.replace("−", "-")), parameter["value"], delta=0.1 * parameter["stddev"])
+            self.assertAlmostEqual(float(stddev), parameter["stddev"], delta=0.06 * parameter["stddev"])
+
+    def test_names_what_is_not_identified(self):
+        unidentified = [item["name"] for item in self.figures["parameters"] if not item["identified"]]
+        self.assertIn("coil_3/azimuth", unidentified)
+        self.assertIn(", ".join(unidentified), self.page.text)
+        for parameter in self.figures["parameters"]:
+            said = "not identified" in self.page.row(parameter["name"])[0]
+            self.assertEqual(said, not parameter["identified"], parameter["name"])
+
+    def test_tells_verdict_steps_origin_and_validation(self):
+        self.assertIn(self.figures["verdict"]["sentence"], self.page.text)
+        for step in self.figures["next_steps"]:
+            self.assertIn(step, self.page.text)
+        self.assertIn(self.figures["source"][0]["checksum"], self.page.text)
+        self.assertIn(self.figures["validation"]["verdict"], self.page.text)
+        self.assertIn(self.figures["configuration"]["currents"]["bias_removal"], self.page.text)
+
+    def test_lists_cycles_and_rejected_measurements(self):
+        self.assertIn(self.figures["cycles"][0]["message"], self.page.row("Joint")[-1])
+        rejected = [item for item in self.figures["cycles"][-1]["residuals"] if item["rejected"]]
+        self.assertTrue(rejected)
+        for item in rejected:
+            self.assertIn(
+                (str(item["id"]), item["quantity"], item["reason"]),
+                [(row[0], row[1], row[-1]) for row in self.page.rows if len(row) == 4],
+            )
+
+    def test_names_are_no_markup(self):
+        self.assertIn(HOSTILE, self.page.text)
+        self.assertNotIn("<script", self.html)
+        self.assertNotIn("<img src=x", self.html)
+
+    def test_the_same_figures_give_the_same_bytes(self):
+        again = os.path.join(self.folder.name, "again.html")
+        run(program("render_report"), os.path.join(self.report, "report.yaml"), again)
+        self.assertEqual(read(again), self.html)
+
+    def test_a_session_without_success_has_a_page(self):
+        figures = dict(self.figures, influences=[], validation=None)
+        figures["cycles"] = [dict(self.figures["cycles"][0], success=False, error_history=[], residuals=[])]
+        figures["parameters"] = [dict(item, identified=False) for item in self.figures["parameters"]]
+        figures["verdict"] = {"grade": "failed", "sentence": "Nothing is calibrated."}
+        page = self.render(figures, "failed")
+        self.assertIn("Failed", page.text)
+        self.assertIn("No sample was held out", page.text)
+        self.assertIn("failed", page.row("Joint")[0])
+
+    def test_a_joint_alone_has_a_page(self):
+        figures = dict(self.figures)
+        figures["coverage"] = dict(self.figures["coverage"], poles=[], coils=[])
+        figures["workspace"] = dict(self.figures["workspace"], torque=[])
+        figures["parameters"] = self.figures["parameters"][:9]
+        figures["cycles"] = self.figures["cycles"][:1]
+        page = self.render(figures, "joint")
+        self.assertNotIn("Magnet poles", page.text)
+        self.assertFalse([item for item in page.of("img") if "torque" in item["alt"]])
+
+    def test_laboratory_effects_are_compared(self):
+        figures = dict(self.figures)
+        effect = {"name": "torque_bias/x", "nominal": 0.0, "value": 2.7e-3, "stddev": 4e-5, "identified": True}
+        figures["parameters"] = self.figures["parameters"] + [dict(effect, unit="N·m")]
+        fit = {"effects": "none", "converged": True, "parameters": 31, "chi_square": 900.0, "reduced_chi_square": 3.0}
+        figures["model_choice"] = [dict(fit, bic=1076.5), dict(fit, effects="all", bic=400.25)]
+        page = self.render(figures, "effects")
+        self.assertEqual(page.row("torque_bias/x")[1], "0.002700 ± 0.000040 N·m")
+        self.assertIn("best", page.row("all")[0])
+        self.assertEqual(page.row("none")[-1], "+676.2")
+
+    def test_refuses_what_is_no_report(self):
+        page = os.path.join(self.folder.name, "none.html")
+        for content, part in (("calibration_report: [", "cannot be read"), ("{a: 1}", "not the report of a")):
+            path = os.path.join(self.folder.name, "none.yaml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(content)
+            outcome = run(program("render_report"), path, page)
+            self.assertEqual(outcome.returncode, 2)
+            self.assertIn(part, outcome.stderr)
+            self.assertFalse(os.path.exists(page))
+
+    def test_leaves_no_part_of_a_page(self):
+        folder = os.path.join(self.folder.name, "occupied")
+        os.makedirs(os.path.join(folder, "page.html"))
+        outcome = run(program("render_report"), os.path.join(self.report, "report.yaml"), folder + "/page.html")
+        self.assertEqual(outcome.returncode, 2)
+        self.assertIn("cannot be written", outcome.stderr)
+        self.assertEqual(os.listdir(folder), ["page.html"])
+
+    def test_the_figures_stand_without_the_page(self):
+        alone = os.path.join(self.folder.name, "calibrate_bag")
+        shutil.copy(program("calibrate_bag"), alone)
+        actuator = os.path.join(SOURCE, "config", "examples", "two_axis_positioner", "actuator.yaml")
+        bag = os.path.join(os.environ["EXAMPLES"], "two_axis_positioner.bag")
+        report = os.path.join(self.folder.name, "alone")
+        output = os.path.join(self.folder.name, "alone.yaml")
+        outcome = run(alone, "--actuator", actuator, "--output", output, "--report", report, bag)
+        self.assertEqual(outcome.returncode, 1)  # as without a report: an axis is not observable
+        self.assertIn("warning: There is no page of the report: ", outcome.stderr)
+        self.assertEqual(os.listdir(report), ["report.yaml"])
+        self.assertTrue(os.path.exists(output))
+
+
+if __name__ == "__main__":
+    unittest.main()
