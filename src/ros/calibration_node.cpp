@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include <ros/console.h>
@@ -12,6 +13,7 @@
 #include "spherical_actuator_calibration/core/atomic_file.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/urdf_file.hpp"
+#include "spherical_actuator_calibration/ros/report_page.hpp"
 #include "spherical_actuator_calibration/ros/termination.hpp"
 #include "spherical_actuator_calibration/ros/utc_date.hpp"
 
@@ -310,11 +312,20 @@ bool CalibrationNode::restore(Restore::Request& request, Restore::Response& resp
 
 bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
                            std_srvs::Trigger::Response& response) {
+  std::string report_folder;
   answer(response, [&] {
     std::string message = saveFiles();
+    report_folder = saveReport();
     publishStatus();
     return message;
   });
+  // Nothing waits for the page: the session is free again.
+  if (response.success != 0 && options_.report_page) {
+    const std::string page = (fs::path(report_folder) / "report.html").string();
+    const std::string failure =
+        writeReportPage((fs::path(report_folder) / "report.yaml").string(), page);
+    response.message += failure.empty() ? " Report: " + page + "." : " " + failure;
+  }
   return true;
 }
 
@@ -340,6 +351,21 @@ std::string CalibrationNode::saveFiles() {
   writeOnce(yaml_path, yaml);
   writeOnce(urdf_path, urdf);
   return "Saved " + yaml_path + " and " + urdf_path + ".";
+}
+
+std::string CalibrationNode::saveReport() const {
+  const Revision& revision = session_.revision();
+  std::string folder = directory_.report(revision.number);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) {
+    throw DataError(folder + ": the folder cannot be made: " + error.message() + ".");
+  }
+  // Samples may have come and gone since the last time.
+  writeFileAtomically((fs::path(folder) / "report.yaml").string(),
+                      session_.report(revision.date),
+                      OverwritePolicy::kReplace);
+  return folder;
 }
 
 void CalibrationNode::takeAutomaticSamples() {

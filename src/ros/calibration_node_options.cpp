@@ -14,6 +14,7 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
   options.auto_capture = map.boolean("auto_capture", options.auto_capture);
   options.capture_duration =
       map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
+  options.report_page = map.boolean("report_page", options.report_page);
   // Read by diagnostic_updater itself.
   map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
   map.finish();

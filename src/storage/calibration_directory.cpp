@@ -119,6 +119,10 @@ std::string CalibrationDirectory::urdf(std::uint32_t revision) const {
   return revisionFile(revision, ".urdf");
 }
 
+std::string CalibrationDirectory::report(std::uint32_t revision) const {
+  return (fs::path(path_) / ("report_revision_" + std::to_string(revision))).string();
+}
+
 std::string CalibrationDirectory::revisionFile(std::uint32_t revision,
                                                const std::string& extension) const {
   const std::string file = name_ + "_revision_" + std::to_string(revision) + extension;

@@ -4,6 +4,7 @@
 
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/report_file.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -87,11 +88,19 @@ SessionProgress LiveSession::progress() const {
 }
 
 CalibratedDescription LiveSession::description(const std::string& date) const {
+  return session_.description(origin(date));
+}
+
+std::string LiveSession::report(const std::string& date) const {
+  return renderReport(session_, origin(date), {});
+}
+
+CalibrationOrigin LiveSession::origin(const std::string& date) const {
   CalibrationOrigin origin;
   origin.date = date;
   origin.software = software_;
   origin.revision = revision_.number;
-  return session_.description(origin);
+  return origin;
 }
 
 void LiveSession::putInForce(const Revision& revision) {

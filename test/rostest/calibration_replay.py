@@ -145,10 +145,19 @@ class Replay(unittest.TestCase):
         saved = load(os.path.join(self.node.directory, files[0]))["actuator"]
         record = saved.pop("calibration")
         self.assertEqual(record["revision"], len(self.cycles))
+        self.check_report(answer.message, record["revision"])
         expected = dict(self.expected)
         expected_record = expected.pop("calibration")
         self.assert_same(saved, expected, files[0])
         self.assert_same(record["cycles"], expected_record["cycles"], "cycles")
+
+    def check_report(self, message, revision):
+        folder = os.path.join(self.node.directory, f"report_revision_{revision}")
+        self.assertIn(f"Report: {folder}/report.html.", message)
+        self.assertEqual(sorted(os.listdir(folder)), ["report.html", "report.yaml"])
+        report = load(os.path.join(folder, "report.yaml"))["calibration_report"]
+        self.assertEqual(report["revision"], revision)
+        self.assertEqual([cycle["cycle"] for cycle in report["cycles"]], [cycle["cycle"] for cycle in self.cycles])
 
     def assert_same(self, found, expected, where):
         """Two parts of a YAML file are the same but for rounding."""

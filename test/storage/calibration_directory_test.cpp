@@ -60,6 +60,7 @@ TEST(CalibrationDirectory, IsBelowRosHomeUnderTheSerial) {
   EXPECT_EQ(directory.database(), directory.path() + "/session.db");
   EXPECT_EQ(directory.description(3), directory.path() + "/rotor_revision_3.yaml");
   EXPECT_EQ(directory.urdf(12), directory.path() + "/rotor_revision_12.urdf");
+  EXPECT_EQ(directory.report(12), directory.path() + "/report_revision_12");
   EXPECT_EQ(CalibrationDirectory("", unit("rotor", "")).path(),
             folder.path("ros/spherical_actuator_calibration/rotor"));
 }

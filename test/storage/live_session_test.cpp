@@ -137,5 +137,25 @@ TEST_F(LiveSessionTest, DescriptionCarriesItsRevision) {
   EXPECT_NE(description.actuator.joints[0].offset, 0.0);
 }
 
+TEST_F(LiveSessionTest, ReportIsOfTheRevisionInForceAndTheSamplesInUse) {
+  const auto holds = [](const LiveSession& session, const std::string& part) {
+    return session.report(kDate).find(part) != std::string::npos;
+  };
+  {
+    LiveSession session = open();
+    addAll(session);
+    session.run({Cycle::kJoint, 0}, kDate);
+    EXPECT_TRUE(holds(session, "  revision: 1\n"));
+    EXPECT_TRUE(holds(session, "    - {id: 40, joint_position"));
+    session.removeSample(40, kDate);
+    EXPECT_FALSE(holds(session, "    - {id: 40, joint_position"));
+  }
+  LiveSession session = open();
+  EXPECT_TRUE(holds(session, "    - cycle: joint\n"));
+  session.clearSamples(kDate);
+  EXPECT_TRUE(holds(session, "  samples: []\n"));
+  EXPECT_TRUE(holds(session, "  influences: []\n"));
+}
+
 }  // namespace
 }  // namespace spherical_actuator_calibration

@@ -73,6 +73,8 @@ class CalibrationNode {
   void storeWaitingSamples();
   Sample store(const Sample& sample);
   std::string saveFiles();
+  /// Writes the figures of the parameters in force; returns the folder that holds them.
+  std::string saveReport() const;
   void publishStatus();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   /// Answers a service: `action` returns the message of success; what it throws becomes that of

@@ -25,6 +25,8 @@ class CalibrationDirectory {
   std::string description(std::uint32_t revision) const;
   /// Path of the calibrated URDF of a revision.
   std::string urdf(std::uint32_t revision) const;
+  /// Path of the folder for the report of a revision: report_revision_<number>.
+  std::string report(std::uint32_t revision) const;
 
  private:
   std::string revisionFile(std::uint32_t revision, const std::string& extension) const;

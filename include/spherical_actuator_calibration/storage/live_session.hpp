@@ -58,8 +58,11 @@ class LiveSession {
 
   /// The calibrated description, with its record.
   CalibratedDescription description(const std::string& date) const;
+  /// All figures of the parameters in force and of the samples in use, see renderReport().
+  std::string report(const std::string& date) const;
 
  private:
+  CalibrationOrigin origin(const std::string& date) const;
   void putInForce(const Revision& revision);
 
   std::string software_;
