@@ -63,6 +63,10 @@ class Report:
         """What became of the recordings, in lines."""
         return self._report["recording"]
 
+    def has_torque(self):
+        """Whether poles and coils are part of the actuator."""
+        return bool(self._report["coverage"]["coils"])
+
     def cards(self):
         """The few numbers that matter most."""
         identified = sum(item["identified"] for item in self._parameters)
@@ -70,7 +74,7 @@ class Report:
         last = self._last_success()
         if last:
             cards.append(("Orientation error", with_unit(last["orientation_uncertainty"], "rad", 2), "expected, 1 σ"))
-            if self._report["coverage"]["coils"]:
+            if self.has_torque():
                 value = f"{significant(1e3 * last['torque_uncertainty'], 2)} mN·m/A"
                 cards.append(("Torque error", value, "expected, 1 σ"))
         validation = self.validation()

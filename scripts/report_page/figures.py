@@ -36,6 +36,7 @@ USUAL_STANDARDIZED = math.sqrt(7.814727903251179 / 3.0)
 STYLE = {
     "axes.axisbelow": True,
     "axes.edgecolor": "#b6c0ca",
+    "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.labelcolor": INK,
     "axes.spines.right": False,
@@ -258,8 +259,9 @@ def poses(samples, joints, tilt_limit):
             bar.set_label(f"{joints[2]['name']} [rad]")
             axes.legend(loc="upper left", ncols=2, handletextpad=0.2)
         axes.set_aspect("equal")
-        axes.set_xlim(-1.15 * limit, 1.15 * limit)
-        axes.set_ylim(-1.15 * limit, 1.3 * limit)
+        reach = 1.15 * max([limit] + [abs(angle) for sample in samples for angle in sample["joint_position"][:2]])
+        axes.set_xlim(-reach, reach)
+        axes.set_ylim(-reach, 1.15 * reach)
         axes.set_xlabel(f"{joints[0]['name']} [rad]")
         axes.set_ylabel(f"{joints[1]['name']} [rad]")
         motion = ", ".join(
@@ -306,8 +308,11 @@ def workspace_map(quantity, tilt, values, joints):
     with Figure(f"workspace_{quantity}", f"Expected {quantity} error", size=(4.7, 3.7)) as figure:
         axes = figure.axes
         axes.grid(False)
-        image = axes.pcolormesh(tilt, tilt, shown, shading="gouraud", cmap="viridis_r", rasterized=True)
-        if max(flat) > 1.02 * min(flat):
+        has_relief = max(flat) > 1.02 * min(flat)
+        # What is the same everywhere shall look so.
+        span = {} if has_relief else {"vmin": 0.9 * min(flat), "vmax": 1.1 * max(flat)}
+        image = axes.pcolormesh(tilt, tilt, shown, shading="gouraud", cmap="viridis_r", rasterized=True, **span)
+        if has_relief:
             lines = axes.contour(tilt, tilt, shown, levels=5, colors="white", linewidths=0.8)
             axes.clabel(lines, fontsize=7, fmt=lambda value: significant(value, 3))
         axes.set_aspect("equal")
@@ -337,6 +342,7 @@ def changes(parameters):
                 place, change, interval = zip(*chosen)
                 axes.errorbar(place, change, interval, fmt=".", color=colour, elinewidth=1.0, label=f"{group}s")
         axes.axhline(0.0, color=GREY, linewidth=1.0)
+        _whole_numbers(axes.xaxis)
         axes.set_xlabel("parameter, in the order of the table")
         axes.set_ylabel("change [mrad]")
         axes.legend(loc="best", ncols=3, handletextpad=0.2, columnspacing=1.0)
