@@ -180,13 +180,18 @@ class ReportPage(unittest.TestCase):
 
     def test_refuses_what_is_no_report(self):
         page = os.path.join(self.folder.name, "none.html")
-        for content, part in (("calibration_report: [", "cannot be read"), ("{a: 1}", "not the report of a")):
+        for content, part in (
+            ("calibration_report: [", "cannot be read"),
+            ("{a: 1}", "not the report of a calibration"),
+            ("calibration_report: {actuator: a}", "of another version of this package, or damaged"),
+        ):
             path = os.path.join(self.folder.name, "none.yaml")
             with open(path, "w", encoding="utf-8") as file:
                 file.write(content)
             outcome = run(program("render_report"), path, page)
             self.assertEqual(outcome.returncode, 2)
             self.assertIn(part, outcome.stderr)
+            self.assertNotIn("Traceback", outcome.stderr)
             self.assertFalse(os.path.exists(page))
 
     def test_leaves_no_part_of_a_page(self):
