@@ -37,9 +37,10 @@ def configuration_with_free_ports(folder):
 
 
 class EmulatedLab:
-    """emulated_lab.launch on the master of the test; `folder` keeps its files."""
+    """emulated_lab.launch on the master of the test; `folder` keeps its files. Without `commands` it is
+    somebody else who moves and excites."""
 
-    def __init__(self, folder, **arguments):
+    def __init__(self, folder, commands=True, **arguments):
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
@@ -51,11 +52,15 @@ class EmulatedLab:
         }
         self._launch = None
         self._position = None
+        self._currents = None
+        self._timer = None
         self._command = CoilCurrents(current=[0.0] * COILS)
         self._commands = rospy.Publisher(f"{NAMESPACE}/coil_command", CoilCurrents, queue_size=1)
         self._targets = rospy.Publisher(f"{NAMESPACE}/fixture/target", JointState, queue_size=1)
-        self._timer = rospy.Timer(rospy.Duration(1.0 / WATCHDOG_RATE), self._repeat)
+        if commands:
+            self._timer = rospy.Timer(rospy.Duration(1.0 / WATCHDOG_RATE), self._repeat)
         rospy.Subscriber(f"{NAMESPACE}/joint_states", JointState, self._keep)
+        rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, self._keep_currents)
 
     def start(self):
         self._launch = Launch(launch_file("emulated_lab.launch"), **self._arguments)
@@ -64,12 +69,19 @@ class EmulatedLab:
         wait_for(lambda: self._commands.get_num_connections() > 0, "the coil driver")
 
     def stop(self):
-        self._timer.shutdown()
+        if self._timer:
+            self._timer.shutdown()
         if self._launch:
             self._launch.stop()
 
     def _keep(self, message):
         self._position = message.position
+
+    def _keep_currents(self, message):
+        self._currents = message.current
+
+    def is_without_current(self):
+        return self._currents is not None and max(map(abs, self._currents)) < 0.02
 
     def _repeat(self, _event):
         self._command.header.stamp = rospy.Time.now()

@@ -1,0 +1,82 @@
+"""The laboratory as a session sees it: joint angles, currents, and what moves and excites the rotor."""
+
+import threading
+
+import rospy
+from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.msg import CoilCurrents
+
+COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
+STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
+CURRENT_ERROR = 0.1  # share by which a current may miss its command
+STALE = 1.0  # [s] without joint angles
+
+
+class Laboratory:
+    """Commands coils and fixture, and keeps the last joint angles and currents."""
+
+    def __init__(self, ns, coils, joint_names):
+        self._coils = coils
+        self._names = list(joint_names)
+        self._joints = None
+        self._joints_time = None
+        self._currents = None
+        self._command = [0.0] * coils
+        self._lock = threading.Lock()
+        self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
+        self._targets = rospy.Publisher(ns + "/fixture/target", JointState, queue_size=1, latch=True)
+        self._subscribers = [
+            rospy.Subscriber(ns + "/joint_states", JointState, self._keep_joints),
+            rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
+        ]
+        self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
+
+    def _keep_joints(self, message):
+        with self._lock:
+            by_name = dict(zip(message.name, message.position))
+            if all(name in by_name for name in self._names):
+                self._joints = tuple(by_name[name] for name in self._names)
+                self._joints_time = rospy.get_time()
+
+    def _keep_currents(self, message):
+        with self._lock:
+            self._currents = tuple(message.current)
+
+    def _repeat(self, _event):
+        with self._lock:
+            message = CoilCurrents(current=list(self._command))
+        message.header.stamp = rospy.Time.now()
+        self._commands.publish(message)
+
+    def joints(self):
+        """Joint angles [rad]; None without fresh ones."""
+        with self._lock:
+            fresh = self._joints_time is not None and rospy.get_time() - self._joints_time < STALE
+            return self._joints if fresh else None
+
+    def excite(self, coil, current):
+        """Only this coil, counted from 1; 0: none."""
+        with self._lock:
+            self._command = [0.0] * self._coils
+            if coil:
+                self._command[coil - 1] = current
+
+    def is_excited(self):
+        """Whether the measured currents are those commanded."""
+        with self._lock:
+            if self._currents is None or len(self._currents) != self._coils:
+                return False
+            largest = max(map(abs, self._command))
+            tolerance = max(0.05, CURRENT_ERROR * largest)
+            return all(abs(a - b) <= tolerance for a, b in zip(self._currents, self._command))
+
+    def drive_to(self, joints):
+        self._targets.publish(JointState(name=self._names, position=list(joints)))
+
+    def release(self):
+        """All currents to zero, told several times, as a last message may be lost."""
+        self.excite(0, 0.0)
+        for _ in range(3):
+            self._repeat(None)
+            rospy.rostime.wallsleep(0.02)
+        self._timer.shutdown()

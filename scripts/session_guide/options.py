@@ -1,0 +1,79 @@
+"""What a guided session is asked for, checked in one place."""
+
+import argparse
+import dataclasses
+
+
+class OptionError(Exception):
+    """An option that cannot be used; the text names it."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """Options of one session. Angles in rad, currents in A, times in s."""
+
+    ns: str = "/actuator"
+    poses: int = 10
+    validation_poses: int = 2
+    coils_per_validation_pose: int = 2
+    current: float = 2.0
+    dwell: float = 0.5
+    settling: float = 0.3
+    wanted_stddev: float = 0.0
+    drive_fixture: bool = False
+    assume_yes: bool = False
+    seed: int = 1
+
+    def __post_init__(self):
+        ranges = {
+            "poses": (3, 1000),
+            "validation_poses": (0, 1000),
+            "coils_per_validation_pose": (1, 1000),
+            "current": (0.01, 1000.0),
+            "dwell": (0.05, 600.0),
+            "settling": (0.0, 600.0),
+            "wanted_stddev": (0.0, 1.0),
+        }
+        for name, (least, most) in ranges.items():
+            value = getattr(self, name)
+            if not least <= value <= most:
+                option = "--" + name.replace("_", "-")
+                raise OptionError(f"{option}: {value} is outside [{least}, {most}].")
+        if not self.ns.startswith("/") or self.ns.endswith("/"):
+            raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
+
+
+def parse(arguments):
+    """Options of a command line. Raises OptionError; prints help and exits for --help."""
+    default = Options()
+    parser = argparse.ArgumentParser(
+        prog="guided_session",
+        description="Leads through a whole calibration: poses, excitations, cycles, validation, saving. "
+        "Started again, it goes on where the session stands.",
+    )
+    add = parser.add_argument
+    add("--ns", default=default.ns, help="namespace of the actuator (%(default)s)")
+    add("--poses", type=int, default=default.poses, help="planned poses (%(default)s)")
+    add(
+        "--validation-poses",
+        type=int,
+        default=default.validation_poses,
+        help="poses that judge the result (%(default)s)",
+    )
+    add("--current", type=float, default=default.current, help="of an excited coil [A] (%(default)s)")
+    add("--dwell", type=float, default=default.dwell, help="of each capture [s] (%(default)s)")
+    add("--settling", type=float, default=default.settling, help="before it [s] (%(default)s)")
+    add(
+        "--wanted-stddev",
+        type=float,
+        default=default.wanted_stddev,
+        help="fewer poses when every parameter reaches this [rad] (%(default)s: all poses)",
+    )
+    add(
+        "--drive-fixture",
+        action="store_true",
+        help="publish fixture/target instead of asking the operator to turn the rotor",
+    )
+    add("--yes", dest="assume_yes", action="store_true", help="ask nothing")
+    add("--seed", type=int, default=default.seed, help="of the validation poses (%(default)s)")
+    return Options(**vars(parser.parse_args(arguments)))

@@ -1,0 +1,131 @@
+"""How far a session has come, and what is left, from samples and plan. No ROS."""
+
+import dataclasses
+import random
+
+SAME_POSE = 0.02  # [rad] largest difference of joint angles
+POSES_FOR_POLES = 9  # with one coil excited, of which a good choice tells every pole
+EXCITED = 0.3  # share of the current that a coil must carry to count as excited
+
+
+@dataclasses.dataclass(frozen=True)
+class Pose:
+    """A pose to measure at: raw joint angles [rad], coils to excite in turn, counted from 1."""
+
+    joints: tuple
+    coils: tuple
+    validation: bool = False
+
+    def is_at(self, joints, tolerance=SAME_POSE):
+        return max(abs(a - b) for a, b in zip(self.joints, joints)) <= tolerance
+
+    def patterns(self):
+        """Coils in the order of their capture; 0 is the pattern without current, which comes first."""
+        return (0,) + tuple(self.coils)
+
+
+@dataclasses.dataclass(frozen=True)
+class Measured:
+    """What counts of a sample here: where, which coil (0: none, None: several), whether held out."""
+
+    joints: tuple
+    coil: int
+    validation: bool
+
+
+def excited_coil(currents, nominal_current):
+    """Number of the one coil that carries current; 0 without any, None when there are several."""
+    excited = [n + 1 for n, i in enumerate(currents) if abs(i) > EXCITED * nominal_current]
+    if not excited:
+        return 0
+    return excited[0] if len(excited) == 1 else None
+
+
+def poses_of(measured):
+    """Different places of samples, in the order of their first sample."""
+    places = []
+    for sample in measured:
+        pose = Pose(sample.joints, (), sample.validation)
+        known = (p for p in places if p.is_at(sample.joints) and p.validation == sample.validation)
+        if next(known, None) is None:
+            places.append(pose)
+    return places
+
+
+def missing_patterns(pose, measured):
+    """Patterns of a pose that no sample holds yet."""
+    there = [s for s in measured if s.validation == pose.validation and pose.is_at(s.joints)]
+    held = {sample.coil for sample in there}
+    return [pattern for pattern in pose.patterns() if pattern not in held]
+
+
+def validation_poses(count, coils_each, coils, tilt, seed):
+    """Random poses inside the workspace that judge the result, the same for the same seed."""
+    generator = random.Random(seed)
+    poses = []
+    for _ in range(count):
+        joints = (
+            generator.uniform(-tilt, tilt),
+            generator.uniform(-tilt, tilt),
+            generator.uniform(-3.0, 3.0),
+        )
+        excited = sorted(generator.sample(range(1, coils + 1), min(coils_each, coils)))
+        poses.append(Pose(joints, tuple(excited), validation=True))
+    return poses
+
+
+def cycles_for(torque_samples):
+    """Cycles to run on the samples, as (service, coil): joint, then poles and other coils where one coil
+    was excited at enough poses to tell all poles, and at last refine, which needs neither of them."""
+    cycles = [("calibrate_joint", 0)]
+    most = max(torque_samples, default=0)
+    if most >= POSES_FOR_POLES:
+        main = torque_samples.index(most) + 1
+        cycles.append(("calibrate_poles", main))
+        others = (n + 1 for n, count in enumerate(torque_samples) if count and n + 1 != main)
+        cycles += [("calibrate_coil", coil) for coil in others]
+    cycles.append(("refine", 0))
+    return cycles
+
+
+def worst_stddev(estimates):
+    """Name and standard deviation [rad] of the least certain identified parameter, or None."""
+    identified = [e for e in estimates if e.observable]
+    if not identified:
+        return None
+    worst = max(identified, key=lambda e: e.stddev)
+    return worst.name, worst.stddev
+
+
+class Progress:
+    """Captures done and left, and the time that they will take."""
+
+    def __init__(self, captures, clock):
+        self.total = captures
+        self.done = 0
+        self._clock = clock
+        self._begin = clock()
+
+    def advance(self, captures=1):
+        self.done += captures
+
+    def remaining_time(self):
+        """[s] at the rate so far; None before the first capture."""
+        if self.done == 0:
+            return None
+        return (self._clock() - self._begin) / self.done * (self.total - self.done)
+
+    def text(self, width=30):
+        share = min(1.0, self.done / self.total) if self.total else 1.0
+        filled = int(round(share * width))
+        remaining = self.remaining_time()
+        left = "" if remaining is None else f", {duration(remaining)} left"
+        return f"[{'#' * filled}{'.' * (width - filled)}] {self.done}/{self.total}{left}"
+
+
+def duration(seconds):
+    """45 s, 3 min, 2 h 05 min."""
+    if seconds < 100.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60:02d} min"

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""A guided session in the emulated laboratory: interrupted, with every fault, to the true parameters."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import rospy
+import rostest
+import yaml
+from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
+from emulated_lab import EmulatedLab
+
+POSES = 8
+OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
+OPTIONS += ("--validation-poses", "1", "--settling", "0.15")
+INTERVALS = 4.0  # standard deviations that hold every parameter
+
+
+class GuidedProgram:
+    """The program guided_session; keeps the lines that it prints."""
+
+    def __init__(self):
+        self.lines = []
+        self._process = subprocess.Popen(
+            ["rosrun", PACKAGE, "guided_session", *OPTIONS],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self._process.stdout:
+            self.lines.append(line.rstrip("\n"))
+
+    def says(self, part):
+        return any(part in line for line in self.lines)
+
+    def wait_until_it_says(self, part):
+        wait_for(lambda: self.says(part) or self._has_failed(), f"the session to say: {part}")
+
+    def _has_failed(self):
+        if self._process.poll() is not None:
+            raise AssertionError("the session ended:\n" + "\n".join(self.lines))
+
+    def signal(self, number):
+        os.killpg(self._process.pid, number)
+        return self.wait()
+
+    def wait(self):
+        status = self._process.wait(timeout=120.0)
+        self._reader.join()
+        return status
+
+
+class GuidedSession(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.client = CalibrationClient()
+        cls.lab = EmulatedLab(cls.folder.name, seed=5, commands=False)
+        cls.lab.start()
+        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.lab.stop()
+        cls.folder.cleanup()
+
+    def samples(self):
+        return len(self.client.held())
+
+    def further_samples(self, count):
+        """Until the session has made so many samples more."""
+        enough = self.samples() + count
+        wait_for(lambda: self.samples() >= enough, f"{count} further samples")
+
+    def test_a_whole_session(self):
+        session = GuidedProgram()
+        self.further_samples(3)
+        self.fault_is_told_and_cured(session, "lose_tracker", "measured_orientation")
+        self.fault_is_told_and_cured(session, "trip_amplifier", "check the amplifier")
+        self.fault_is_told_and_cured(session, "freeze_sensor", "check fixture and joint sensor")
+        self.lab.inject_outlier()
+        self.interrupted(session)
+
+        session = GuidedProgram()
+        session.wait_until_it_says("measured already")
+        self.further_samples(2)
+        self.killed(session)
+
+        session = GuidedProgram()
+        session.wait_until_it_says("measured already")
+        self.further_samples(2)
+        self.node_restarted(session)
+        self.assertEqual(session.wait(), 0, "\n".join(session.lines))
+        self.assertTrue(session.says("they agree with the parameters"), session.lines)
+        self.assertTrue(session.says("73 of 73 parameters identified"), session.lines)
+        self.check_result(session)
+
+    def fault_is_told_and_cured(self, session, fault, part):
+        self.lab.fault(fault, True)
+        session.wait_until_it_says(part)
+        self.lab.fault(fault, False)
+        self.further_samples(2)
+
+    def interrupted(self, session):
+        self.assertEqual(session.signal(signal.SIGINT), 1)
+        self.assertTrue(session.says("Interrupted"), session.lines)
+        wait_for(self.lab.is_without_current, "zero currents")
+
+    def killed(self, session):
+        session.signal(signal.SIGKILL)
+        wait_for(self.lab.is_without_current, "zero currents by the watchdog")
+
+    def node_restarted(self, session):
+        subprocess.run(
+            ["rosnode", "kill", f"{NAMESPACE}/calibration"], check=True, stdout=subprocess.DEVNULL
+        )
+        session.wait_until_it_says("The calibration node is back")
+
+    def check_result(self, session):
+        saved = next(line for line in session.lines if line.startswith("Saved "))
+        with open(re.match(r"Saved (\S+\.yaml)", saved).group(1), encoding="utf-8") as file:
+            result = yaml.safe_load(file)["actuator"]
+        with open(self.lab.truth, encoding="utf-8") as file:
+            truth = yaml.safe_load(file)["actuator"]
+        compared = 0
+        for group in ("poles", "coils"):
+            for one, other in zip(result[group], truth[group]):
+                for angle in ("polar", "azimuth"):
+                    limit = INTERVALS * one["stddev"][angle]
+                    self.assertLess(limit, 5e-3)
+                    self.assertLess(abs(one[angle] - other[angle]), limit, f"{group} {angle}")
+                    compared += 1
+        for one, other in zip(result["joints"], truth["joints"]):
+            self.assertLess(abs(one["offset"] - other["offset"]), INTERVALS * one["stddev"]["offset"])
+            compared += 1
+        self.assertEqual(compared, 2 * (8 + 24) + 3)
+
+
+if __name__ == "__main__":
+    rospy.init_node("guided_session_test")
+    rostest.rosrun(PACKAGE, "guided_session", GuidedSession, sys.argv)

@@ -1,0 +1,174 @@
+#!/usr/bin/python3
+"""What a guided session does next, and what it tells, without ROS."""
+
+import io
+import os
+import sys
+import unittest
+from types import SimpleNamespace
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "scripts"))
+
+# pylint: disable=wrong-import-position
+from session_guide import progress
+from session_guide.options import OptionError, Options, parse
+from session_guide.progress import Measured, Pose, Progress
+from session_guide.terminal import Terminal
+
+
+class ExcitedCoil(unittest.TestCase):
+    def test_is_the_one_that_carries_current(self):
+        self.assertEqual(progress.excited_coil([0.001, -0.002, 0.0], 2.0), 0)
+        self.assertEqual(progress.excited_coil([0.001, -1.99, 0.0], 2.0), 2)
+        self.assertIsNone(progress.excited_coil([2.0, -1.99, 0.0], 2.0))
+        self.assertEqual(progress.excited_coil([], 2.0), 0)
+
+
+class MissingPatterns(unittest.TestCase):
+    POSE = Pose((0.1, -0.2, 1.5), (3, 7))
+
+    def at(self, coil, joints=(0.1, -0.2, 1.5), validation=False):
+        return Measured(joints, coil, validation)
+
+    def test_the_one_without_current_comes_first(self):
+        self.assertEqual(progress.missing_patterns(self.POSE, []), [0, 3, 7])
+
+    def test_what_is_held_is_left_out(self):
+        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(0), self.at(7)]), [3])
+
+    def test_another_pose_or_purpose_does_not_count(self):
+        elsewhere = self.at(0, joints=(0.1, -0.2, 1.53))
+        held_out = self.at(3, validation=True)
+        self.assertEqual(progress.missing_patterns(self.POSE, [elsewhere, held_out]), [0, 3, 7])
+
+    def test_several_coils_at_once_are_no_pattern_of_a_plan(self):
+        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(None)]), [0, 3, 7])
+
+
+class PosesOf(unittest.TestCase):
+    def test_counts_places_not_samples(self):
+        samples = [
+            Measured((0.0, 0.0, 0.0), 0, False),
+            Measured((0.001, 0.0, 0.0), 4, False),
+            Measured((0.3, 0.0, 0.0), 0, False),
+            Measured((0.3, 0.0, 0.0), 2, True),
+        ]
+        places = progress.poses_of(samples)
+        self.assertEqual([p.validation for p in places], [False, False, True])
+
+
+class ValidationPoses(unittest.TestCase):
+    def test_lie_inside_the_workspace_and_are_the_same_for_a_seed(self):
+        poses = progress.validation_poses(50, 3, 24, 0.5, 7)
+        self.assertEqual(poses, progress.validation_poses(50, 3, 24, 0.5, 7))
+        self.assertNotEqual(poses, progress.validation_poses(50, 3, 24, 0.5, 8))
+        for pose in poses:
+            self.assertTrue(pose.validation)
+            self.assertLessEqual(max(abs(pose.joints[0]), abs(pose.joints[1])), 0.5)
+            self.assertEqual(len(set(pose.coils)), 3)
+            self.assertTrue(all(1 <= coil <= 24 for coil in pose.coils))
+
+    def test_no_more_coils_than_there_are(self):
+        self.assertEqual(progress.validation_poses(1, 5, 2, 0.5, 1)[0].coils, (1, 2))
+
+
+class Cycles(unittest.TestCase):
+    def test_a_planned_session_goes_from_the_joint_to_the_refinement(self):
+        self.assertEqual(
+            progress.cycles_for([2, 3, 0]), [("calibrate_joint", 0), ("refine", 0)]
+        )
+
+    def test_poles_go_with_the_coil_of_most_samples(self):
+        self.assertEqual(
+            progress.cycles_for([4, 30, 0, 4]),
+            [
+                ("calibrate_joint", 0),
+                ("calibrate_poles", 2),
+                ("calibrate_coil", 1),
+                ("calibrate_coil", 4),
+                ("refine", 0),
+            ],
+        )
+
+    def test_without_coils_there_is_only_the_joint_to_refine(self):
+        self.assertEqual(progress.cycles_for([]), [("calibrate_joint", 0), ("refine", 0)])
+
+
+class WorstStddev(unittest.TestCase):
+    @staticmethod
+    def estimate(name, stddev, observable=True):
+        return SimpleNamespace(name=name, stddev=stddev, observable=observable)
+
+    def test_is_of_identified_parameters_only(self):
+        estimates = [
+            self.estimate("a", 1e-4),
+            self.estimate("b", 3e-4),
+            self.estimate("c", 1.0, observable=False),
+        ]
+        self.assertEqual(progress.worst_stddev(estimates), ("b", 3e-4))
+        self.assertIsNone(progress.worst_stddev(estimates[2:]))
+
+
+class ProgressOfASession(unittest.TestCase):
+    def test_tells_the_remaining_time_from_the_rate_so_far(self):
+        now = [100.0]
+        done = Progress(10, lambda: now[0])
+        self.assertIsNone(done.remaining_time())
+        self.assertEqual(done.text(10), "[..........] 0/10")
+        now[0] = 120.0
+        done.advance(4)
+        self.assertAlmostEqual(done.remaining_time(), 30.0)
+        self.assertEqual(done.text(10), "[####......] 4/10, 30 s left")
+
+    def test_of_a_session_without_captures_is_complete(self):
+        self.assertEqual(Progress(0, lambda: 0.0).text(4), "[####] 0/0")
+
+    def test_durations_are_for_people(self):
+        texts = [progress.duration(seconds) for seconds in (0.4, 99.0, 200.0, 3600.0 * 2 + 300.0)]
+        self.assertEqual(texts, ["0 s", "99 s", "3 min", "2 h 05 min"])
+
+
+class CommandLine(unittest.TestCase):
+    def test_defaults_are_those_of_the_options(self):
+        self.assertEqual(parse([]), Options())
+
+    def test_names_the_option_that_cannot_be_used(self):
+        for arguments, name in (
+            (["--poses", "2"], "--poses"),
+            (["--current", "-1"], "--current"),
+            (["--dwell", "nan"], "--dwell"),
+            (["--ns", "actuator"], "--ns"),
+        ):
+            with self.assertRaisesRegex(OptionError, name):
+                parse(arguments)
+
+
+class Screen(io.StringIO):
+    def __init__(self, is_terminal):
+        super().__init__()
+        self._is_terminal = is_terminal
+
+    def isatty(self):
+        return self._is_terminal
+
+
+class TerminalOutput(unittest.TestCase):
+    def test_a_file_gets_sentences_only(self):
+        screen = Screen(False)
+        terminal = Terminal(screen, assume_yes=True)
+        terminal.progress("[##..]")
+        terminal.say("One.")
+        terminal.say_once("One.")
+        terminal.ask("Turn the rotor.")
+        self.assertEqual(screen.getvalue(), "One.\nTurn the rotor.\n")
+
+    def test_a_sentence_takes_the_place_of_the_progress_line(self):
+        screen = Screen(True)
+        terminal = Terminal(screen)
+        terminal.progress("[##..]")
+        terminal.say("One.")
+        self.assertEqual(screen.getvalue(), "[##..]\r      \rOne.\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
