@@ -8,6 +8,8 @@ from .laboratory import STILL, Laboratory
 from .progress import Progress
 
 POLL = 0.05  # [s]
+# Times as long without current as with it: all torques of a pose share the bias that is measured then.
+ZERO_CAPTURE = 3.0
 FURTHER_POSES = 2  # that are added at a time where parameters stay open
 MOST_ROUNDS = 4
 SLOW = 5.0  # [s] after which the operator is told what the session waits for
@@ -136,10 +138,11 @@ class Session:
     def _capture(self, pose, pattern):
         """Captures one pattern; repeats, and says why, until it is held."""
         self._laboratory.excite(pattern, self._options.current)
+        duration = self._options.dwell * (1.0 if pattern else ZERO_CAPTURE)
         while True:
             self._wait_for_current(pattern)
             rospy.sleep(min(self._options.settling, 0.1))
-            answer = self._calibration.capture(self._options.dwell, pose.validation)
+            answer = self._calibration.capture(duration, pose.validation)
             if answer is None:
                 if pattern not in progress.missing_patterns(pose, self._measured()):
                     return
