@@ -74,6 +74,12 @@ constexpr int kMany = 100000;
 BENCHMARK_CAPTURE(iterate, joint, Cycle::kJoint)->Arg(30)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(iterate, poles, Cycle::kPoles)->Arg(30)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(iterate, coil, Cycle::kCoil)->Arg(4)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(iterate, refine, Cycle::kRefine)->Arg(132)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(runWholeCycle, refine, Cycle::kRefine)
+    ->Arg(132)
+    ->Arg(kMany / 10)
+    ->Arg(kMany)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(runWholeCycle, joint, Cycle::kJoint)
     ->Arg(30)
     ->Arg(kMany)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <sstream>
 
 #include "support/scenarios.hpp"
@@ -17,13 +18,45 @@ constexpr double kOrientationNoise = 1e-3;   // half width that the stated uncer
 constexpr double kTorqueNoise = 5e-4;        // the same [N·m]
 constexpr std::size_t kPolesCycleCoil = 0;   // coil 1 of the paper
 constexpr std::size_t kSingleCycleCoil = 1;  // coil 2 of the paper
+constexpr std::size_t kTorquesPerOrientation = 12;
+constexpr double kSequenceError = 1e-3;  // standard deviation after the sequence [rad]
 
 std::size_t excitedCoil(Cycle cycle) {
   return cycle == Cycle::kPoles ? kPolesCycleCoil : kSingleCycleCoil;
 }
 
+/// Every coil in turn, each as often as the others.
+std::vector<Sample> sessionSamples(std::size_t count, const Actuator& truth) {
+  scenarios::Generator generator(kSeed);
+  const std::size_t orientations = count / (kTorquesPerOrientation + 1);
+  const std::size_t torques = count - orientations;
+  std::vector<Sample> samples =
+      scenarios::orientationSamples(truth,
+                                    scenarios::randomPoses(orientations, kTilt, generator),
+                                    0.0,
+                                    scenarios::uniformStddev(kOrientationNoise),
+                                    generator);
+  const std::size_t coils = truth.coils.size();
+  for (std::size_t coil = 0; coil < coils; ++coil) {
+    const std::size_t poses = torques / coils + (coil < torques % coils ? 1 : 0);
+    const std::vector<Sample> more =
+        scenarios::torqueSamples(truth,
+                                 scenarios::randomPoses(poses, kTilt, generator),
+                                 coil,
+                                 kCurrent,
+                                 0.0,
+                                 scenarios::uniformStddev(kTorqueNoise),
+                                 generator);
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  return samples;
+}
+
 std::vector<Sample> makeSamples(Cycle cycle, std::size_t count, const Actuator& truth) {
   scenarios::Generator generator(kSeed);
+  if (cycle == Cycle::kRefine) {
+    return sessionSamples(count, truth);
+  }
   if (cycle == Cycle::kJoint) {
     std::vector<Eigen::Vector3d> poses;
     for (std::size_t n = 0; n < count; ++n) {
@@ -42,6 +75,14 @@ std::vector<Sample> makeSamples(Cycle cycle, std::size_t count, const Actuator& 
 CalibrationState initialState(Cycle cycle, const ParameterSpace& space, const Actuator& truth) {
   if (cycle == Cycle::kJoint) {
     return nominalState(space, {});
+  }
+  if (cycle == Cycle::kRefine) {
+    CalibrationState state = nominalState(space, {});
+    scenarios::Generator generator(kSeed + 1);
+    std::normal_distribution<double> error(0.0, kSequenceError);
+    state.belief.x = space.coordinatesOf(truth).unaryExpr(
+        [&](double coordinate) { return coordinate + error(generator); });
+    return state;
   }
   CalibrationState state = scenarios::exactJoints(space, truth, {});
   if (cycle == Cycle::kCoil) {
@@ -150,7 +191,8 @@ CycleScenario cycleScenario(Cycle cycle, std::size_t samples) {
   const Actuator truth = scenarios::paperTruth();
   CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
   CalibrationState state = initialState(cycle, model.space(), truth);
-  const CycleRequest request{cycle, cycle == Cycle::kJoint ? 0 : excitedCoil(cycle) + 1};
+  const bool has_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
+  const CycleRequest request{cycle, has_coil ? excitedCoil(cycle) + 1 : 0};
   return {std::move(model), request, makeSamples(cycle, samples, truth), std::move(state), truth};
 }
 

@@ -20,7 +20,8 @@ struct CycleScenario {
 /// The paper's actuator before a cycle, with `samples` noiseless samples of the paper's ranges
 /// (±0.6 rad for orientations, 2 A for torques), the same at every call. What the paper takes as
 /// known is known exactly: the joints before kPoles, and the poles, too, before kCoil (coil 2 of
-/// the paper). Not for kRefine.
+/// the paper). kRefine begins as far from the truth as the sequence of cycles ends; one in 13 of
+/// its samples is an orientation, the others are torques of all coils in turn.
 CycleScenario cycleScenario(Cycle cycle, std::size_t samples);
 
 /// Largest difference between coordinates `x` and the truth over those that the cycle estimates

@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
   std::ofstream file(argv[1]);
   file << "{\"joint\": " << solved(Cycle::kJoint, 30)
        << ",\n\"poles\": " << solved(Cycle::kPoles, 30)
-       << ",\n\"coil\": " << solved(Cycle::kCoil, 4) << "}\n";
+       << ",\n\"coil\": " << solved(Cycle::kCoil, 4)
+       << ",\n\"refine\": " << solved(Cycle::kRefine, 132) << "}\n";
   file.close();
   if (!file) {
     std::cerr << "export_scenarios: cannot write " << argv[1] << ".\n";

@@ -22,12 +22,16 @@ import time
 import numpy as np
 
 import paper_iteration
+import scipy_refinement
 
 REPETITIONS = 5
 AUTODIFF_AIM = 4.0
 READING_AIM = 0.7
 NUMPY_AIM = 50.0
+SCIPY_AIM = 100.0
+REFINEMENT_SAMPLES = 132
 SAME_RESULT = 1e-10  # [rad]
+SAME_REFINEMENT = 1e-9  # [rad]
 CYCLES = {"joint": 30, "poles": 30, "coil": 4}  # samples
 ACTUATOR = pathlib.Path(__file__).resolve().parent.parent / "config" / "pm_spherical_8x24.yaml"
 PROGRAMS = pathlib.Path("devel", "lib", "spherical_actuator_calibration")
@@ -129,9 +133,43 @@ def compare_with_numpy(times, scenarios, report):
         )
 
 
+def compare_with_scipy(times, scenario, report):
+    report.heading("Refinement of 73 parameters from where the sequence of cycles ends, against SciPy")
+    begin = time.process_time()
+    found, evaluations = scipy_refinement.identify(scenario)
+    reference = time.process_time() - begin
+    difference = np.abs(found - scipy_refinement.parameters(scenario["solution"])).max()
+    if difference > SAME_REFINEMENT:
+        raise SystemExit(f"run_benchmarks: refine: SciPy differs by {difference:.1e} rad.")
+    own = times[f"iterate/refine/{REFINEMENT_SAMPLES}"]
+    whole = times[f"runWholeCycle/refine/{REFINEMENT_SAMPLES}"]
+    report.ratio(
+        f"{REFINEMENT_SAMPLES} samples: iteration, {1e3 * own:.3g} ms, times faster",
+        reference / own,
+        SCIPY_AIM,
+    )
+    report.figure(
+        f"    whole cycle with uncertainty and report, {1e3 * whole:.3g} ms, times faster",
+        f"{reference / whole:.0f}",
+    )
+    report.figure(
+        f"    SciPy: {reference:.3g} s, {evaluations} evaluations; same parameters to [rad]",
+        f"{difference:.0e}",
+    )
+    ratio = times["runWholeCycle/refine/100000"] / times["runWholeCycle/refine/10000"]
+    report.figure("    100000 samples take so many times as long as 10000", f"{ratio:.1f}")
+
+
+def list_plans(program, report):
+    report.heading("Planned sessions against the paper's protocol at random poses, tilt 0.3 rad")
+    figures = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    for line in figures.splitlines():
+        report.figure(*line.split("\t"))
+
+
 def list_large_cycles(times, report):
     report.heading("Whole cycles with 100000 samples")
-    for cycle in CYCLES:
+    for cycle in (*CYCLES, "refine"):
         report.figure(f"{cycle} [s]", f"{times[f'runWholeCycle/{cycle}/100000']:.2f}")
 
 
@@ -194,7 +232,9 @@ def main():
     times = run_google_benchmark(programs / "calibration_benchmark")
     compare_costs(times, report)
     compare_with_numpy(times, scenarios, report)
+    compare_with_scipy(times, scenarios["refine"], report)
     list_large_cycles(times, report)
+    list_plans(programs / "planning_benchmark", report)
     measure_reading(build, report)
     print("\n".join(report.lines))
     return 0

@@ -72,25 +72,6 @@ class PosePlanner : public ::testing::Test {
   PosePlanOptions options_;
 };
 
-/// The paper's protocol with random torque poses: 10 orientations, 30 torques of coil 1 and 4 of
-/// each other coil.
-std::vector<Sample> randomProtocol(const Actuator& actuator, scenarios::Generator& generator) {
-  std::vector<Sample> samples =
-      scenarios::orientationSamples(actuator,
-                                    scenarios::randomPoses(10, kTilt, generator),
-                                    1e-3,
-                                    scenarios::uniformStddev(1e-3),
-                                    generator);
-  for (std::size_t coil = 0; coil < actuator.coils.size(); ++coil) {
-    const auto poses = scenarios::randomPoses(coil == 0 ? 30 : 4, kTilt, generator);
-    for (const Sample& sample : scenarios::torqueSamples(
-             actuator, poses, coil, kCurrent, 5e-4, scenarios::uniformStddev(5e-4), generator)) {
-      samples.push_back(sample);
-    }
-  }
-  return samples;
-}
-
 std::vector<std::string> namesOf(const std::vector<ParameterEstimate>& estimates) {
   std::vector<std::string> names;
   names.reserve(estimates.size());
@@ -120,7 +101,7 @@ TEST_F(PosePlanner, BeatsThePapersProtocolWithTenPoses) {
     const std::vector<Sample> aimed =
         scenarios::paperSession(nominal_, scenarios::Tracker::kFirstTenPoses, generator);
     EXPECT_LT(plan.worst_stddev, boundOf(aimed).maxCoeff());
-    EXPECT_LT(plan.worst_stddev, boundOf(randomProtocol(nominal_, generator)).maxCoeff());
+    EXPECT_LT(plan.worst_stddev, boundOf(scenarios::randomSession(nominal_, generator)).maxCoeff());
   }
 }
 

@@ -14,6 +14,13 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kLayerElevation = 0.2618;
 constexpr double kOrientationNoise = 1e-3;  // uniform, per component [rad]
 constexpr double kTorqueNoise = 5e-4;       // uniform, per component [N·m]
+constexpr double kTilt = 0.3;               // of a session [rad]
+constexpr double kCurrent = 2.0;            // of a session [A]
+
+/// Poses of a session with a coil (from 0) excited: many with coil 1, for the poles.
+std::size_t torquePoses(std::size_t coil) {
+  return coil == 0 ? 30 : 4;
+}
 
 double uniform(double half_width, Generator& generator) {
   return std::uniform_real_distribution<double>(-half_width, half_width)(generator);
@@ -208,14 +215,12 @@ Sample mixedTorqueSample(const Actuator& truth,
 }
 
 std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generator& generator) {
-  constexpr double kTilt = 0.3;
-  constexpr double kCurrent = 2.0;
   const double orientation_stddev = uniformStddev(kOrientationNoise);
   std::vector<Sample> samples = orientationSamples(
       truth, randomPoses(10, kTilt, generator), kOrientationNoise, orientation_stddev, generator);
   for (std::size_t coil = 0; coil < truth.coils.size(); ++coil) {
     const std::vector<Eigen::Vector3d> poses =
-        posesThatSeeEveryPole(paperNominal(), coil, coil == 0 ? 30 : 4, kTilt, generator);
+        posesThatSeeEveryPole(paperNominal(), coil, torquePoses(coil), kTilt, generator);
     std::vector<Sample> more = torqueSamples(
         truth, poses, coil, kCurrent, kTorqueNoise, uniformStddev(kTorqueNoise), generator);
     if (tracker == Tracker::kEveryPose) {
@@ -231,6 +236,25 @@ std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generat
   }
   for (std::size_t n = 0; n < samples.size(); ++n) {
     samples[n].id = static_cast<std::uint32_t>(n + 1);
+  }
+  return samples;
+}
+
+std::vector<Sample> randomSession(const Actuator& truth, Generator& generator) {
+  std::vector<Sample> samples = orientationSamples(truth,
+                                                   randomPoses(10, kTilt, generator),
+                                                   kOrientationNoise,
+                                                   uniformStddev(kOrientationNoise),
+                                                   generator);
+  for (std::size_t coil = 0; coil < truth.coils.size(); ++coil) {
+    const std::vector<Sample> more = torqueSamples(truth,
+                                                   randomPoses(torquePoses(coil), kTilt, generator),
+                                                   coil,
+                                                   kCurrent,
+                                                   kTorqueNoise,
+                                                   uniformStddev(kTorqueNoise),
+                                                   generator);
+    samples.insert(samples.end(), more.begin(), more.end());
   }
   return samples;
 }

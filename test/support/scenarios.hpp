@@ -79,6 +79,9 @@ enum class Tracker { kFirstTenPoses, kEveryPose };
 /// component. Ids count from 1.
 std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generator& generator);
 
+/// The same numbers of samples at random poses, whether the coils reach a pole there or not.
+std::vector<Sample> randomSession(const Actuator& truth, Generator& generator);
+
 /// State of an actuator whose joints are known exactly and the rest is nominal: what the paper
 /// assumes before level 2.
 CalibrationState exactJoints(const ParameterSpace& space,

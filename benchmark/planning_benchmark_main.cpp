@@ -1,0 +1,104 @@
+/// Planned sessions against the paper's protocol at random poses, both estimated jointly:
+/// planning_benchmark. Prints figures, one line each: name, tab, value.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "spherical_actuator_calibration/core/cramer_rao_bound.hpp"
+#include "spherical_actuator_calibration/core/pose_planner.hpp"
+#include "support/scenarios.hpp"
+
+namespace spherical_actuator_calibration::benchmarks {
+namespace {
+
+constexpr std::uint64_t kSeeds = 50;
+constexpr double kTilt = 0.3;       // [rad]
+constexpr double kWanted = 0.2e-3;  // [rad]
+constexpr std::size_t kMostPoses = 30;
+
+/// Plans for the paper's actuator before any calibration.
+class Planner {
+ public:
+  PosePlan plan(std::size_t poses, std::uint64_t seed, double wanted) const {
+    PlanningProblem problem;
+    const std::vector<Sample> none;
+    problem.model = &model_;
+    problem.held = &none;
+    problem.state = nominalState(model_.space(), {});
+    PosePlanOptions options;
+    options.max_poses = poses;
+    options.tilt_limit = kTilt;
+    options.wanted_stddev = wanted;
+    options.seed = seed;
+    return planPoses(problem, options);
+  }
+
+  /// Largest standard deviation of all parameters by the protocol at random poses [rad].
+  double protocolStddev(std::uint64_t seed) const {
+    scenarios::Generator generator(seed);
+    const std::vector<Sample> samples =
+        scenarios::randomSession(scenarios::paperNominal(), generator);
+    const Eigen::VectorXd x = Eigen::VectorXd::Zero(model_.space().size());
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(x.size()));
+    std::iota(all.begin(), all.end(), 0);
+    const Eigen::MatrixXd covariance = cramerRaoBound(model_, samples, {Cycle::kRefine, 0}, all, x);
+    return model_.space().reportedStddevs(x, covariance).maxCoeff();
+  }
+
+ private:
+  CalibrationModel model_{ParameterSpace(scenarios::paperNominal())};
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void printFigures() {
+  const Planner planner;
+  std::vector<double> protocol;
+  std::vector<double> planned;
+  int better = 0;
+  double longest = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    protocol.push_back(planner.protocolStddev(seed));
+    const auto begin = std::chrono::steady_clock::now();
+    const PosePlan plan = planner.plan(10, seed, 0.0);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    longest = std::max(longest, time.count());
+    planned.push_back(plan.worst_stddev);
+    const bool within = plan.success && plan.poses.size() <= 10 && plan.torque_samples <= 60;
+    better += within && planned.back() < protocol.back() ? 1 : 0;
+  }
+  std::printf("protocol median [mrad]\t%.3f\n", 1e3 * median(protocol));
+  std::printf("protocol best [mrad]\t%.3f\n",
+              1e3 * *std::min_element(protocol.begin(), protocol.end()));
+  std::printf("10 poses, 60 torques, median [mrad]\t%.3f\n", 1e3 * median(planned));
+  std::printf("10 poses, 60 torques, worst [mrad]\t%.3f\n",
+              1e3 * *std::max_element(planned.begin(), planned.end()));
+  std::printf("planned better, of %d seeds\t%d\n", static_cast<int>(kSeeds), better);
+  std::printf("longest planning [s]\t%.2f\n", longest);
+  for (std::size_t poses = 3; poses <= kMostPoses; ++poses) {
+    if (planner.plan(poses, 1, 0.0).worst_stddev <= median(protocol)) {
+      std::printf("fewest poses that reach the protocol's median\t%zu\n", poses);
+      break;
+    }
+  }
+  const PosePlan wanted = planner.plan(kMostPoses, 1, kWanted);
+  std::printf("poses for 0.2 mrad\t%zu\n", wanted.poses.size());
+  std::printf("torques for 0.2 mrad\t%zu\n", wanted.torque_samples);
+  std::printf("0.2 mrad reached [mrad]\t%.3f\n", 1e3 * wanted.worst_stddev);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration::benchmarks
+
+int main() {
+  spherical_actuator_calibration::benchmarks::printFigures();
+  return 0;
+}
