@@ -181,6 +181,7 @@ std::vector<ParameterEstimate> parameterEstimates(const ParameterSpace& space,
 std::vector<SampleResidual> sampleResiduals(const std::vector<Sample>& samples,
                                             const Estimate& estimate) {
   std::vector<SampleResidual> residuals;
+  residuals.reserve(estimate.residuals.size());
   for (const ObservationResidual& from : estimate.residuals) {
     SampleResidual residual;
     residual.id = samples[from.observation.sample].id;

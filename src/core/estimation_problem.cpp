@@ -416,6 +416,7 @@ Eigen::Matrix3d Estimator::residualCovariance(std::size_t observation,
 void Estimator::concludeResiduals() {
   const std::vector<bool> held = heldCoordinates();
   LinearizedObservation linear;
+  result_.residuals.reserve(whitening_.size());
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     evaluator_.linearize(n, x_, linear);
     ObservationResidual entry;

@@ -1,12 +1,14 @@
 #include "spherical_actuator_calibration/core/least_squares.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 
 #include <ceres/ceres.h>
 
 #include <boost/container/small_vector.hpp>
 
+#include "spherical_actuator_calibration/core/accumulated_least_squares.hpp"
 #include "spherical_actuator_calibration/core/cost_functions.hpp"
 
 namespace spherical_actuator_calibration {
@@ -182,12 +184,9 @@ void addPrior(const LeastSquaresInput& input,
   problem.AddResidualBlock(new LinearPriorCost(input.prior, firsts, sizes), nullptr, reached);
 }
 
-ceres::Solver::Options solverOptions(const LeastSquaresInput& input, int residuals) {
-  // Above this many rows the orthogonal factorisation costs more time than it saves digits.
-  constexpr int kLargestOrthogonal = 3000;
+ceres::Solver::Options solverOptions(const LeastSquaresInput& input) {
   ceres::Solver::Options options;
-  options.linear_solver_type =
-      residuals > kLargestOrthogonal ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
+  options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = input.max_iterations;
   // Close to Gauss–Newton from the first step: the prior lies within the basin as a rule, and the
   // trust region shrinks by itself where it does not.
@@ -204,6 +203,11 @@ ceres::Solver::Options solverOptions(const LeastSquaresInput& input, int residua
 }  // namespace
 
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
+  // Above this number the orthogonal factorisation costs more time and memory than it saves digits.
+  constexpr std::ptrdiff_t kMostOrthogonal = 1000;
+  if (std::count(input.active.begin(), input.active.end(), true) > kMostOrthogonal) {
+    return solveAccumulatedLeastSquares(input);
+  }
   const ParameterSpace& space = input.problem->model->space();
   LeastSquaresResult result;
   result.path.push_back(input.start);
@@ -221,7 +225,7 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   }
 
   PathRecorder recorder(x, result.path);
-  ceres::Solver::Options options = solverOptions(input, problem.NumResiduals());
+  ceres::Solver::Options options = solverOptions(input);
   options.callbacks.push_back(&recorder);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

@@ -47,8 +47,9 @@ struct LeastSquaresResult {
   const Eigen::VectorXd& solution() const { return path.back(); }
 };
 
-/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt (Ceres), analytic Jacobians, one
-/// thread, so that the same input gives the same bits.
+/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt, by Ceres or, for many observations,
+/// as in accumulated_least_squares.hpp. Analytic Jacobians, one thread, so that the same input
+/// gives the same bits.
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
 
 }  // namespace spherical_actuator_calibration
