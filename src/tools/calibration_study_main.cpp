@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/core/calibration_config.hpp"
 #include "spherical_actuator_calibration/core/description_file.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/core/session_plan_file.hpp"
 #include "spherical_actuator_calibration/core/study_file.hpp"
 #include "spherical_actuator_calibration/core/yaml_writer.hpp"
 
@@ -49,6 +50,7 @@ struct Options {
   std::string actuator_path;
   std::string config_path;
   std::string output_path;
+  std::string plan_path;
   std::vector<std::string> shard_paths;
   bool merge = false;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
@@ -92,6 +94,9 @@ po::options_description knownOptions(Options& options) {
   add("seed", stored(options.seed, "N"), "of the first trial; each further one counts up");
   add("shard", stored(options.shard_text, "I/N"), "do only part I of N");
   add("threads", stored(options.threads, "N"), "to run trials on");
+  add("plan",
+      po::value(&options.plan_path)->value_name("YAML"),
+      "session planned by plan_session, in the place of the poses and the current below");
   add("plan-seed", stored(options.plan_seed, "N"), "of the poses, the same in all trials");
   add("joint-poses", stored(options.plan.joint_poses, "N"), "poses without current");
   add("main-coil-poses", stored(options.plan.main_coil_poses, "N"), "poses with coil 1 excited");
@@ -178,6 +183,7 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const Options& optio
   return {{"software", PACKAGE_VERSION},
           {"actuator", nominal.name},
           {"tracker", options.tracker},
+          {"plan", options.plan_path.empty() ? "random" : options.plan_path},
           {"plan seed", std::to_string(options.plan_seed)},
           {"joint poses", std::to_string(options.plan.joint_poses)},
           {"poses with coil 1", std::to_string(options.plan.main_coil_poses)},
@@ -207,7 +213,9 @@ StudyRecord run(const Options& options) {
   const Shard shard = parseShard(options.shard_text);
   StudyOptions study;
   study.nominal = loadActuator(options.actuator_path);
-  study.plan = planSession(study.nominal, options.plan, options.plan_seed);
+  study.plan = options.plan_path.empty()
+                   ? planSession(study.nominal, options.plan, options.plan_seed)
+                   : sessionOf(loadSessionPlan(options.plan_path), study.nominal);
   study.tracker = parseTracker(options.tracker);
   study.noise = options.noise;
   study.errors = options.errors;
