@@ -40,7 +40,7 @@ class EmulatedLab:
     """emulated_lab.launch on the master of the test; `folder` keeps its files. Without `commands` it is
     somebody else who moves and excites."""
 
-    def __init__(self, folder, commands=True, **arguments):
+    def __init__(self, folder, commands=True, environment=None, **arguments):
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
@@ -50,6 +50,7 @@ class EmulatedLab:
             "truth": self.truth,
             **arguments,
         }
+        self._environment = environment
         self._launch = None
         self._position = None
         self._currents = None
@@ -63,7 +64,9 @@ class EmulatedLab:
         rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, self._keep_currents)
 
     def start(self):
-        self._launch = Launch(launch_file("emulated_lab.launch"), **self._arguments)
+        self._launch = Launch(
+            launch_file("emulated_lab.launch"), environment=self._environment, **self._arguments
+        )
         wait_for(lambda: self._position is not None, "joint angles")
         wait_for(lambda: self._targets.get_num_connections() > 0, "the fixture")
         wait_for(lambda: self._commands.get_num_connections() > 0, "the coil driver")

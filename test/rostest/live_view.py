@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""The live view in rviz, on a screen that nobody sees: what it draws, and that it follows."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
+from emulated_lab import EmulatedLab
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
+
+SIZE = (1280, 720)
+FEWEST_COLOURS = 200
+FEWEST_PIXELS = 30
+
+
+class Screen:
+    """A virtual display, and pictures of it."""
+
+    def __init__(self):
+        read, write = os.pipe()
+        self._server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
+            pass_fds=(write,),
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(write)
+        with os.fdopen(read) as number:
+            self.display = ":" + number.readline().strip()
+
+    def pixels(self):
+        """Red, green and blue of every pixel."""
+        picture = subprocess.run(
+            ["import", "-display", self.display, "-window", "root", "-depth", "8", "rgb:-"],
+            check=True,
+            stdout=subprocess.PIPE,
+        ).stdout
+        return list(zip(picture[0::3], picture[1::3], picture[2::3]))
+
+    def stop(self):
+        self._server.terminate()
+        self._server.wait()
+
+
+def count(pixels, condition):
+    return sum(1 for red, green, blue in pixels if condition(red, green, blue))
+
+
+def is_red(red, green, blue):
+    return red > 110 and green < 0.5 * red and blue < 0.5 * red
+
+
+def is_blue(red, green, blue):
+    return blue > 110 and red < 0.6 * blue and green < 0.8 * blue
+
+
+def is_glowing(red, green, blue):
+    return red > 140 and green > 0.75 * red and blue < 0.4 * red
+
+
+class LiveView(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.screen = Screen()
+        cls.client = CalibrationClient()
+        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+        cls.lab = EmulatedLab(cls.folder.name, environment=environment, rviz=True)
+        cls.markers = []
+        cls.frames = {}
+        rospy.Subscriber(f"{NAMESPACE}/calibration_markers", MarkerArray, cls.markers.append)
+        rospy.Subscriber("/tf", TFMessage, cls.keep_frames)
+        cls.lab.start()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.lab.stop()
+        cls.screen.stop()
+        cls.folder.cleanup()
+
+    @classmethod
+    def keep_frames(cls, message):
+        for transform in message.transforms:
+            cls.frames[transform.child_frame_id] = transform
+
+    def shows(self, condition):
+        """Until enough pixels of the picture meet the condition."""
+        wait_for(
+            lambda: count(self.screen.pixels(), condition) >= FEWEST_PIXELS, "the colour in the picture"
+        )
+
+    def test_draws_poles_coils_and_the_excited_one(self):
+        self.lab.move([0.2, -0.1, 0.3])
+        self.shows(is_red)
+        self.shows(is_blue)
+        self.lab.excite(1, 2.0)
+        self.shows(is_glowing)
+        self.assertGreater(len(set(self.screen.pixels())), FEWEST_COLOURS)
+
+    def test_frames_follow_the_joints(self):
+        self.lab.move([0.0, 0.0, 0.0])
+        self.lab.move([0.0, 0.0, 1.0])
+        wait_for(lambda: abs(self.frames["rotor_nominal"].transform.rotation.z) > 0.47, "the nominal rotor")
+        self.assertEqual(self.frames["rotor_nominal"].header.frame_id, "stator")
+        self.assertEqual(self.frames["rotor"].header.frame_id, "joint_2")
+
+    def test_a_sample_is_a_dot(self):
+        def captured():
+            return self.client.call("capture", duration=0.3, validation=False).success
+
+        wait_for(captured, "a sample")
+
+        def is_drawn():
+            groups = [marker for marker in self.markers[-1].markers if marker.ns == "samples"]
+            return groups and groups[0].points
+
+        wait_for(is_drawn, "the dot of the sample")
+
+
+if __name__ == "__main__":
+    rospy.init_node("live_view_test")
+    rostest.rosrun(PACKAGE, "live_view", LiveView, sys.argv)
