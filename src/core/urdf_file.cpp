@@ -1,8 +1,6 @@
 #include "spherical_actuator_calibration/core/urdf_file.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -11,7 +9,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/rotations.hpp"
+#include "spherical_actuator_calibration/core/urdf_elements.hpp"
 
 #include <tinyxml2.h>
 
@@ -149,44 +147,6 @@ void requireNominal(const RobotDescription& robot, const JointAxis& nominal) {
   }
 }
 
-/// Roll, pitch, yaw [rad] of R = R_z(yaw) R_y(pitch) R_x(roll), as URDF has it. The roll is taken
-/// relative to the yaw, so that the product stays exact where both turn about the same axis.
-Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& R) {
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const double s = std::sin(yaw);
-  const double c = std::cos(yaw);
-  const double pitch = std::atan2(-R(2, 0), c * R(0, 0) + s * R(1, 0));
-  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
-  return {roll, pitch, yaw};
-}
-
-/// Three numbers with all digits of a double; never "-0".
-std::string triple(const Eigen::Vector3d& v) {
-  std::string text;
-  for (const double value : v) {
-    std::array<char, 32> number = {};
-    const std::to_chars_result result = std::to_chars(number.data(),
-                                                      number.data() + number.size(),
-                                                      value + 0.0,
-                                                      std::chars_format::general,
-                                                      std::numeric_limits<double>::max_digits10);
-    text += (text.empty() ? "" : " ") + std::string(number.data(), result.ptr);
-  }
-  return text;
-}
-
-tinyxml2::XMLElement& childElement(tinyxml2::XMLElement& parent, const char* name) {
-  tinyxml2::XMLElement* child = parent.FirstChildElement(name);
-  return child != nullptr ? *child : *parent.InsertNewChildElement(name);
-}
-
-void writeJoint(tinyxml2::XMLElement& element, const JointAxis& joint) {
-  const Eigen::Vector3d axis = joint.axis.normalized();
-  childElement(element, "axis").SetAttribute("xyz", triple(axis).c_str());
-  childElement(element, "origin")
-      .SetAttribute("rpy", triple(rollPitchYaw(rotationExp(axis * joint.offset))).c_str());
-}
-
 std::string calibratedText(RobotDescription& robot,
                            const Actuator& nominal,
                            const Actuator& calibrated) {
@@ -195,7 +155,7 @@ std::string calibratedText(RobotDescription& robot,
   requireChain(robot, namesOf(nominal));
   for (std::size_t k = 0; k < kJoints; ++k) {
     requireNominal(robot, nominal.joints[k]);
-    writeJoint(robot.element(nominal.joints[k].name), calibrated.joints[k]);
+    writeJointAxis(robot.element(nominal.joints[k].name), calibrated.joints[k]);
   }
   return robot.text();
 }

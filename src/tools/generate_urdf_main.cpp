@@ -1,0 +1,84 @@
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include <boost/program_options.hpp>
+
+#include "spherical_actuator_calibration/core/atomic_file.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/core/urdf_generator.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr int kSuccess = 0;
+constexpr int kUnusable = 2;
+
+struct Options {
+  std::string actuator_path;
+  std::string dimensions_path;  ///< empty: the paper's
+  std::string output_path;      ///< empty: standard output
+  std::string frame_prefix;
+  bool force = false;
+};
+
+std::optional<Options> parseOptions(int argc, char** argv) {
+  namespace po = boost::program_options;
+  Options options;
+  po::options_description known("Options");
+  known.add_options()("help,h", "print this help and exit")(
+      "actuator", po::value(&options.actuator_path)->required(), "actuator description (YAML)")(
+      "dimensions",
+      po::value(&options.dimensions_path),
+      "sizes, materials and limits (YAML); every key in config/actuator_dimensions.yaml")(
+      "output",
+      po::value(&options.output_path),
+      "robot description to write (URDF); without it, the standard output")(
+      "frame-prefix", po::value(&options.frame_prefix), "before the names of all links")(
+      "force", po::bool_switch(&options.force), "replace the output if it exists");
+  po::variables_map given;
+  po::store(po::parse_command_line(argc, argv, known), given);
+  if (given.count("help") > 0) {
+    std::cout << "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
+                 "Writes the robot description of an actuator, with any number of poles and "
+                 "coils.\n\n"
+              << known;
+    return std::nullopt;
+  }
+  po::notify(given);
+  return options;
+}
+
+void writeUrdf(const Options& options) {
+  const ActuatorDimensions dimensions = options.dimensions_path.empty()
+                                            ? ActuatorDimensions{}
+                                            : loadDimensions(options.dimensions_path);
+  const std::string text =
+      renderUrdf(loadActuator(options.actuator_path), dimensions, options.frame_prefix);
+  if (options.output_path.empty()) {
+    std::cout << text;
+    return;
+  }
+  writeFileAtomically(options.output_path,
+                      text,
+                      options.force ? OverwritePolicy::kReplace : OverwritePolicy::kRefuse);
+}
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
+
+int main(int argc, char** argv) {
+  namespace sac = spherical_actuator_calibration;
+  try {
+    const auto options = sac::parseOptions(argc, argv);
+    if (options) {
+      sac::writeUrdf(*options);
+    }
+    return sac::kSuccess;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "generate_urdf: %s\n", error.what());
+    return sac::kUnusable;
+  }
+}
