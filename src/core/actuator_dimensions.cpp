@@ -44,18 +44,9 @@ void readSection(const YamlMap& map, const std::string& section, ActuatorDimensi
   }
 }
 
-ActuatorDimensions read(const YamlMap& file) {
-  ActuatorDimensions dimensions;
-  if (file.has("dimensions")) {
-    const YamlMap map = file.map("dimensions");
-    for (const char* const section : {"rotor", "stator", "limits"}) {
-      if (map.has(section)) {
-        readSection(map.map(section), section, dimensions);
-      }
-    }
-  }
+ActuatorDimensions readWhole(const YamlMap& file) {
+  const ActuatorDimensions dimensions = readDimensions(file);
   file.finish();
-  validate(dimensions);
   return dimensions;
 }
 
@@ -83,12 +74,27 @@ void validate(const ActuatorDimensions& dimensions) {
   }
 }
 
+ActuatorDimensions readDimensions(const YamlMap& file) {
+  ActuatorDimensions dimensions;
+  if (!file.has("dimensions")) {
+    return dimensions;
+  }
+  const YamlMap map = file.map("dimensions");
+  for (const char* const section : {"rotor", "stator", "limits"}) {
+    if (map.has(section)) {
+      readSection(map.map(section), section, dimensions);
+    }
+  }
+  validate(dimensions);
+  return dimensions;
+}
+
 ActuatorDimensions loadDimensions(const std::string& path) {
-  return read(YamlMap::load(path));
+  return readWhole(YamlMap::load(path));
 }
 
 ActuatorDimensions parseDimensions(const std::string& text, const std::string& name) {
-  return read(YamlMap::parse(text, name));
+  return readWhole(YamlMap::parse(text, name));
 }
 
 }  // namespace spherical_actuator_calibration

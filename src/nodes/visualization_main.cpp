@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   const ros::NodeHandle private_node("~");
   try {
     const sac::VisualizationNode visualization(node,
+                                               private_node,
                                                sac::loadDescriptionParameter(node).actuator,
                                                sac::loadVisualizationOptions(private_node));
     sac::spinUntilTermination();

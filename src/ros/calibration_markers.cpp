@@ -1,9 +1,12 @@
 #include "spherical_actuator_calibration/ros/calibration_markers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "spherical_actuator_calibration/core/torque_model.hpp"
+#include "spherical_actuator_calibration/ros/marker_shapes.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -11,67 +14,37 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-// Dimensions of the drawing [m], as in urdf/.
-constexpr double kRotorRadius = 0.0565;
-constexpr double kShellRadius = 0.117;
-constexpr double kPoleLength = 0.022;
-constexpr double kCoilLength = 0.03;
-constexpr double kShaft = 0.005;
+// Sizes of what is no body [m].
+constexpr double kShaft = 0.0035;
 constexpr double kThinShaft = 0.0015;
-constexpr double kSampleRadius = 0.16;
-constexpr double kFullGlow = 2.0;  // [A]
+constexpr double kArrowGap = 0.002;       ///< between a body and its arrow
+constexpr double kArrowLength = 0.024;    ///< the way from the rotor to the coils
+constexpr double kNominalLength = 0.030;  ///< looks out where both axes agree
+constexpr double kGlowMargin = 0.0015;
+constexpr double kDot = 0.006;
+constexpr double kDotGap = 0.008;
 
-struct Color {
-  float red;
-  float green;
-  float blue;
-  float alpha;
-};
-constexpr Color kGrey = {0.55F, 0.55F, 0.55F, 0.9F};
-constexpr Color kNorth = {0.85F, 0.15F, 0.15F, 1.0F};
-constexpr Color kSouth = {0.15F, 0.3F, 0.85F, 1.0F};
-constexpr Color kCopper = {0.72F, 0.45F, 0.2F, 1.0F};
-constexpr Color kGlow = {1.0F, 0.95F, 0.2F, 1.0F};
-constexpr Color kSample = {0.1F, 0.6F, 0.3F, 1.0F};
+constexpr double kFullGlow = 2.0;          // [A]
+constexpr double kSmallestGlow = 0.02;     // of the full one
+constexpr double kLargestHalfAngle = 1.2;  // [rad]
+constexpr double kBadResidual = 3.0;
+constexpr double kSameDirection = 0.02;  // [rad]
 
-geometry_msgs::Point pointOf(const Eigen::Vector3d& from) {
-  geometry_msgs::Point point;
-  point.x = from.x();
-  point.y = from.y();
-  point.z = from.z();
-  return point;
-}
+constexpr MarkerColor kGrey = {0.55F, 0.55F, 0.55F, 0.9F};
+constexpr MarkerColor kNorth = {0.85F, 0.15F, 0.15F, 1.0F};
+constexpr MarkerColor kSouth = {0.15F, 0.3F, 0.85F, 1.0F};
+constexpr MarkerColor kCopper = {0.72F, 0.45F, 0.2F, 1.0F};
+constexpr MarkerColor kGlow = {1.0F, 0.9F, 0.1F, 0.85F};
+constexpr MarkerColor kDark = {1.0F, 0.9F, 0.1F, 0.0F};
+constexpr MarkerColor kUncertain = {0.6F, 0.2F, 0.7F, 0.35F};
+constexpr MarkerColor kGood = {0.1F, 0.65F, 0.25F, 1.0F};
+constexpr MarkerColor kBad = {0.9F, 0.1F, 0.1F, 1.0F};
+constexpr MarkerColor kRejected = {0.0F, 0.0F, 0.0F, 1.0F};
+constexpr float kGhostAlpha = 0.25F;
 
-Color mixed(const Color& one, const Color& other, float share) {
-  const auto mix = [share](float a, float b) { return a + share * (b - a); };
-  return {mix(one.red, other.red),
-          mix(one.green, other.green),
-          mix(one.blue, other.blue),
-          mix(one.alpha, other.alpha)};
-}
-
-Marker marker(const std::string& frame, const std::string& group, int id, const Color& color) {
-  Marker result;
-  result.header.frame_id = frame;
-  result.ns = group;
-  result.id = id;
-  result.action = Marker::ADD;
-  result.frame_locked = 1;
-  result.pose.orientation.w = 1.0;
-  result.color.r = color.red;
-  result.color.g = color.green;
-  result.color.b = color.blue;
-  result.color.a = color.alpha;
-  return result;
-}
-
-/// Arrow along an axis between two radii.
-void drawArrow(Marker& arrow, const Eigen::Vector3d& axis, double from, double to, double shaft) {
-  arrow.type = Marker::ARROW;
-  arrow.points = {pointOf(from * axis), pointOf(to * axis)};
-  arrow.scale.x = shaft;
-  arrow.scale.y = 2.0 * shaft;
-  arrow.scale.z = 0.4 * std::abs(to - from);
+MarkerColor ghost(MarkerColor color) {
+  color.alpha = kGhostAlpha;
+  return color;
 }
 
 /// Identified axis with its difference from nominal magnified.
@@ -81,6 +54,54 @@ Eigen::Vector3d magnified(const Eigen::Vector3d& nominal,
   return (nominal + magnification * (identified - nominal)).normalized();
 }
 
+MarkerColor colorOf(const SampledDirection& sample) {
+  if (sample.rejected) {
+    return kRejected;
+  }
+  if (!sample.standardized) {
+    return kGrey;
+  }
+  const double share = (*sample.standardized - 1.0) / (kBadResidual - 1.0);
+  return mixed(kGood, kBad, static_cast<float>(std::clamp(share, 0.0, 1.0)));
+}
+
+/// Whether one sample fits worse than another; nothing known is best.
+bool isWorse(const SampledDirection& one, const SampledDirection& other) {
+  if (one.rejected != other.rejected) {
+    return one.rejected;
+  }
+  return one.standardized.value_or(-1.0) > other.standardized.value_or(-1.0);
+}
+
+/// The worst sample of each direction.
+std::vector<SampledDirection> worstOfEach(const std::vector<SampledDirection>& samples) {
+  std::map<std::array<long, 3>, SampledDirection> worst;
+  for (const SampledDirection& sample : samples) {
+    const Eigen::Vector3d cell = sample.direction_stator / kSameDirection;
+    const auto [place, is_new] = worst.try_emplace(
+        {std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}, sample);
+    if (!is_new && isWorse(sample, place->second)) {
+      place->second = sample;
+    }
+  }
+  std::vector<SampledDirection> dots;
+  dots.reserve(worst.size());
+  for (const auto& [cell, sample] : worst) {
+    dots.push_back(sample);
+  }
+  return dots;
+}
+
+/// The axes of one kind, poles or coils, and how they are drawn.
+struct AxisGroup {
+  std::string name;  ///< pole or coil
+  std::string frame;
+  double from;          ///< radius where the arrows begin [m]
+  double to;            ///< radius where they end [m]
+  double nominal_from;  ///< the same of the nominal ones [m]
+  double nominal_to;
+};
+
 class Drawing {
  public:
   explicit Drawing(const CalibrationScene& scene)
@@ -89,62 +110,138 @@ class Drawing {
         identified_(torqueGeometry(scene.identified)) {}
 
   MarkerArray markers() {
-    for (Eigen::Index i = 0; i < nominal_.poles_rotor.cols(); ++i) {
-      addPole(i);
-    }
-    for (Eigen::Index j = 0; j < nominal_.coils_stator.cols(); ++j) {
-      addCoil(j);
-    }
+    addPoles();
+    addCoils();
+    addGhost();
     addSamples();
     return array_;
   }
 
  private:
-  void addPole(Eigen::Index i) {
-    const Eigen::Vector3d nominal = nominal_.poles_rotor.col(i);
-    const Eigen::Vector3d axis =
-        magnified(nominal, identified_.poles_rotor.col(i), scene_.magnification);
-    const bool is_north = scene_.nominal.poles[static_cast<std::size_t>(i)].polarity > 0;
-    const auto id = static_cast<int>(i);
-    Marker pole = marker(scene_.rotor_frame, "poles", id, is_north ? kNorth : kSouth);
-    drawArrow(pole, axis, kRotorRadius - kPoleLength, kRotorRadius + kPoleLength, kShaft);
-    array_.markers.push_back(pole);
-    Marker drawn = marker(scene_.rotor_frame, "nominal poles", id, kGrey);
-    drawArrow(drawn, nominal, kRotorRadius, kRotorRadius + 1.5 * kPoleLength, kThinShaft);
-    array_.markers.push_back(drawn);
+  void addPoles() {
+    const double start = scene_.dimensions.rotor_radius + kArrowGap;
+    const AxisGroup group = {
+        "pole", scene_.frames.rotor, start, start + kArrowLength, start, start + kNominalLength};
+    for (Eigen::Index i = 0; i < nominal_.poles_rotor.cols(); ++i) {
+      addAxis(group,
+              i,
+              nominal_.poles_rotor.col(i),
+              identified_.poles_rotor.col(i),
+              colorOfPole(i),
+              scene_.pole_stddevs);
+    }
   }
 
-  void addCoil(Eigen::Index j) {
-    const Eigen::Vector3d nominal = nominal_.coils_stator.col(j);
-    const Eigen::Vector3d axis =
-        magnified(nominal, identified_.coils_stator.col(j), scene_.magnification);
-    const double current = j < scene_.currents.size() ? std::abs(scene_.currents[j]) : 0.0;
-    const auto glow = static_cast<float>(std::min(1.0, current / kFullGlow));
-    const auto id = static_cast<int>(j);
-    Marker coil = marker(scene_.stator_frame, "coils", id, mixed(kCopper, kGlow, glow));
-    drawArrow(coil,
-              axis,
-              kShellRadius + kCoilLength,
-              kShellRadius - 0.5 * kCoilLength,
-              kShaft * (1.0 + static_cast<double>(glow)));
-    array_.markers.push_back(coil);
-    Marker drawn = marker(scene_.stator_frame, "nominal coils", id, kGrey);
-    drawArrow(drawn, nominal, kShellRadius + 1.4 * kCoilLength, kShellRadius, kThinShaft);
+  void addCoils() {
+    // From outside, so that coils and arrows do not hide each other.
+    const double end = scene_.dimensions.outer_shell_radius + kArrowGap;
+    const AxisGroup group = {
+        "coil", scene_.frames.stator, end + kArrowLength, end, end + kNominalLength, end};
+    for (Eigen::Index j = 0; j < nominal_.coils_stator.cols(); ++j) {
+      addAxis(group,
+              j,
+              nominal_.coils_stator.col(j),
+              identified_.coils_stator.col(j),
+              kCopper,
+              scene_.coil_stddevs);
+      addGlow(j);
+    }
+  }
+
+  MarkerColor colorOfPole(Eigen::Index i) const {
+    return scene_.nominal.poles[static_cast<std::size_t>(i)].polarity > 0 ? kNorth : kSouth;
+  }
+
+  void addAxis(const AxisGroup& group,
+               Eigen::Index index,
+               const Eigen::Vector3d& nominal,
+               const Eigen::Vector3d& identified,
+               const MarkerColor& color,
+               const std::vector<std::optional<double>>& stddevs) {
+    const auto id = static_cast<int>(index);
+    const Eigen::Vector3d axis = magnified(nominal, identified, scene_.magnification);
+    Marker arrow = emptyMarker(group.frame, group.name + "s", id, color);
+    drawArrow(arrow, axis, group.from, group.to, kShaft);
+    array_.markers.push_back(arrow);
+    Marker drawn = emptyMarker(group.frame, "nominal " + group.name + "s", id, kGrey);
+    drawArrow(drawn, nominal, group.nominal_from, group.nominal_to, kThinShaft);
     array_.markers.push_back(drawn);
+
+    Marker cone = emptyMarker(group.frame, group.name + " uncertainty", id, kUncertain);
+    const auto place = static_cast<std::size_t>(index);
+    if (place < stddevs.size() && stddevs[place]) {
+      const double half_angle = std::min(scene_.magnification * *stddevs[place], kLargestHalfAngle);
+      drawCone(cone,
+               axis,
+               std::min(group.nominal_from, group.nominal_to),
+               std::max(group.nominal_from, group.nominal_to),
+               half_angle);
+    } else {
+      cone.action = Marker::DELETE;
+    }
+    array_.markers.push_back(cone);
+  }
+
+  void addGlow(Eigen::Index j) {
+    const double current = j < scene_.currents.size() ? std::abs(scene_.currents[j]) : 0.0;
+    // A sensor that measures nothing (NaN) lights nothing.
+    const double share = std::isfinite(current) ? std::min(1.0, current / kFullGlow) : 0.0;
+    const ActuatorDimensions& d = scene_.dimensions;
+    Marker glow = emptyMarker(scene_.frames.stator,
+                              "currents",
+                              static_cast<int>(j),
+                              mixed(kDark, kGlow, static_cast<float>(share)));
+    drawCylinder(glow,
+                 nominal_.coils_stator.col(j),
+                 d.coilDistance(),
+                 d.coil_radius + kGlowMargin,
+                 d.coil_height + 2.0 * kGlowMargin);
+    if (share < kSmallestGlow) {
+      glow.action = Marker::DELETE;
+    }
+    array_.markers.push_back(glow);
+  }
+
+  void addGhost() {
+    const ActuatorDimensions& d = scene_.dimensions;
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    int id = 0;
+    const auto add = [&](const MarkerColor& color,
+                         const Eigen::Vector3d& axis,
+                         double distance,
+                         double radius,
+                         double length) {
+      Marker body = emptyMarker(scene_.frames.nominal_rotor, "nominal rotor", id++, ghost(color));
+      drawCylinder(body, axis, distance, radius, length);
+      array_.markers.push_back(body);
+    };
+    add(kGrey, up, 0.0, d.rotor_radius, d.hoop_height);
+    add(kGrey, up, 0.5 * d.shaft_length, d.shaft_radius, d.shaft_length);
+    for (Eigen::Index i = 0; i < nominal_.poles_rotor.cols(); ++i) {
+      add(colorOfPole(i),
+          nominal_.poles_rotor.col(i),
+          d.poleDistance(),
+          d.pole_radius,
+          d.pole_height);
+    }
   }
 
   void addSamples() {
-    Marker samples = marker(scene_.stator_frame, "samples", 0, kSample);
-    samples.type = Marker::SPHERE_LIST;
-    samples.scale.x = samples.scale.y = samples.scale.z = 0.006;
-    for (const Eigen::Vector3d& direction : scene_.sampled_directions) {
-      samples.points.push_back(pointOf(kSampleRadius * direction));
+    Marker dots = emptyMarker(scene_.frames.stator, "samples", 0, kGrey);
+    dots.type = Marker::SPHERE_LIST;
+    dots.scale.x = kDot;
+    dots.scale.y = kDot;
+    dots.scale.z = kDot;
+    const double radius = scene_.dimensions.shaft_length + kDotGap;
+    for (const SampledDirection& sample : worstOfEach(scene_.samples)) {
+      dots.points.push_back(pointToRos(radius * sample.direction_stator));
+      dots.colors.push_back(colorToRos(colorOf(sample)));
     }
     // An empty list would be an error in rviz.
-    if (samples.points.empty()) {
-      samples.action = Marker::DELETE;
+    if (dots.points.empty()) {
+      dots.action = Marker::DELETE;
     }
-    array_.markers.push_back(samples);
+    array_.markers.push_back(dots);
   }
 
   const CalibrationScene& scene_;

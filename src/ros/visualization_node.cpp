@@ -1,15 +1,17 @@
 #include "spherical_actuator_calibration/ros/visualization_node.hpp"
 
-#include <algorithm>
+#include <chrono>
 
 #include <Eigen/Geometry>
 
 #include <geometry_msgs/TransformStamped.h>
+#include <ros/service.h>
 
+#include "spherical_actuator_calibration/ListSamples.h"
 #include "spherical_actuator_calibration/core/rotations.hpp"
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
+#include "spherical_actuator_calibration/core/urdf_generator.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/message_types.hpp"
 #include "spherical_actuator_calibration/ros/parameter_text.hpp"
 
 namespace spherical_actuator_calibration {
@@ -19,42 +21,47 @@ constexpr double kFramePeriod = 0.02;  // [s]
 constexpr double kMarkerPeriod = 0.1;  // [s]
 constexpr double kLargestMagnification = 1000.0;
 
-/// The nominal actuator with the values of a message; nothing when it is of another design.
-bool applyParameters(const ActuatorParameters& message, Actuator& actuator) {
-  if (message.poles.size() != actuator.poles.size() ||
-      message.coils.size() != actuator.coils.size()) {
-    return false;
-  }
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const auto& axis = message.joints[k].axis;
-    actuator.joints[k].axis = Eigen::Vector3d(axis.x, axis.y, axis.z);
-    actuator.joints[k].offset = message.joints[k].offset;
-  }
-  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
-    actuator.poles[i].polar = message.poles[i].polar;
-    actuator.poles[i].azimuth = message.poles[i].azimuth;
-  }
-  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
-    actuator.coils[j].polar = message.coils[j].polar;
-    actuator.coils[j].azimuth = message.coils[j].azimuth;
-  }
-  return true;
-}
-
 geometry_msgs::TransformStamped rotationTransform(const ros::Time& stamp,
                                                   const std::string& parent,
                                                   const std::string& child,
                                                   const Eigen::Matrix3d& R_parent_child) {
-  const Eigen::Quaterniond q(R_parent_child);
   geometry_msgs::TransformStamped transform;
   transform.header.stamp = stamp;
   transform.header.frame_id = parent;
   transform.child_frame_id = child;
-  transform.transform.rotation.x = q.x();
-  transform.transform.rotation.y = q.y();
-  transform.transform.rotation.z = q.z();
-  transform.transform.rotation.w = q.w();
+  transform.transform.rotation = quaternionToRos(Eigen::Quaterniond(R_parent_child));
   return transform;
+}
+
+SceneFrames prefixed(const std::string& prefix) {
+  SceneFrames frames;
+  frames.stator = prefix + frames.stator;
+  frames.rotor = prefix + frames.rotor;
+  frames.nominal_rotor = prefix + frames.nominal_rotor;
+  return frames;
+}
+
+CalibrationScene startOf(const Actuator& nominal, const VisualizationOptions& options) {
+  CalibrationScene scene;
+  scene.nominal = nominal;
+  scene.dimensions = options.dimensions;
+  scene.magnification = options.error_magnification;
+  scene.frames = prefixed(options.frame_prefix);
+  return scene;
+}
+
+std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
+  return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
+}
+
+/// Samples in use by the calibration node; nothing when it does not answer.
+std::optional<std::vector<CalibrationSample>> listSamples(const std::string& service) {
+  ListSamples list;
+  constexpr bool kTellAbsence = false;
+  if (!ros::service::exists(service, kTellAbsence) || !ros::service::call(service, list)) {
+    return std::nullopt;
+  }
+  return std::move(list.response.samples);
 }
 
 }  // namespace
@@ -66,91 +73,103 @@ VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_nod
   options.error_magnification = map.number("error_magnification",
                                            ValueRange::closed(1.0, kLargestMagnification),
                                            options.error_magnification);
-  options.joint_frame_prefix = map.text("frame_prefix", options.joint_frame_prefix);
-  options.stator_frame = options.joint_frame_prefix + options.stator_frame;
-  options.rotor_frame = options.joint_frame_prefix + options.rotor_frame;
+  options.frame_prefix = map.text("frame_prefix", options.frame_prefix);
+  options.dimensions = readDimensions(map);
+  // Made by an earlier run of this node.
+  map.text("robot_description", "");
   map.finish();
   return options;
 }
 
 VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node,
                                      const Actuator& nominal,
                                      const VisualizationOptions& options)
-    : options_(options), node_(node) {
-  scene_.nominal = nominal;
-  scene_.identified = nominal;
-  scene_.magnification = options.error_magnification;
-  scene_.stator_frame = options.stator_frame;
-  scene_.rotor_frame = options.rotor_frame;
+    : options_(options),
+      frames_(prefixed(options.frame_prefix)),
+      nominal_(nominal),
+      scene_(startOf(nominal, options)),
+      joint_reader_(jointNames(nominal)),
+      node_(node) {
+  private_node.setParam("robot_description",
+                        renderUrdf(nominal, options.dimensions, options.frame_prefix));
   constexpr bool kLatched = true;
   publisher_ = node_.advertise<visualization_msgs::MarkerArray>("calibration_markers", 1, kLatched);
   constexpr std::uint32_t kQueueLength = 1000;
   subscribers_.push_back(
       node_.subscribe("joint_states", kQueueLength, &VisualizationNode::receiveJoints, this));
-  subscribers_.push_back(node_.subscribe<ActuatorParameters>(
-      "parameters", 1, [this](const ActuatorParameters::ConstPtr& message) {
-        changed_ = applyParameters(*message, scene_.identified) || changed_;
+  feed<ActuatorParameters>("parameters", 1);
+  feed<CalibrationReport>("report", kQueueLength);
+  feed<CalibrationStatus>("status", 1);
+  feed<CoilCurrents>("coil_currents", 1);
+  feed<CalibrationSample>("samples", kQueueLength);
+  timer_ = node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
+                                 [this](const ros::WallTimerEvent& /*event*/) {
+                                   updateSamples();
+                                   publishMarkers();
+                                 });
+}
+
+template <typename Message>
+void VisualizationNode::feed(const std::string& topic, std::uint32_t queue_length) {
+  subscribers_.push_back(node_.subscribe<Message>(
+      topic, queue_length, [this](const typename Message::ConstPtr& message) {
+        scene_.receive(*message);
       }));
-  subscribers_.push_back(node_.subscribe<CoilCurrents>(
-      "coil_currents", 1, [this](const CoilCurrents::ConstPtr& message) {
-        scene_.currents = Eigen::Map<const Eigen::VectorXd>(
-            message->current.data(), static_cast<Eigen::Index>(message->current.size()));
-        changed_ = true;
-      }));
-  subscribers_.push_back(node_.subscribe<CalibrationSample>(
-      "samples", kQueueLength, [this](const CalibrationSample::ConstPtr& message) {
-        if (message->has_orientation != 0) {
-          const auto& q = message->orientation;
-          samples_[message->id] =
-              Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized() * Eigen::Vector3d::UnitZ();
-          changed_ = true;
-        }
-      }));
-  timer_ =
-      node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
-                            [this](const ros::WallTimerEvent& /*event*/) { publishMarkers(); });
 }
 
 void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
   const double age = (message.header.stamp - last_broadcast_).toSec();
-  if (message.position.size() != kJoints || (age >= 0.0 && age < kFramePeriod)) {
+  if (age >= 0.0 && age < kFramePeriod) {
     return;
   }
-  const Eigen::Vector3d q(message.position.data());
-  if (q.allFinite()) {
-    broadcast(message.header.stamp, q);
+  const std::optional<JointMeasurement> joints = joint_reader_.read(message);
+  if (joints && joints->position.allFinite()) {
+    broadcast(message.header.stamp, joints->position);
     last_broadcast_ = message.header.stamp;
   }
 }
 
 void VisualizationNode::broadcast(const ros::Time& stamp, const Eigen::Vector3d& q) {
-  const auto& joints = scene_.identified.joints;
+  const auto& joints = scene_.joints();
   const auto turned = [&](std::size_t k) {
     return rotationExp(joints[k].axis.normalized() *
                        (q[static_cast<Eigen::Index>(k)] + joints[k].offset));
   };
-  const std::string joint_1 = options_.joint_frame_prefix + "joint_1";
-  const std::string joint_2 = options_.joint_frame_prefix + "joint_2";
+  const std::string joint_1 = options_.frame_prefix + "joint_1";
+  const std::string joint_2 = options_.frame_prefix + "joint_2";
   broadcaster_.sendTransform(std::vector<geometry_msgs::TransformStamped>{
-      rotationTransform(stamp, options_.stator_frame, joint_1, turned(0)),
+      rotationTransform(stamp, frames_.stator, joint_1, turned(0)),
       rotationTransform(stamp, joint_1, joint_2, turned(1)),
-      rotationTransform(stamp, joint_2, options_.rotor_frame, turned(2)),
+      rotationTransform(stamp, joint_2, frames_.rotor, turned(2)),
       rotationTransform(stamp,
-                        options_.stator_frame,
-                        options_.rotor_frame + "_nominal",
-                        rotorOrientation(jointGeometry(scene_.nominal.joints), q))});
+                        frames_.stator,
+                        frames_.nominal_rotor,
+                        rotorOrientation(jointGeometry(nominal_.joints), q))});
+}
+
+void VisualizationNode::updateSamples() {
+  if (!listing_.valid()) {
+    if (scene_.takeSampleRequest()) {
+      listing_ = std::async(
+          std::launch::async, listSamples, node_.resolveName("calibration/list_samples"));
+    }
+    return;
+  }
+  if (listing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;
+  }
+  if (const auto samples = listing_.get()) {
+    scene_.setSamples(*samples);
+  } else {
+    scene_.repeatSampleRequest();
+  }
 }
 
 void VisualizationNode::publishMarkers() {
-  if (!changed_) {
-    return;
+  if (scene_.takeChange()) {
+    publisher_.publish(calibrationMarkers(scene_.scene()));
   }
-  changed_ = false;
-  scene_.sampled_directions.clear();
-  for (const auto& [id, direction] : samples_) {
-    scene_.sampled_directions.push_back(direction);
-  }
-  publisher_.publish(calibrationMarkers(scene_));
 }
 
 }  // namespace spherical_actuator_calibration

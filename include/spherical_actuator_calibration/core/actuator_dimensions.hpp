@@ -4,6 +4,8 @@
 
 namespace spherical_actuator_calibration {
 
+class YamlMap;
+
 /// What the bodies of an actuator look like and weigh, beside the axes in its description. The
 /// defaults are the paper's Tables 1 and 2; heights along the axis of a cylinder.
 struct ActuatorDimensions {
@@ -42,6 +44,8 @@ void validate(const ActuatorDimensions& dimensions);
 /// Reads the map `dimensions` of a YAML file (config/actuator_dimensions.yaml shows every key);
 /// what it leaves out keeps its default. Throws ConfigError that names file, line and key.
 ActuatorDimensions loadDimensions(const std::string& path);
+/// The same from a map that has other keys beside `dimensions`; the caller finishes it.
+ActuatorDimensions readDimensions(const YamlMap& map);
 /// The same for text in memory; `name` stands for the file in messages.
 ActuatorDimensions parseDimensions(const std::string& text, const std::string& name);
 

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <map>
+#include <future>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,41 +15,52 @@
 #include <tf2_ros/transform_broadcaster.h>
 
 #include "spherical_actuator_calibration/CalibrationSample.h"
-#include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/core/actuator.hpp"
-#include "spherical_actuator_calibration/ros/calibration_markers.hpp"
+#include "spherical_actuator_calibration/core/actuator_dimensions.hpp"
+#include "spherical_actuator_calibration/ros/live_scene.hpp"
+#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
 
 namespace spherical_actuator_calibration {
 
 struct VisualizationOptions {
-  double error_magnification = 10.0;  ///< of the axes' errors, in the markers
-  std::string stator_frame = "stator";
-  std::string rotor_frame = "rotor";
-  std::string joint_frame_prefix;  ///< of joint_1 and joint_2, the frames between the joints
+  double error_magnification = 10.0;  ///< of the axes' errors and deviations, in the markers
+  std::string frame_prefix;           ///< before the names of all frames
+  ActuatorDimensions dimensions;
 };
 
 /// Loads the private parameters of the node. Throws ConfigError that names the key.
 VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_node);
 
-/// Shows a calibration in rviz: the frames joint_1, joint_2 and rotor by the parameters in force
-/// and rotor_nominal by the nominal ones on /tf, and the topic `calibration_markers` (latched). See
-/// calibration_markers.hpp.
+/// Shows a calibration in rviz:
+/// - on /tf the frames joint_1, joint_2 and rotor by the parameters in force, and rotor_nominal by
+///   the nominal ones;
+/// - the latched topic `calibration_markers`, see calibration_markers.hpp;
+/// - the private parameter `robot_description`, made from the description of the actuator with the
+///   prefix before the names of its links, so that it fits these frames.
 class VisualizationNode {
  public:
   VisualizationNode(const ros::NodeHandle& node,
+                    const ros::NodeHandle& private_node,
                     const Actuator& nominal,
                     const VisualizationOptions& options);
 
  private:
+  template <typename Message>
+  void feed(const std::string& topic, std::uint32_t queue_length);
+
   void receiveJoints(const sensor_msgs::JointState& message);
   void broadcast(const ros::Time& stamp, const Eigen::Vector3d& q);
+  void updateSamples();
   void publishMarkers();
 
   VisualizationOptions options_;
-  CalibrationScene scene_;
-  std::map<std::uint32_t, Eigen::Vector3d> samples_;  ///< directions by id
+  SceneFrames frames_;
+  Actuator nominal_;
+  LiveScene scene_;
+  JointStateReader joint_reader_;
   ros::Time last_broadcast_;
-  bool changed_ = true;
+  /// Answer of the service list_samples, which may take as long as a cycle: waited for aside.
+  std::future<std::optional<std::vector<CalibrationSample>>> listing_;
   ros::NodeHandle node_;
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::Publisher publisher_;

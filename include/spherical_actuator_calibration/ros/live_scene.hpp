@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/CalibrationSample.h"
+#include "spherical_actuator_calibration/CalibrationStatus.h"
+#include "spherical_actuator_calibration/CoilCurrents.h"
+#include "spherical_actuator_calibration/ros/calibration_markers.hpp"
+#include "spherical_actuator_calibration/ros/message_types.hpp"
+
+namespace spherical_actuator_calibration {
+
+/// Gathers from the topics of a calibration what the live view shows of it. Messages of another
+/// design (other numbers of poles or coils) change nothing.
+class LiveScene {
+ public:
+  /// `start` holds the nominal actuator, dimensions, magnification and frames.
+  explicit LiveScene(CalibrationScene start);
+
+  void receive(const ActuatorParameters& message);
+  void receive(const CalibrationReport& message);
+  void receive(const CoilCurrents& message);
+  void receive(const CalibrationSample& message);
+  void receive(const CalibrationStatus& message);
+
+  /// True, once, when samples are held, or were taken away, that did not come by receive(): then
+  /// the list of those in use must be asked for.
+  bool takeSampleRequest();
+  /// Takes the answer: the samples in use. Those that came by receive() since the request stay.
+  void setSamples(const std::vector<CalibrationSample>& in_use);
+  /// Without an answer: the request stands again.
+  void repeatSampleRequest() { needs_samples_ = true; }
+
+  /// True when the scene has changed since the last call.
+  bool takeChange();
+
+  /// Joints by the parameters in force.
+  const std::array<JointAxis, kJoints>& joints() const { return scene_.identified.joints; }
+  CalibrationScene scene() const;
+
+ private:
+  struct Residual {
+    double standardized = 0.0;
+    bool rejected = false;
+  };
+
+  std::optional<double> stddevOf(const std::string& axis, double polar) const;
+  SampledDirection directionOf(const CalibrationSample& sample) const;
+
+  CalibrationScene scene_;
+  bool is_identified_ = false;             ///< the parameters in force are those of a cycle
+  std::map<std::string, double> stddevs_;  ///< of parameters that are identified, by name [rad]
+  std::map<std::uint32_t, CalibrationSample> samples_;
+  std::map<std::uint32_t, Residual> residuals_;
+  std::optional<std::vector<std::uint32_t>> held_;  ///< numbers of samples by the last status
+  bool needs_samples_ = false;
+  std::set<std::uint32_t> recent_;  ///< samples that came since the last request
+  bool changed_ = true;
+};
+
+}  // namespace spherical_actuator_calibration

@@ -1,0 +1,185 @@
+#include "spherical_actuator_calibration/ros/live_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "spherical_actuator_calibration/core/spherical_joint.hpp"
+#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// Change of a current [A] that is worth new markers.
+constexpr double kVisibleCurrent = 0.02;
+
+bool isVisibleChange(const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
+  return before.size() != now.size() || !((before - now).cwiseAbs().maxCoeff() < kVisibleCurrent);
+}
+
+/// Number of samples with an orientation, then per coil.
+std::vector<std::uint32_t> countsOf(const CalibrationStatus& status) {
+  std::vector<std::uint32_t> counts = status.torque_samples;
+  counts.insert(counts.begin(), status.orientation_samples);
+  return counts;
+}
+
+/// Whether samples were taken away between two statuses.
+bool hasFewer(const std::vector<std::uint32_t>& before, const std::vector<std::uint32_t>& now) {
+  if (before.size() != now.size()) {
+    return true;
+  }
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    if (now[n] < before[n]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+LiveScene::LiveScene(CalibrationScene start) : scene_(std::move(start)) {
+  scene_.identified = scene_.nominal;
+}
+
+void LiveScene::receive(const ActuatorParameters& message) {
+  Actuator& actuator = scene_.identified;
+  if (message.poles.size() != actuator.poles.size() ||
+      message.coils.size() != actuator.coils.size()) {
+    return;
+  }
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
+    actuator.joints[k].offset = message.joints[k].offset;
+  }
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    actuator.poles[i].polar = message.poles[i].polar;
+    actuator.poles[i].azimuth = message.poles[i].azimuth;
+  }
+  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
+    actuator.coils[j].polar = message.coils[j].polar;
+    actuator.coils[j].azimuth = message.coils[j].azimuth;
+  }
+  is_identified_ = message.source == "identified";
+  // Of values that were restored the topics tell no uncertainty. A report may come before the
+  // parameters that it led to, hence not at every change.
+  if (!is_identified_) {
+    stddevs_.clear();
+  }
+  changed_ = true;
+}
+
+void LiveScene::receive(const CalibrationReport& message) {
+  for (const auto& residual : message.residuals) {
+    residuals_[residual.id] = {residual.standardized, residual.rejected != 0};
+  }
+  if (message.success != 0) {
+    for (const auto& estimate : message.estimates) {
+      if (estimate.observable != 0 && std::isfinite(estimate.stddev)) {
+        stddevs_[estimate.name] = estimate.stddev;
+      } else {
+        stddevs_.erase(estimate.name);
+      }
+    }
+  }
+  changed_ = true;
+}
+
+void LiveScene::receive(const CoilCurrents& message) {
+  Eigen::VectorXd currents = Eigen::Map<const Eigen::VectorXd>(
+      message.current.data(), static_cast<Eigen::Index>(message.current.size()));
+  if (message.current.size() == scene_.nominal.coils.size() &&
+      isVisibleChange(scene_.currents, currents)) {
+    scene_.currents = std::move(currents);
+    changed_ = true;
+  }
+}
+
+void LiveScene::receive(const CalibrationSample& message) {
+  samples_[message.id] = message;
+  recent_.insert(message.id);
+  changed_ = true;
+}
+
+void LiveScene::receive(const CalibrationStatus& message) {
+  std::vector<std::uint32_t> held = countsOf(message);
+  // The first status tells of samples from before this program began to listen.
+  if (!held_ || hasFewer(*held_, held)) {
+    needs_samples_ = true;
+  }
+  held_ = std::move(held);
+}
+
+bool LiveScene::takeSampleRequest() {
+  if (needs_samples_) {
+    recent_.clear();
+  }
+  return std::exchange(needs_samples_, false);
+}
+
+void LiveScene::setSamples(const std::vector<CalibrationSample>& in_use) {
+  std::map<std::uint32_t, CalibrationSample> samples;
+  for (const std::uint32_t id : recent_) {
+    samples[id] = samples_[id];
+  }
+  for (const CalibrationSample& sample : in_use) {
+    samples[sample.id] = sample;
+  }
+  samples_ = std::move(samples);
+  changed_ = true;
+}
+
+bool LiveScene::takeChange() {
+  return std::exchange(changed_, false);
+}
+
+std::optional<double> LiveScene::stddevOf(const std::string& axis, double polar) const {
+  const auto elevation = stddevs_.find(axis + "/polar");
+  const auto azimuth = stddevs_.find(axis + "/azimuth");
+  if (!is_identified_ || elevation == stddevs_.end() || azimuth == stddevs_.end()) {
+    return std::nullopt;
+  }
+  return std::max(elevation->second, std::cos(polar) * azimuth->second);
+}
+
+SampledDirection LiveScene::directionOf(const CalibrationSample& sample) const {
+  SampledDirection direction;
+  if (sample.has_orientation != 0) {
+    direction.direction_stator =
+        quaternionFromRos(sample.orientation).normalized() * Eigen::Vector3d::UnitZ();
+  } else {
+    const Eigen::Vector3d q(sample.joint_position.data());
+    direction.direction_stator =
+        rotorOrientation(jointGeometry(joints()), q) * Eigen::Vector3d::UnitZ();
+  }
+  const auto residual = residuals_.find(sample.id);
+  if (residual != residuals_.end()) {
+    direction.standardized = residual->second.standardized;
+    direction.rejected = residual->second.rejected;
+  }
+  return direction;
+}
+
+CalibrationScene LiveScene::scene() const {
+  CalibrationScene scene = scene_;
+  for (std::size_t i = 0; i < scene.identified.poles.size(); ++i) {
+    scene.pole_stddevs.push_back(
+        stddevOf("pole_" + std::to_string(i + 1), scene.identified.poles[i].polar));
+  }
+  for (std::size_t j = 0; j < scene.identified.coils.size(); ++j) {
+    scene.coil_stddevs.push_back(
+        stddevOf("coil_" + std::to_string(j + 1), scene.identified.coils[j].polar));
+  }
+  for (const auto& [id, sample] : samples_) {
+    const SampledDirection direction = directionOf(sample);
+    if (direction.direction_stator.allFinite()) {
+      scene.samples.push_back(direction);
+    }
+  }
+  return scene;
+}
+
+}  // namespace spherical_actuator_calibration
