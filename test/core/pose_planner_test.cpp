@@ -23,7 +23,6 @@ namespace spherical_actuator_calibration {
 namespace {
 
 constexpr double kTilt = 0.3;
-constexpr double kCurrent = 2.0;
 
 /// The paper's actuator, not calibrated, and no samples: the least that a plan can start from.
 class PosePlanner : public ::testing::Test {
