@@ -1,13 +1,13 @@
 #include "spherical_actuator_calibration/core/calibration_cycles.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "spherical_actuator_calibration/core/operator_advice.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 #include "spherical_actuator_calibration/core/unidentified_part.hpp"
 #include "spherical_actuator_calibration/core/workspace_uncertainty.hpp"
 
@@ -15,13 +15,6 @@ namespace spherical_actuator_calibration {
 namespace {
 
 constexpr std::size_t kFewestPoses = 3;  // nine unknowns, three equations a pose
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 std::string cycleInWords(const CycleRequest& request) {
   switch (request.cycle) {

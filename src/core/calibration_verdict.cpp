@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -10,16 +9,10 @@
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
 #include "spherical_actuator_calibration/core/operator_advice.hpp"
 #include "spherical_actuator_calibration/core/session_guidance.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 std::string number(std::size_t value) {
   return std::to_string(value);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -10,6 +9,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "spherical_actuator_calibration/core/linearization.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -81,13 +81,6 @@ SampleResidual residualOf(const Sample& sample,
   result.residual = residual.norm();
   result.standardized = std::sqrt(residual.dot(covariance.llt().solve(residual)) / 3.0);
   return result;
-}
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
 }
 
 double rootMean(double sum, std::size_t count) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Cholesky>
 
 #include "spherical_actuator_calibration/core/calibration_session.hpp"
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
 #include "spherical_actuator_calibration/core/linearization.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -94,17 +94,14 @@ std::vector<std::string> describe(const std::vector<ModelFit>& fits) {
       fits.begin(), fits.end(), [](const ModelFit& a, const ModelFit& b) { return a.bic < b.bic; });
   std::vector<std::string> lines;
   for (auto fit = fits.begin(); fit != fits.end(); ++fit) {
-    char text[200];
-    std::snprintf(text,
-                  sizeof text,
-                  "effects: %-30s %4zu parameters, reduced chi-square %10.3f, BIC %12.1f%s%s",
-                  fit->effects.c_str(),
-                  fit->parameters,
-                  fit->reduced_chi_square,
-                  fit->bic,
-                  fit == best ? "  <- best" : "",
-                  fit->converged ? "" : "  (not converged)");
-    lines.emplace_back(text);
+    lines.push_back(
+        format("effects: %-30s %4zu parameters, reduced chi-square %10.3f, BIC %12.1f%s%s",
+               fit->effects.c_str(),
+               fit->parameters,
+               fit->reduced_chi_square,
+               fit->bic,
+               fit == best ? "  <- best" : "",
+               fit->converged ? "" : "  (not converged)"));
   }
   return lines;
 }

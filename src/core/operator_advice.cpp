@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 #include "spherical_actuator_calibration/core/torque_model.hpp"
 
 namespace spherical_actuator_calibration {
@@ -36,12 +36,6 @@ Part partOf(ParameterKind kind) {
       break;
   }
   return Part::kEffect;
-}
-
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
 }
 
 /// Smaller eigenvalue of the information that one pair at this pose gives on one of its axes, for

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "spherical_actuator_calibration/core/pose_candidates.hpp"
 #include "spherical_actuator_calibration/core/pose_selection.hpp"
 #include "spherical_actuator_calibration/core/sample_prediction.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 #include "spherical_actuator_calibration/core/travel_order.hpp"
 #include "spherical_actuator_calibration/core/value_range.hpp"
 
@@ -29,13 +29,6 @@ constexpr int kPassesWhileGrowing = 2;
 constexpr std::size_t kMostExchanges = 300;
 /// An exchange lowers the largest standard deviation by less than this factor.
 constexpr double kExchangePromise = 1.6;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 void validateRequest(const PlanningProblem& problem) {
   const Cycle cycle = problem.request.cycle;

@@ -19,26 +19,6 @@ bool isVisibleChange(const Eigen::VectorXd& before, const Eigen::VectorXd& now) 
   return before.size() != now.size() || !((before - now).cwiseAbs().maxCoeff() < kVisibleCurrent);
 }
 
-/// Number of samples with an orientation, then per coil.
-std::vector<std::uint32_t> countsOf(const CalibrationStatus& status) {
-  std::vector<std::uint32_t> counts = status.torque_samples;
-  counts.insert(counts.begin(), status.orientation_samples);
-  return counts;
-}
-
-/// Whether samples were taken away between two statuses.
-bool hasFewer(const std::vector<std::uint32_t>& before, const std::vector<std::uint32_t>& now) {
-  if (before.size() != now.size()) {
-    return true;
-  }
-  for (std::size_t n = 0; n < now.size(); ++n) {
-    if (now[n] < before[n]) {
-      return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 LiveScene::LiveScene(CalibrationScene start) : scene_(std::move(start)) {
@@ -99,41 +79,16 @@ void LiveScene::receive(const CoilCurrents& message) {
 }
 
 void LiveScene::receive(const CalibrationSample& message) {
-  samples_[message.id] = message;
-  recent_.insert(message.id);
-  changed_ = true;
+  samples_.receive(message);
 }
 
 void LiveScene::receive(const CalibrationStatus& message) {
-  std::vector<std::uint32_t> held = countsOf(message);
-  // The first status tells of samples from before this program began to listen.
-  if (!held_ || hasFewer(*held_, held)) {
-    needs_samples_ = true;
-  }
-  held_ = std::move(held);
-}
-
-bool LiveScene::takeSampleRequest() {
-  if (needs_samples_) {
-    recent_.clear();
-  }
-  return std::exchange(needs_samples_, false);
-}
-
-void LiveScene::setSamples(const std::vector<CalibrationSample>& in_use) {
-  std::map<std::uint32_t, CalibrationSample> samples;
-  for (const std::uint32_t id : recent_) {
-    samples[id] = samples_[id];
-  }
-  for (const CalibrationSample& sample : in_use) {
-    samples[sample.id] = sample;
-  }
-  samples_ = std::move(samples);
-  changed_ = true;
+  samples_.receive(message);
 }
 
 bool LiveScene::takeChange() {
-  return std::exchange(changed_, false);
+  const bool have_samples_changed = samples_.takeChange();
+  return std::exchange(changed_, false) || have_samples_changed;
 }
 
 std::optional<double> LiveScene::stddevOf(const std::string& axis, double polar) const {
@@ -173,7 +128,7 @@ CalibrationScene LiveScene::scene() const {
     scene.coil_stddevs.push_back(
         stddevOf("coil_" + std::to_string(j + 1), scene.identified.coils[j].polar));
   }
-  for (const auto& [id, sample] : samples_) {
+  for (const auto& [id, sample] : samples_.samples()) {
     const SampledDirection direction = directionOf(sample);
     if (direction.direction_stator.allFinite()) {
       scene.samples.push_back(direction);

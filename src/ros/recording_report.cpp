@@ -1,8 +1,7 @@
 #include "spherical_actuator_calibration/ros/recording_report.hpp"
 
-#include <cstdio>
-
 #include "spherical_actuator_calibration/core/stream_statistics.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 #include "spherical_actuator_calibration/ros/time_conversion.hpp"
 
 namespace spherical_actuator_calibration {
@@ -18,10 +17,7 @@ void addCount(std::vector<std::string>& lines, std::uint64_t count, const std::s
 }
 
 std::string eventLine(const DwellEvent& event) {
-  char seconds[32];
-  std::snprintf(
-      seconds, sizeof seconds, "%.2f", static_cast<double>(event.stamp) * kSecondsPerTick);
-  return "At " + std::string(seconds) + " s: " + event.reason;
+  return format("At %.2f s: ", static_cast<double>(event.stamp) * kSecondsPerTick) + event.reason;
 }
 
 void addEvents(std::vector<std::string>& lines, const SampleBuilderReport& report) {

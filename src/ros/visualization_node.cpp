@@ -1,13 +1,9 @@
 #include "spherical_actuator_calibration/ros/visualization_node.hpp"
 
-#include <chrono>
-
 #include <Eigen/Geometry>
 
 #include <geometry_msgs/TransformStamped.h>
-#include <ros/service.h>
 
-#include "spherical_actuator_calibration/ListSamples.h"
 #include "spherical_actuator_calibration/core/rotations.hpp"
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
 #include "spherical_actuator_calibration/core/urdf_generator.hpp"
@@ -54,16 +50,6 @@ std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
   return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
 }
 
-/// Samples in use by the calibration node; nothing when it does not answer.
-std::optional<std::vector<CalibrationSample>> listSamples(const std::string& service) {
-  ListSamples list;
-  constexpr bool kTellAbsence = false;
-  if (!ros::service::exists(service, kTellAbsence) || !ros::service::call(service, list)) {
-    return std::nullopt;
-  }
-  return std::move(list.response.samples);
-}
-
 }  // namespace
 
 VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_node) {
@@ -90,7 +76,8 @@ VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
       nominal_(nominal),
       scene_(startOf(nominal, options)),
       joint_reader_(jointNames(nominal)),
-      node_(node) {
+      node_(node),
+      listing_(node.resolveName("calibration/list_samples")) {
   private_node.setParam("robot_description",
                         renderUrdf(nominal, options.dimensions, options.frame_prefix));
   constexpr bool kLatched = true;
@@ -105,7 +92,7 @@ VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
   feed<CalibrationSample>("samples", kQueueLength);
   timer_ = node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
                                  [this](const ros::WallTimerEvent& /*event*/) {
-                                   updateSamples();
+                                   listing_.update(scene_.samples());
                                    publishMarkers();
                                  });
 }
@@ -146,24 +133,6 @@ void VisualizationNode::broadcast(const ros::Time& stamp, const Eigen::Vector3d&
                         frames_.stator,
                         frames_.nominal_rotor,
                         rotorOrientation(jointGeometry(nominal_.joints), q))});
-}
-
-void VisualizationNode::updateSamples() {
-  if (!listing_.valid()) {
-    if (scene_.takeSampleRequest()) {
-      listing_ = std::async(
-          std::launch::async, listSamples, node_.resolveName("calibration/list_samples"));
-    }
-    return;
-  }
-  if (listing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-    return;
-  }
-  if (const auto samples = listing_.get()) {
-    scene_.setSamples(*samples);
-  } else {
-    scene_.repeatSampleRequest();
-  }
 }
 
 void VisualizationNode::publishMarkers() {

@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/cycle_selection.hpp"
 #include "spherical_actuator_calibration/core/sample_influence.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
 
 /// Half width of the 95 % interval of a normal distribution, in standard deviations.
 constexpr double kInterval95 = 1.959963984540054;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 /// Errors in thousandths of their unit, "[mrad]"; standardized ones as they are.
 std::string errorHistory(const CycleReport& report) {

@@ -1,7 +1,6 @@
 #include "spherical_actuator_calibration/ros/live_scene.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -45,13 +44,6 @@ CalibrationSample sampleOf(std::uint32_t id) {
   sample.has_orientation = 1;
   sample.orientation.w = 1.0;
   return sample;
-}
-
-CalibrationStatus statusOf(std::uint32_t orientations, std::vector<std::uint32_t> torques) {
-  CalibrationStatus status;
-  status.orientation_samples = orientations;
-  status.torque_samples = std::move(torques);
-  return status;
 }
 
 TEST(LiveScene, TakesTheParametersInForce) {
@@ -139,39 +131,6 @@ TEST(LiveScene, SamplesWithoutOrientationStandWhereTheirJointsWere) {
   const Eigen::Vector3d direction = scene.scene().samples.at(0).direction_stator;
   EXPECT_NEAR(direction.y(), -std::sin(0.3), 1e-12);
   EXPECT_NEAR(direction.z(), std::cos(0.3), 1e-12);
-}
-
-TEST(LiveScene, AsksForSamplesThatItDidNotSeeComeOrGo) {
-  LiveScene scene = paperScene();
-  EXPECT_FALSE(scene.takeSampleRequest());
-  scene.receive(statusOf(2, {2, 0}));
-  EXPECT_TRUE(scene.takeSampleRequest());
-  EXPECT_FALSE(scene.takeSampleRequest());
-  scene.repeatSampleRequest();
-  EXPECT_TRUE(scene.takeSampleRequest());
-  scene.setSamples({sampleOf(1), sampleOf(2)});
-  EXPECT_EQ(scene.scene().samples.size(), 2U);
-  scene.receive(sampleOf(3));
-  scene.receive(statusOf(3, {2, 1}));
-  EXPECT_FALSE(scene.takeSampleRequest());
-  scene.receive(statusOf(3, {2, 0}));
-  EXPECT_TRUE(scene.takeSampleRequest());
-}
-
-TEST(LiveScene, WhatIsOutOfUseDisappearsAndWhatCameMeanwhileStays) {
-  LiveScene scene = paperScene();
-  for (const std::uint32_t id : {1U, 2U, 3U}) {
-    scene.receive(sampleOf(id));
-  }
-  scene.receive(statusOf(2, {}));
-  EXPECT_TRUE(scene.takeSampleRequest());
-  scene.receive(sampleOf(4));
-  scene.setSamples({sampleOf(1)});
-  EXPECT_EQ(scene.scene().samples.size(), 2U);
-  scene.receive(statusOf(0, {}));
-  EXPECT_TRUE(scene.takeSampleRequest());
-  scene.setSamples({});
-  EXPECT_TRUE(scene.scene().samples.empty());
 }
 
 TEST(LiveScene, ChangesAreToldOnceAndSmallCurrentsNot) {

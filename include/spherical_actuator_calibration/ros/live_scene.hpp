@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
-#include <vector>
 
 #include "spherical_actuator_calibration/CalibrationSample.h"
 #include "spherical_actuator_calibration/CalibrationStatus.h"
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/ros/calibration_markers.hpp"
 #include "spherical_actuator_calibration/ros/message_types.hpp"
+#include "spherical_actuator_calibration/ros/sample_mirror.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -29,13 +28,8 @@ class LiveScene {
   void receive(const CalibrationSample& message);
   void receive(const CalibrationStatus& message);
 
-  /// True, once, when samples are held, or were taken away, that did not come by receive(): then
-  /// the list of those in use must be asked for.
-  bool takeSampleRequest();
-  /// Takes the answer: the samples in use. Those that came by receive() since the request stay.
-  void setSamples(const std::vector<CalibrationSample>& in_use);
-  /// Without an answer: the request stands again.
-  void repeatSampleRequest() { needs_samples_ = true; }
+  /// The samples in use; it asks for them where topics do not tell.
+  SampleMirror& samples() { return samples_; }
 
   /// True when the scene has changed since the last call.
   bool takeChange();
@@ -56,11 +50,8 @@ class LiveScene {
   CalibrationScene scene_;
   bool is_identified_ = false;             ///< the parameters in force are those of a cycle
   std::map<std::string, double> stddevs_;  ///< of parameters that are identified, by name [rad]
-  std::map<std::uint32_t, CalibrationSample> samples_;
+  SampleMirror samples_;
   std::map<std::uint32_t, Residual> residuals_;
-  std::optional<std::vector<std::uint32_t>> held_;  ///< numbers of samples by the last status
-  bool needs_samples_ = false;
-  std::set<std::uint32_t> recent_;  ///< samples that came since the last request
   bool changed_ = true;
 };
 

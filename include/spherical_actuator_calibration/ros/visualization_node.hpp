@@ -1,7 +1,5 @@
 #pragma once
 
-#include <future>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +12,11 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include "spherical_actuator_calibration/CalibrationSample.h"
 #include "spherical_actuator_calibration/core/actuator.hpp"
 #include "spherical_actuator_calibration/core/actuator_dimensions.hpp"
 #include "spherical_actuator_calibration/ros/live_scene.hpp"
 #include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/sample_listing.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -50,7 +48,6 @@ class VisualizationNode {
 
   void receiveJoints(const sensor_msgs::JointState& message);
   void broadcast(const ros::Time& stamp, const Eigen::Vector3d& q);
-  void updateSamples();
   void publishMarkers();
 
   VisualizationOptions options_;
@@ -59,9 +56,8 @@ class VisualizationNode {
   LiveScene scene_;
   JointStateReader joint_reader_;
   ros::Time last_broadcast_;
-  /// Answer of the service list_samples, which may take as long as a cycle: waited for aside.
-  std::future<std::optional<std::vector<CalibrationSample>>> listing_;
   ros::NodeHandle node_;
+  SampleListing listing_;
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;

@@ -1,0 +1,342 @@
+#include "spherical_actuator_calibration/rviz/calibration_panel.hpp"
+
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QTabWidget>
+#include <QVBoxLayout>
+
+#include <pluginlib/class_list_macros.hpp>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include "spherical_actuator_calibration/Capture.h"
+#include "spherical_actuator_calibration/Restore.h"
+#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr int kPeriod = 100;       // [ms] between two looks at what has come
+constexpr int kTicksOfHealth = 5;  // looks between two pictures of the health
+constexpr int kNarrowest = 380;    // [px]
+constexpr std::size_t kStreams = 4;
+constexpr double kLongestCapture = 60.0;  // [s]
+constexpr int kMostCoils = 999;
+constexpr int kMostRevisions = 1000000;
+
+const char* const kPrimaryStyle =
+    "QPushButton { background: #1b7f3b; color: white; font-weight: bold; padding: 4px 10px; }"
+    "QPushButton:disabled { background: #b5c9bb; }";
+
+const char* colorOf(HealthLine::Level level) {
+  switch (level) {
+    case HealthLine::Level::kGood:
+      return "#1b9e4b";
+    case HealthLine::Level::kWarning:
+      return "#d98200";
+    case HealthLine::Level::kError:
+      return "#c62828";
+    case HealthLine::Level::kUnknown:
+      break;
+  }
+  return "#9a9fa6";
+}
+
+QString dotted(const HealthLine& line) {
+  return QString("<span style='color:%1'>●</span> %2")
+      .arg(colorOf(line.level), QString::fromStdString(line.name).toHtmlEscaped());
+}
+
+QLabel* wrappingLabel() {
+  auto* label = new QLabel;
+  label->setWordWrap(true);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
+}
+
+}  // namespace
+
+CalibrationPanel::CalibrationPanel(QWidget* parent)
+    : rviz::Panel(parent), listing_(node_.resolveName("calibration/list_samples")) {
+  build();
+  connect(&timer_, &QTimer::timeout, this, &CalibrationPanel::refresh);
+  timer_.start(kPeriod);
+}
+
+void CalibrationPanel::build() {
+  setMinimumWidth(kNarrowest);
+  auto* layout = new QVBoxLayout(this);
+  layout->setSpacing(5);
+  next_step_ = wrappingLabel();
+  next_step_->setStyleSheet("font-weight: bold;");
+  layout->addWidget(next_step_);
+  layout->addLayout(makeStreams());
+  trouble_ = wrappingLabel();
+  layout->addWidget(trouble_);
+  bars_ = new CoverageBars;
+  layout->addWidget(bars_);
+  layout->addLayout(makeCaptureRow());
+  layout->addLayout(makeCycleRow());
+  layout->addLayout(makeFileRow());
+  answer_ = wrappingLabel();
+  layout->addWidget(answer_);
+  verdict_ = wrappingLabel();
+  verdict_->setStyleSheet("font-weight: bold;");
+  layout->addWidget(verdict_);
+  layout->addWidget(makeResults(), 1);
+}
+
+QLayout* CalibrationPanel::makeStreams() {
+  auto* grid = new QGridLayout;
+  for (std::size_t n = 0; n < kStreams; ++n) {
+    auto* label = new QLabel;
+    grid->addWidget(label, static_cast<int>(n / 2), static_cast<int>(n % 2));
+    streams_.push_back(label);
+  }
+  return grid;
+}
+
+QPushButton* CalibrationPanel::addButton(QLayout* row, const QString& text, const QString& help) {
+  auto* button = new QPushButton(text);
+  button->setToolTip(help);
+  row->addWidget(button);
+  buttons_.push_back(button);
+  return button;
+}
+
+QLayout* CalibrationPanel::makeCaptureRow() {
+  auto* row = new QHBoxLayout;
+  QPushButton* button = addButton(row, "Capture", "Average the present dwell into one sample");
+  button->setStyleSheet(kPrimaryStyle);
+  connect(button, &QPushButton::clicked, this, &CalibrationPanel::capture);
+  duration_ = new QDoubleSpinBox;
+  duration_->setRange(0.1, kLongestCapture);
+  duration_->setSingleStep(0.1);
+  duration_->setDecimals(1);
+  duration_->setValue(1.0);
+  duration_->setSuffix(" s");
+  row->addWidget(duration_);
+  validation_ = new QCheckBox("hold out");
+  validation_->setToolTip("Never use the sample to estimate, only to judge");
+  row->addWidget(validation_);
+  auto_capture_ = new QCheckBox("every dwell");
+  auto_capture_->setToolTip("Capture every dwell by itself");
+  connect(auto_capture_, &QCheckBox::clicked, this, &CalibrationPanel::setAutoCapture);
+  row->addWidget(auto_capture_);
+  return row;
+}
+
+QLayout* CalibrationPanel::makeCycleRow() {
+  auto* row = new QHBoxLayout;
+  const auto add = [&](const QString& text, const std::string& service, bool has_coil) {
+    QPushButton* button = addButton(row, text, QString::fromStdString("calibration/" + service));
+    connect(button, &QPushButton::clicked, this, [this, service, has_coil] {
+      calibrate(service, has_coil ? static_cast<std::uint32_t>(coil_->value()) : 0U);
+    });
+  };
+  coil_ = new QSpinBox;
+  coil_->setRange(1, kMostCoils);
+  coil_->setPrefix("coil ");
+  add("Joint", "calibrate_joint", false);
+  add("Poles", "calibrate_poles", true);
+  add("Coil", "calibrate_coil", true);
+  row->addWidget(coil_);
+  add("Refine", "refine", false);
+  add("Validate", "validate", false);
+  return row;
+}
+
+QLayout* CalibrationPanel::makeFileRow() {
+  auto* row = new QHBoxLayout;
+  connect(addButton(row, "Save", "Write the calibrated description, URDF and report"),
+          &QPushButton::clicked,
+          this,
+          [this] { trigger("save"); });
+  connect(
+      addButton(row, "Restore", "Put this revision of the parameters back in force; 0: nominal"),
+      &QPushButton::clicked,
+      this,
+      &CalibrationPanel::restore);
+  revision_ = new QSpinBox;
+  revision_->setRange(0, kMostRevisions);
+  revision_->setPrefix("revision ");
+  row->addWidget(revision_);
+  connect(
+      addButton(row, "Forget samples", "Take all samples out of use; they stay in the database"),
+      &QPushButton::clicked,
+      this,
+      [this] { trigger("clear_samples"); });
+  return row;
+}
+
+QWidget* CalibrationPanel::makeResults() {
+  table_ = new QTableWidget(0, 3);
+  table_->setHorizontalHeaderLabels({"parameter", "value", "uncertainty"});
+  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  table_->verticalHeader()->hide();
+  table_->verticalHeader()->setDefaultSectionSize(20);
+  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  chart_ = new ConvergenceChart;
+  auto* tabs = new QTabWidget;
+  tabs->addTab(table_, "Result");
+  tabs->addTab(chart_, "Convergence");
+  return tabs;
+}
+
+void CalibrationPanel::start() {
+  try {
+    model_ = std::make_unique<PanelModel>(loadDescriptionParameter(node_).actuator,
+                                          node_.getNamespace());
+  } catch (const Error& error) {
+    next_step_->setText(QString::fromStdString(error.what()));
+    return;
+  }
+  coil_->setRange(1, std::max(1, static_cast<int>(model_->coils())));
+  feed<CalibrationStatus>("status");
+  feed<CalibrationReport>("report");
+  feed<ActuatorParameters>("parameters");
+  feed<CalibrationSample>("samples");
+  constexpr std::uint32_t kQueueLength = 100;
+  subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics",
+      kQueueLength,
+      [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
+        model_->receive(*message, ros::WallTime::now());
+      }));
+}
+
+// rviz delivers messages in the thread of the windows.
+template <typename Message>
+void CalibrationPanel::feed(const std::string& topic) {
+  constexpr std::uint32_t kQueueLength = 1000;
+  subscribers_.push_back(node_.subscribe<Message>(
+      topic, kQueueLength, [this](const typename Message::ConstPtr& message) {
+        model_->receive(*message);
+        changed_ = true;
+      }));
+}
+
+void CalibrationPanel::refresh() {
+  showAnswer();
+  const bool is_time_of_health = ticks_++ % kTicksOfHealth == 0;
+  if (!model_) {
+    if (is_time_of_health) {
+      start();
+    }
+    return;
+  }
+  listing_.update(model_->samples());
+  if (is_time_of_health) {
+    showHealth();
+  }
+  const bool have_samples_changed = model_->samples().takeChange();
+  if (changed_ || have_samples_changed) {
+    changed_ = false;
+    showCalibration();
+  }
+}
+
+void CalibrationPanel::showHealth() {
+  const ros::WallTime now = ros::WallTime::now();
+  const std::vector<HealthLine> lines = model_->streams(now);
+  for (std::size_t n = 0; n < streams_.size(); ++n) {
+    streams_[n]->setText(dotted(lines[n]));
+    streams_[n]->setToolTip(QString::fromStdString(lines[n].message));
+  }
+  const std::vector<HealthLine> troubles = model_->troubles(now);
+  trouble_->setVisible(!troubles.empty());
+  if (!troubles.empty()) {
+    trouble_->setText(dotted(troubles.front()) + ": " +
+                      QString::fromStdString(troubles.front().message).toHtmlEscaped());
+  }
+}
+
+void CalibrationPanel::showCalibration() {
+  next_step_->setText(QString::fromStdString(model_->nextStep()));
+  bars_->setGroups(model_->coverage());
+  verdict_->setText(QString::fromStdString(model_->verdict() + " (" + model_->revision() + ")"));
+  const std::vector<ParameterLine> lines = model_->parameters();
+  table_->setRowCount(static_cast<int>(lines.size()));
+  int row = 0;
+  for (const ParameterLine& line : lines) {
+    int column = 0;
+    for (const std::string& text : {line.name, line.value, line.uncertainty}) {
+      table_->setItem(row, column++, new QTableWidgetItem(QString::fromStdString(text)));
+    }
+    ++row;
+  }
+  chart_->setHistory(QString::fromStdString(model_->historyTitle()), model_->errorHistory());
+}
+
+void CalibrationPanel::showAnswer() {
+  const std::optional<ServiceAnswer> answer = caller_.takeAnswer();
+  if (!answer) {
+    return;
+  }
+  answer_->setText(QString::fromStdString(answer->message));
+  answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
+  for (QPushButton* button : buttons_) {
+    button->setEnabled(true);
+  }
+}
+
+template <typename Service>
+void CalibrationPanel::call(const std::string& service, const typename Service::Request& request) {
+  if (caller_.isBusy()) {
+    return;
+  }
+  answer_->setText("…");
+  answer_->setStyleSheet("");
+  for (QPushButton* button : buttons_) {
+    button->setEnabled(false);
+  }
+  caller_.call<Service>(node_.resolveName("calibration/" + service), request);
+}
+
+void CalibrationPanel::capture() {
+  Capture::Request request;
+  request.duration = duration_->value();
+  request.validation = static_cast<std::uint8_t>(validation_->isChecked());
+  call<Capture>("capture", request);
+}
+
+void CalibrationPanel::calibrate(const std::string& service, std::uint32_t coil) {
+  Calibrate::Request request;
+  request.coil = coil;
+  call<Calibrate>(service, request);
+}
+
+void CalibrationPanel::trigger(const std::string& service) {
+  call<std_srvs::Trigger>(service, std_srvs::Trigger::Request());
+}
+
+void CalibrationPanel::restore() {
+  Restore::Request request;
+  request.revision = static_cast<std::uint32_t>(revision_->value());
+  call<Restore>("restore", request);
+}
+
+void CalibrationPanel::setAutoCapture(bool on) {
+  std_srvs::SetBool::Request request;
+  request.data = static_cast<std::uint8_t>(on);
+  call<std_srvs::SetBool>("set_auto_capture", request);
+}
+
+void CalibrationPanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  float duration = 0.0F;
+  if (config.mapGetFloat("Capture Duration", &duration)) {
+    duration_->setValue(static_cast<double>(duration));
+  }
+}
+
+void CalibrationPanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Capture Duration", duration_->value());
+}
+
+}  // namespace spherical_actuator_calibration
+
+PLUGINLIB_EXPORT_CLASS(spherical_actuator_calibration::CalibrationPanel, rviz::Panel)

@@ -1,0 +1,62 @@
+#include "spherical_actuator_calibration/rviz/convergence_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QtCharts/QChart>
+#include <QtCharts/QLegend>
+#include <QtCharts/QLineSeries>
+#include <QtCharts/QLogValueAxis>
+#include <QtCharts/QValueAxis>
+
+namespace spherical_actuator_calibration {
+namespace {
+
+/// A logarithm needs something above zero: an error below is drawn there.
+constexpr double kSmallestError = 1e-9;
+
+}  // namespace
+
+ConvergenceChart::ConvergenceChart(QWidget* parent)
+    : QChartView(parent),
+      line_(new QtCharts::QLineSeries),
+      iterations_(new QtCharts::QValueAxis),
+      errors_(new QtCharts::QLogValueAxis) {
+  line_->setPointsVisible(true);
+  iterations_->setLabelFormat("%d");
+  iterations_->setTitleText("iteration");
+  errors_->setLabelFormat("%.0e");
+  errors_->setBase(10.0);
+  // The chart owns line and axes.
+  chart()->legend()->hide();
+  chart()->addSeries(line_);
+  chart()->addAxis(iterations_, Qt::AlignBottom);
+  chart()->addAxis(errors_, Qt::AlignLeft);
+  line_->attachAxis(iterations_);
+  line_->attachAxis(errors_);
+  chart()->setMargins(QMargins(0, 0, 0, 0));
+  setRenderHint(QPainter::Antialiasing);
+}
+
+void ConvergenceChart::setHistory(const QString& title, const std::vector<double>& errors) {
+  chart()->setTitle(title);
+  line_->clear();
+  if (errors.empty()) {
+    return;
+  }
+  double smallest = errors.front();
+  double largest = kSmallestError;
+  for (std::size_t n = 0; n < errors.size(); ++n) {
+    const double error = std::max(kSmallestError, errors[n]);
+    line_->append(static_cast<double>(n), error);
+    smallest = std::min(smallest, error);
+    largest = std::max(largest, error);
+  }
+  const auto last = static_cast<double>(std::max<std::size_t>(1, errors.size() - 1));
+  iterations_->setRange(0.0, last);
+  iterations_->setTickCount(std::min(static_cast<int>(last), 8) + 1);
+  errors_->setRange(std::pow(10.0, std::floor(std::log10(smallest))),
+                    std::pow(10.0, std::floor(std::log10(largest)) + 1.0));
+}
+
+}  // namespace spherical_actuator_calibration

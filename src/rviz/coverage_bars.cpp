@@ -1,0 +1,122 @@
+#include "spherical_actuator_calibration/rviz/coverage_bars.hpp"
+
+#include <QHelpEvent>
+#include <QPainter>
+#include <QToolTip>
+#include <algorithm>
+#include <utility>
+
+namespace spherical_actuator_calibration {
+namespace {
+
+// Sizes [px].
+constexpr int kTitleWidth = 44;
+constexpr int kRowHeight = 42;
+constexpr int kBarHeight = 26;
+constexpr double kGap = 2.0;
+constexpr double kWidestBar = 60.0;
+
+const QColor kEmpty(225, 227, 231);
+const QColor kFew(240, 150, 40);
+const QColor kEnough(60, 120, 200);
+const QColor kDone(40, 150, 70);
+
+QColor colorOf(const CoverageBar& bar) {
+  if (bar.done) {
+    return kDone;
+  }
+  return bar.count < bar.advised ? kFew : kEnough;
+}
+
+/// The number of "coil_7", or nothing.
+QString numberOf(const CoverageBar& bar) {
+  const std::size_t underline = bar.name.find_last_of('_');
+  return underline == std::string::npos ? QString()
+                                        : QString::fromStdString(bar.name.substr(underline + 1));
+}
+
+QString describe(const CoverageBar& bar) {
+  return QString("%1: %2 of %3 samples%4")
+      .arg(QString::fromStdString(bar.name))
+      .arg(bar.count)
+      .arg(bar.advised)
+      .arg(bar.done ? ", identified" : "");
+}
+
+}  // namespace
+
+CoverageBars::CoverageBars(QWidget* parent) : QWidget(parent) {
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+void CoverageBars::setGroups(std::vector<CoverageGroup> groups) {
+  groups_ = std::move(groups);
+  updateGeometry();
+  update();
+}
+
+QSize CoverageBars::sizeHint() const {
+  return {300, kRowHeight * static_cast<int>(groups_.size())};
+}
+
+std::vector<CoverageBars::Place> CoverageBars::places() const {
+  std::vector<Place> places;
+  double top = 0.0;
+  for (const CoverageGroup& group : groups_) {
+    const double pitch = std::min(
+        kWidestBar,
+        (width() - kTitleWidth) / static_cast<double>(std::max<std::size_t>(1, group.bars.size())));
+    double left = kTitleWidth;
+    for (const CoverageBar& bar : group.bars) {
+      places.push_back({QRectF(left, top, std::max(1.0, pitch - kGap), kBarHeight), &bar});
+      left += pitch;
+    }
+    top += kRowHeight;
+  }
+  return places;
+}
+
+void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  QFont small = font();
+  small.setPointSizeF(0.75 * small.pointSizeF());
+  double top = 0.0;
+  for (const CoverageGroup& group : groups_) {
+    painter.drawText(QRectF(0.0, top, kTitleWidth, kBarHeight),
+                     Qt::AlignVCenter | Qt::AlignLeft,
+                     QString::fromStdString(group.title));
+    top += kRowHeight;
+  }
+  painter.setFont(small);
+  for (const Place& place : places()) {
+    const double share =
+        std::min(1.0, place.bar->count / static_cast<double>(std::max(1U, place.bar->advised)));
+    QRectF filled = place.area;
+    filled.setTop(place.area.bottom() - share * place.area.height());
+    painter.fillRect(place.area, kEmpty);
+    painter.fillRect(filled, colorOf(*place.bar));
+    painter.drawText(QRectF(place.area.left() - kGap,
+                            place.area.bottom(),
+                            place.area.width() + 2.0 * kGap,
+                            kRowHeight - kBarHeight - 2),
+                     Qt::AlignTop | Qt::AlignHCenter,
+                     numberOf(*place.bar));
+  }
+}
+
+bool CoverageBars::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip) {
+    return QWidget::event(event);
+  }
+  const auto* help = static_cast<QHelpEvent*>(event);
+  for (const Place& place : places()) {
+    if (place.area.contains(help->pos())) {
+      QToolTip::showText(help->globalPos(), describe(*place.bar), this);
+      return true;
+    }
+  }
+  QToolTip::hideText();
+  return true;
+}
+
+}  // namespace spherical_actuator_calibration
