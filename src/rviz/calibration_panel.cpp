@@ -3,6 +3,7 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QMessageBox>
 #include <QTabWidget>
 #include <QVBoxLayout>
 
@@ -26,7 +27,7 @@ constexpr double kLongestCapture = 60.0;  // [s]
 constexpr int kMostCoils = 999;
 constexpr int kMostRevisions = 1000000;
 
-const char* const kPrimaryStyle =
+constexpr const char* kPrimaryStyle =
     "QPushButton { background: #1b7f3b; color: white; font-weight: bold; padding: 4px 10px; }"
     "QPushButton:disabled { background: #b5c9bb; }";
 
@@ -167,7 +168,7 @@ QLayout* CalibrationPanel::makeFileRow() {
       addButton(row, "Forget samples", "Take all samples out of use; they stay in the database"),
       &QPushButton::clicked,
       this,
-      [this] { trigger("clear_samples"); });
+      [this] { forgetSamples(); });
   return row;
 }
 
@@ -310,6 +311,14 @@ void CalibrationPanel::calibrate(const std::string& service, std::uint32_t coil)
 
 void CalibrationPanel::trigger(const std::string& service) {
   call<std_srvs::Trigger>(service, std_srvs::Trigger::Request());
+}
+
+void CalibrationPanel::forgetSamples() {
+  const auto choice = QMessageBox::question(
+      this, "Forget samples", "Take all samples out of use? Only the session database keeps them.");
+  if (choice == QMessageBox::Yes) {
+    trigger("clear_samples");
+  }
 }
 
 void CalibrationPanel::restore() {

@@ -16,12 +16,12 @@ constexpr int kBarHeight = 26;
 constexpr double kGap = 2.0;
 constexpr double kWidestBar = 60.0;
 
-const QColor kEmpty(225, 227, 231);
-const QColor kFew(240, 150, 40);
-const QColor kEnough(60, 120, 200);
-const QColor kDone(40, 150, 70);
+constexpr QRgb kEmpty = qRgb(225, 227, 231);
+constexpr QRgb kFew = qRgb(240, 150, 40);
+constexpr QRgb kEnough = qRgb(60, 120, 200);
+constexpr QRgb kDone = qRgb(40, 150, 70);
 
-QColor colorOf(const CoverageBar& bar) {
+QRgb colorOf(const CoverageBar& bar) {
   if (bar.done) {
     return kDone;
   }
@@ -93,8 +93,8 @@ void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
         std::min(1.0, place.bar->count / static_cast<double>(std::max(1U, place.bar->advised)));
     QRectF filled = place.area;
     filled.setTop(place.area.bottom() - share * place.area.height());
-    painter.fillRect(place.area, kEmpty);
-    painter.fillRect(filled, colorOf(*place.bar));
+    painter.fillRect(place.area, QColor(kEmpty));
+    painter.fillRect(filled, QColor(colorOf(*place.bar)));
     painter.drawText(QRectF(place.area.left() - kGap,
                             place.area.bottom(),
                             place.area.width() + 2.0 * kGap,

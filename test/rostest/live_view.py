@@ -1,22 +1,26 @@
 #!/usr/bin/python3
-"""The live view in rviz, on a screen that nobody sees: what it draws, and that it follows."""
+"""The live view in rviz and its panel, on a screen that nobody sees: what it draws, that it follows, and that a
+click on the panel does what the button says."""
 
 import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from emulated_lab import EmulatedLab
+from spherical_actuator_calibration.msg import CalibrationSample
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 SIZE = (1280, 720)
 FEWEST_COLOURS = 200
 FEWEST_PIXELS = 30
+FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
 
 
 class Screen:
@@ -42,6 +46,13 @@ class Screen:
         ).stdout
         return list(zip(picture[0::3], picture[1::3], picture[2::3]))
 
+    def click(self, x, y):
+        subprocess.run(
+            ["xdotool", "mousemove", str(x), str(y), "click", "1"],
+            check=True,
+            env={**os.environ, "DISPLAY": self.display},
+        )
+
     def stop(self):
         self._server.terminate()
         self._server.wait()
@@ -63,6 +74,23 @@ def is_glowing(red, green, blue):
     return red > 140 and green > 0.75 * red and blue < 0.4 * red
 
 
+def is_button(red, green, blue):
+    return green > 100 and red < 0.5 * green and blue < 0.6 * green
+
+
+def find_button(pixels):
+    """Middle of the capture button, the only wide thing in its green; None when it is not there."""
+    width = SIZE[0]
+    rows = {}
+    for y in range(SIZE[1]):
+        line = [x for x in range(width) if is_button(*pixels[y * width + x])]
+        if len(line) > FEWEST_BUTTON_PIXELS:
+            rows[y] = sum(line) / len(line)
+    if not rows:
+        return None
+    return round(sum(rows.values()) / len(rows)), round(sum(rows) / len(rows))
+
+
 class LiveView(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -75,6 +103,8 @@ class LiveView(unittest.TestCase):
         cls.frames = {}
         rospy.Subscriber(f"{NAMESPACE}/calibration_markers", MarkerArray, cls.markers.append)
         rospy.Subscriber("/tf", TFMessage, cls.keep_frames)
+        cls.samples = []
+        rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
         cls.lab.start()
 
     @classmethod
@@ -120,6 +150,23 @@ class LiveView(unittest.TestCase):
             return groups and groups[0].points
 
         wait_for(is_drawn, "the dot of the sample")
+
+    def test_a_click_on_the_panels_capture_button_makes_a_sample(self):
+        self.lab.move([0.1, 0.1, 0.5])
+        wait_for(lambda: find_button(self.screen.pixels()), "the capture button")
+        before = len(self.samples)
+
+        def captured():
+            # Refused while the fixture still settles, and pale while it waits for the answer: as an operator
+            # would, click again.
+            place = find_button(self.screen.pixels())
+            if place:
+                self.screen.click(*place)
+                time.sleep(1.0)
+            return len(self.samples) > before
+
+        wait_for(captured, "the sample of the click")
+        self.assertAlmostEqual(self.samples[-1].joint_position[2], 0.5, delta=0.1)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,9 @@
 namespace spherical_actuator_calibration {
 namespace {
 
-const ros::WallTime kNow(1000.0);
+ros::WallTime now() {
+  return ros::WallTime(1000.0);
+}
 
 PanelModel paperPanel() {
   return PanelModel(scenarios::paperNominal(), "/actuator");
@@ -56,10 +58,10 @@ CalibrationReport refinementOf(double orientation_uncertainty, double torque_unc
 
 TEST(PanelModel, TellsTheHealthOfTheStreamsOfItsNamespaceOnly) {
   PanelModel panel = paperPanel();
-  panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), kNow);
-  panel.receive(diagnosticsOf("actuator/calibration: measured_torque", 2, "silent"), kNow);
-  panel.receive(diagnosticsOf("other/calibration: coil_currents", 0, "good"), kNow);
-  const auto streams = panel.streams(kNow);
+  panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), now());
+  panel.receive(diagnosticsOf("actuator/calibration: measured_torque", 2, "silent"), now());
+  panel.receive(diagnosticsOf("other/calibration: coil_currents", 0, "good"), now());
+  const auto streams = panel.streams(now());
   ASSERT_EQ(streams.size(), 4U);
   EXPECT_EQ(streams[0].level, HealthLine::Level::kGood);
   EXPECT_EQ(streams[1].level, HealthLine::Level::kUnknown);
@@ -69,19 +71,19 @@ TEST(PanelModel, TellsTheHealthOfTheStreamsOfItsNamespaceOnly) {
 
 TEST(PanelModel, OldHealthIsUnknown) {
   PanelModel panel = paperPanel();
-  panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), kNow);
-  panel.receive(diagnosticsOf("actuator/coil_driver: output", 1, "tripped"), kNow);
-  const ros::WallTime later = kNow + ros::WallDuration(10.0);
+  panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), now());
+  panel.receive(diagnosticsOf("actuator/coil_driver: output", 1, "tripped"), now());
+  const ros::WallTime later = now() + ros::WallDuration(10.0);
   EXPECT_EQ(panel.streams(later)[0].level, HealthLine::Level::kUnknown);
   EXPECT_TRUE(panel.troubles(later).empty());
 }
 
 TEST(PanelModel, TellsTheMostSeriousTroubleFirst) {
   PanelModel panel = paperPanel();
-  panel.receive(diagnosticsOf("actuator/a: output", 1, "warm"), kNow);
-  panel.receive(diagnosticsOf("actuator/b: link", 2, "lost"), kNow);
-  panel.receive(diagnosticsOf("actuator/c: link", 0, "good"), kNow);
-  const auto troubles = panel.troubles(kNow);
+  panel.receive(diagnosticsOf("actuator/a: output", 1, "warm"), now());
+  panel.receive(diagnosticsOf("actuator/b: link", 2, "lost"), now());
+  panel.receive(diagnosticsOf("actuator/c: link", 0, "good"), now());
+  const auto troubles = panel.troubles(now());
   ASSERT_EQ(troubles.size(), 2U);
   EXPECT_EQ(troubles[0].message, "lost");
   EXPECT_EQ(troubles[1].name, "a: output");

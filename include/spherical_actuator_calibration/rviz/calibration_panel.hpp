@@ -58,6 +58,7 @@ class CalibrationPanel : public rviz::Panel {
   void capture();
   void calibrate(const std::string& service, std::uint32_t coil);
   void trigger(const std::string& service);
+  void forgetSamples();
   void restore();
   void setAutoCapture(bool on);
   template <typename Service>
