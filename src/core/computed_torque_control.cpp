@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/core/computed_torque_control.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "spherical_actuator_calibration/core/rotations.hpp"
@@ -24,6 +25,18 @@ Eigen::Vector3d computedTorque(const RigidRotor& rotor,
       gains.derivative * (R_rotor_desired * desired.angular_velocity - w);
   return rotor.inertia * acceleration + w.cross(rotor.inertia * w) -
          gravityTorque(rotor, state.R_stator_rotor);
+}
+
+Eigen::Matrix3d orientationForTorque(const RigidRotor& rotor,
+                                     const RotorState& state,
+                                     const DesiredMotion& desired,
+                                     const Eigen::Vector3d& torque,
+                                     const ControlGains& gains) {
+  // What is asked for where nothing is left to turn; the rest is proportional to the rotation.
+  DesiredMotion here = desired;
+  here.R_stator_rotor = state.R_stator_rotor;
+  const Eigen::Vector3d rest = torque - computedTorque(rotor, state, here, gains);
+  return state.R_stator_rotor * rotationExp(rotor.inertia.llt().solve(rest) / gains.proportional);
 }
 
 }  // namespace spherical_actuator_calibration

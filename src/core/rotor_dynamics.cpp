@@ -16,11 +16,6 @@ struct Rate {
   Eigen::Vector3d angular_velocity;
 };
 
-/// Height of the centre of gravity times weight, and its torque, from the direction of −z.
-Eigen::Vector3d down(const Eigen::Matrix3d& R_stator_rotor) {
-  return -R_stator_rotor.row(2).transpose();
-}
-
 /// Equations of motion within one step that begins at R.
 class Motion {
  public:
@@ -61,13 +56,17 @@ void validate(const RigidRotor& rotor) {
   }
 }
 
+Eigen::Vector3d gravityDirection(const Eigen::Matrix3d& R_stator_rotor) {
+  return -R_stator_rotor.row(2).transpose();
+}
+
 Eigen::Vector3d gravityTorque(const RigidRotor& rotor, const Eigen::Matrix3d& R_stator_rotor) {
-  return rotor.unbalance.cross(down(R_stator_rotor));
+  return rotor.unbalance.cross(gravityDirection(R_stator_rotor));
 }
 
 double energyOf(const RigidRotor& rotor, const RotorState& state) {
   const Eigen::Vector3d& w = state.angular_velocity;
-  return 0.5 * w.dot(rotor.inertia * w) - rotor.unbalance.dot(down(state.R_stator_rotor));
+  return 0.5 * w.dot(rotor.inertia * w) - rotor.unbalance.dot(gravityDirection(state.R_stator_rotor));
 }
 
 RotorState advance(const RigidRotor& rotor,

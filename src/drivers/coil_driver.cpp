@@ -40,7 +40,7 @@ std::string CoilDriver::command(const Eigen::VectorXd& currents, double now) {
 CoilDriver::Beat CoilDriver::beat(double now) {
   if (!link_.mayTry(now)) {
     forget();
-    return {std::nullopt, lostReason(link_.lastError())};
+    return {std::nullopt, lostReason(link_.lastError()), true};
   }
   try {
     if (!link_.isUp()) {
@@ -53,11 +53,11 @@ CoilDriver::Beat CoilDriver::beat(double now) {
     forget();
     tryToDisable();
     link_.failure(now, error.what());
-    return {std::nullopt, lostReason(error.what())};
+    return {std::nullopt, lostReason(error.what()), true};
   } catch (const Error& error) {
     forget();
     tryToDisable();
-    return {std::nullopt, error.what()};
+    return {std::nullopt, error.what(), true};
   }
 }
 
@@ -74,6 +74,7 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
     forget();
     amplifier_.disable();
     result.zero_reason = "the amplifier has tripped";
+    result.fault = true;
   } else {
     result.zero_reason = zeroReason(now);
     const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);

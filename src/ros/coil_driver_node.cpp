@@ -132,6 +132,7 @@ void CoilDriverNode::beat() {
       state_changed_ = true;
     }
     zero_reason_ = beat.zero_reason;
+    fault_ = beat.fault;
     setpoints_ = driver_.limiter().setpoints();
     clamped_ = driver_.limiter().clamped();
   } catch (const std::exception& error) {
@@ -166,7 +167,7 @@ void CoilDriverNode::diagnoseOutput(diagnostic_updater::DiagnosticStatusWrapper&
   const bool is_refusing = status.level == DiagnosticStatus::WARN;
   if (!is_refusing) {
     status.summary(
-        DiagnosticStatus::OK,
+        fault_ ? DiagnosticStatus::ERROR : DiagnosticStatus::OK,
         zero_reason_.empty() ? "commands are followed" : "currents are zero: " + zero_reason_);
   }
   status.add("largest setpoint [A]", setpoints_.cwiseAbs().maxCoeff());

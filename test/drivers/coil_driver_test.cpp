@@ -88,7 +88,9 @@ TEST_F(CoilDriverTest, GoesToZeroWithoutAFreshCommand) {
   now_ += 0.2;
   EXPECT_EQ(beat().zero_reason, "");
   now_ += 0.1;
-  EXPECT_EQ(beat().zero_reason, "no fresh command");
+  const CoilDriver::Beat silent = beat();
+  EXPECT_EQ(silent.zero_reason, "no fresh command");
+  EXPECT_FALSE(silent.fault);
   EXPECT_TRUE(allZero());
   EXPECT_FALSE(enabled());
 }
@@ -180,7 +182,9 @@ TEST_F(CoilDriverTest, EveryKindOfFailureEndsInZero) {
 TEST_F(CoilDriverTest, ATripMeansZeroUntilAFreshCommandAfterIt) {
   follow(pattern(3, 1.5));
   bus_.set(kUnit, RegisterTable::kInput, 100, {1});
-  EXPECT_EQ(beat().zero_reason, "the amplifier has tripped");
+  const CoilDriver::Beat tripped = beat();
+  EXPECT_EQ(tripped.zero_reason, "the amplifier has tripped");
+  EXPECT_TRUE(tripped.fault);
   EXPECT_TRUE(allZero());
   EXPECT_FALSE(enabled());
   bus_.set(kUnit, RegisterTable::kInput, 100, {0});

@@ -200,6 +200,7 @@ class CoilDriver(unittest.TestCase):
         self.device.input.setValues(TRIPPED, [1])
         self.wait_for_zero()
         wait_for(lambda: "tripped" in node.message("output"), "the reason")
+        node.wait_for_level("output", ERROR)
         self.device.input.setValues(TRIPPED, [0])
         self.follow()
 

@@ -30,4 +30,12 @@ Eigen::Vector3d computedTorque(const RigidRotor& rotor,
                                const DesiredMotion& desired,
                                const ControlGains& gains);
 
+/// The desired orientation R_stator_rotor at which computedTorque() would ask for `torque`, with
+/// velocity and acceleration of `desired`: for a transfer to other parameters without a jump.
+Eigen::Matrix3d orientationForTorque(const RigidRotor& rotor,
+                                     const RotorState& state,
+                                     const DesiredMotion& desired,
+                                     const Eigen::Vector3d& torque,
+                                     const ControlGains& gains);
+
 }  // namespace spherical_actuator_calibration

@@ -23,6 +23,9 @@ struct RotorState {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rotor frame [rad/s]
 };
 
+/// Direction of gravity, along −z of the stator, in the rotor frame.
+Eigen::Vector3d gravityDirection(const Eigen::Matrix3d& R_stator_rotor);
+
 /// Torque of gravity (along −z of the stator) about the centre, rotor frame [N·m].
 Eigen::Vector3d gravityTorque(const RigidRotor& rotor, const Eigen::Matrix3d& R_stator_rotor);
 

@@ -23,6 +23,7 @@ class CoilDriver {
   struct Beat {
     std::optional<Eigen::VectorXd> measured;  ///< currents [A]; nothing when they could not be read
     std::string zero_reason;  ///< why the currents are zero; empty while a command is followed
+    bool fault = false;       ///< the device is the reason, not the want of commands
   };
 
   /// Keeps a reference to the transport, which may be closed. Throws ConfigError when the options

@@ -53,6 +53,7 @@ class CoilDriverNode {
   Eigen::VectorXd waiting_command_;  ///< not handed to the driver yet; empty: none
   double waiting_since_ = 0.0;
   std::string zero_reason_;
+  bool fault_ = false;
   Eigen::VectorXd setpoints_;
   std::size_t clamped_ = 0;
 

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/core/actuator.hpp"
+#include "spherical_actuator_calibration/core/computed_torque_control.hpp"
+#include "spherical_actuator_calibration/core/current_allocation.hpp"
+#include "spherical_actuator_calibration/core/measurements.hpp"
+#include "spherical_actuator_calibration/core/orientation_reference.hpp"
+#include "spherical_actuator_calibration/core/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/core/spherical_joint.hpp"
+#include "spherical_actuator_calibration/core/torque_curve.hpp"
+#include "spherical_actuator_calibration/core/torque_model.hpp"
+
+namespace spherical_actuator_calibration {
+
+struct OrientationControllerOptions {
+  RigidRotor rotor;
+  ControlGains gains;
+  AllocationOptions allocation;
+  OrientationReferenceOptions reference;
+  double largest_age = 0.05;       ///< of the joint angles [s]; older ones stop the control
+  double velocity_cutoff = 150.0;  ///< of the first-order filter of joint velocities [rad/s]
+  double workspace_margin = 0.05;  ///< [rad] joints 1 and 2 may leave the tilt limit so far
+};
+
+/// Throws ConfigError that names the option and its range.
+void validate(const OrientationControllerOptions& options);
+
+enum class ControlState {
+  kIdle,     ///< not enabled: no current
+  kActive,   ///< follows its targets
+  kStopped,  ///< stopped by itself: no current until it is enabled again
+};
+
+/// Turns the rotor to target orientations by computed torque: orientation and velocity from the
+/// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
+/// currents zero, when joint angles are too old, outside the workspace, or where the coils make no
+/// torque in some direction. Not thread-safe.
+class OrientationController {
+ public:
+  /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
+  /// or an option is not valid.
+  OrientationController(const Actuator& design, const OrientationControllerOptions& options);
+
+  /// Parameters in force from now on; as many poles and coils as the design. While active, the
+  /// torque on the rotor goes on without a jump, and the desired motion returns to the target within
+  /// a second. Throws ConfigError when they are not valid.
+  void setParameters(const Actuator& parameters);
+  /// A reading of the joint sensors. Those that are not newer than the last change nothing. Throws
+  /// DataError when it is not finite.
+  void receive(const JointMeasurement& joints);
+  /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation or
+  /// lies outside the workspace.
+  void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
+
+  /// Takes hold of the rotor where it is. Throws DataError with the reason why that cannot be.
+  void enable(Stamp now);
+  void disable();
+
+  /// One cycle: the currents to command [A], zero unless active.
+  const Eigen::VectorXd& update(Stamp now);
+
+  ControlState state() const { return state_; }
+  /// Why it stopped, or nothing.
+  const std::string& stopReason() const { return stop_reason_; }
+  /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
+  double torqueShare() const { return share_; }
+  /// Angle between the orientation that the model sees and the reference [rad].
+  double trackingError() const { return tracking_error_; }
+
+ private:
+  /// What the model makes of the joint angles.
+  RotorState rotorAt(const Eigen::Vector3d& q) const;
+  std::string defectAt(Stamp now) const;
+  bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
+  void keepTorque();
+  void stop(const std::string& reason);
+
+  Actuator parameters_;
+  bool has_parameters_ = false;
+  OrientationControllerOptions options_;
+  TorqueCurve curve_;
+  JointGeometry joints_;
+  TorqueGeometry torques_;
+  OrientationReference reference_;
+  std::optional<JointMeasurement> measured_;
+  Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
+  std::optional<Stamp> last_update_;
+  ControlState state_ = ControlState::kIdle;
+  std::string stop_reason_;
+  Eigen::VectorXd currents_;
+  double share_ = 1.0;
+  double tracking_error_ = 0.0;
+};
+
+}  // namespace spherical_actuator_calibration
