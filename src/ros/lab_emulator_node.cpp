@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/core/description_file.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/time_conversion.hpp"
 
 namespace spherical_actuator_calibration {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint32_t kQueueLength = 100;
 /// A computer that was busy must not make the fixture jump [s].
 constexpr double kLongestBeat = 0.05;
+constexpr double kWarningPeriod = 2.0;  // [s]
 
 ScheduledMeasurement scheduled(bool glitch) {
   ScheduledMeasurement measurement;
@@ -55,9 +57,16 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
   pose_message_.header.frame_id = options_.tracker_frame;
   wrench_message_.header.frame_id = options_.ft_sensor_frame;
   pose_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("tracker/pose", kQueueLength);
+  true_message_.header.frame_id = options_.stator_frame;
+  true_publisher_ =
+      private_node_.advertise<geometry_msgs::QuaternionStamped>("true_orientation", kQueueLength);
   if (actuator_.hasTorque()) {
     wrench_publisher_ =
         node_.advertise<geometry_msgs::WrenchStamped>("ft_sensor/wrench", kQueueLength);
+    free_rotor_.emplace(
+        truth_, RigidRotor{options_.inertia, options_.load.unbalance}, options_.mechanical_stop);
+    services_.push_back(
+        private_node_.advertiseService("release_fixture", &LabEmulatorNode::releaseFixture, this));
   }
   for (const RegisterContent& content : encodeJoints(options_.joint_sensor, fixture_.position())) {
     joint_server_.addUnit(content.unit);
@@ -128,23 +137,59 @@ Eigen::Vector3d LabEmulatorNode::targetOf(const sensor_msgs::JointState& message
   return target;
 }
 
+bool LabEmulatorNode::releaseFixture(SetBool::Request& request, SetBool::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool release = request.data != 0;
+  if (release && !released_) {
+    free_rotor_->release(fixture_.position());
+  } else if (!release && released_) {
+    fixture_.hold(free_rotor_->position());
+  }
+  released_ = release;
+  response.success = 1;
+  response.message = release ? "The rotor is free: coils and gravity move it."
+                             : "The fixture holds the rotor where it was.";
+  return true;
+}
+
+void LabEmulatorNode::moveRotor(double step) {
+  if (!released_) {
+    fixture_.advance(step);
+    return;
+  }
+  // A late beat is taken in steps that the integrator is good for.
+  constexpr double kLongestStep = 2e-3;
+  const auto steps = static_cast<int>(std::ceil(step / kLongestStep));
+  for (int n = 0; n < steps; ++n) {
+    free_rotor_->advance(step / steps, amplifier_.currents());
+  }
+  if (free_rotor_->isAtStop()) {
+    ROS_WARN_THROTTLE(kWarningPeriod, "The rotor is at its mechanical stop.");
+  }
+}
+
+const Eigen::Vector3d& LabEmulatorNode::position() const {
+  return released_ ? free_rotor_->position() : fixture_.position();
+}
+
 void LabEmulatorNode::beat() {
   const double now = steadySeconds();
   const std::lock_guard<std::mutex> lock(mutex_);
   const double step = std::min(now - last_beat_, kLongestBeat);
   last_beat_ = now;
-  fixture_.advance(step);
   amplifier_.setTripped(amplifier_tripped_);
   amplifier_.advance(step);
+  moveRotor(step);
   showJoints();
   showCurrents();
-  const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(fixture_.position());
-  if (actuator_.hasTorque()) {
+  const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(position());
+  if (actuator_.hasTorque() && !released_) {
     publishWrench(R_stator_rotor);
   }
   if (now >= pose_due_) {
     pose_due_ = std::max(pose_due_ + 1.0 / options_.tracker.stream.rate, now - kLongestBeat);
     publishPose(R_stator_rotor);
+    publishTruth(R_stator_rotor);
   }
 }
 
@@ -152,7 +197,7 @@ void LabEmulatorNode::showJoints() {
   if (sensor_frozen_) {
     return;
   }
-  const JointMeasurement reading = joints_.measure(0, fixture_.position(), {});
+  const JointMeasurement reading = joints_.measure(0, position(), {});
   for (const RegisterContent& content : encodeJoints(options_.joint_sensor, reading.position)) {
     joint_server_.setWords(content.unit, content.table, content.address, content.words);
   }
@@ -178,6 +223,12 @@ void LabEmulatorNode::publishPose(const Eigen::Matrix3d& R_stator_rotor) {
   pose_message_.pose.orientation.z = pose.q_tracker_marker.z();
   pose_message_.pose.orientation.w = pose.q_tracker_marker.w();
   pose_publisher_.publish(pose_message_);
+}
+
+void LabEmulatorNode::publishTruth(const Eigen::Matrix3d& R_stator_rotor) {
+  true_message_.header.stamp = ros::Time::now();
+  true_message_.quaternion = quaternionToRos(Eigen::Quaterniond(R_stator_rotor));
+  true_publisher_.publish(true_message_);
 }
 
 void LabEmulatorNode::publishWrench(const Eigen::Matrix3d& R_stator_rotor) {

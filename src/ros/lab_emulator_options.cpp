@@ -13,6 +13,8 @@
 namespace spherical_actuator_calibration {
 namespace {
 
+constexpr double kGimbalLock = 1.5;  // [rad] short of it
+
 Eigen::Vector3d readVector(const YamlMap& map, const char* key, const char* unit) {
   return Eigen::Vector3d(map.numbers(key, ValueRange::finite(unit), 3).data());
 }
@@ -94,10 +96,14 @@ LabEmulatorOptions loadLabEmulatorOptions(const ros::NodeHandle& private_node) {
   const YamlMap load = map.map("load");
   options.load.weight = load.number("weight", ValueRange::nonNegative("N"));
   options.load.unbalance = readVector(load, "unbalance", "N m");
+  options.inertia = readVector(load, "inertia", "kg m²").asDiagonal();
   const YamlMap fixture = map.map("fixture");
   options.fixture.speed = fixture.number("speed", ValueRange::positive("rad/s"));
   options.fixture.acceleration = fixture.number("acceleration", ValueRange::positive("rad/s²"));
+  options.mechanical_stop =
+      fixture.number("mechanical_stop", ValueRange::open(0.0, kGimbalLock, "rad"));
   const YamlMap frames = map.map("frames");
+  options.stator_frame = frames.nonEmptyText("stator");
   options.tracker_frame = frames.nonEmptyText("tracker");
   options.ft_sensor_frame = frames.nonEmptyText("ft_sensor");
   options.registration = readRegistration(map.map("registration"));

@@ -26,23 +26,11 @@ LiveScene::LiveScene(CalibrationScene start) : scene_(std::move(start)) {
 }
 
 void LiveScene::receive(const ActuatorParameters& message) {
-  Actuator& actuator = scene_.identified;
-  if (message.poles.size() != actuator.poles.size() ||
-      message.coils.size() != actuator.coils.size()) {
+  const std::optional<Actuator> actuator = actuatorFromRos(message, scene_.nominal);
+  if (!actuator) {
     return;
   }
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
-    actuator.joints[k].offset = message.joints[k].offset;
-  }
-  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
-    actuator.poles[i].polar = message.poles[i].polar;
-    actuator.poles[i].azimuth = message.poles[i].azimuth;
-  }
-  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
-    actuator.coils[j].polar = message.coils[j].polar;
-    actuator.coils[j].azimuth = message.coils[j].azimuth;
-  }
+  scene_.identified = *actuator;
   is_identified_ = message.source == "identified";
   // Of values that were restored the topics tell no uncertainty. A report may come before the
   // parameters that it led to, hence not at every change.

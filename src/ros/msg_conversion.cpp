@@ -179,6 +179,29 @@ ActuatorParameters parametersToRos(const Actuator& actuator) {
   return message;
 }
 
+std::optional<Actuator> actuatorFromRos(const ActuatorParameters& message, const Actuator& design) {
+  if (message.poles.size() != design.poles.size() || message.coils.size() != design.coils.size()) {
+    return std::nullopt;
+  }
+  Actuator actuator = design;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
+    actuator.joints[k].offset = message.joints[k].offset;
+  }
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    actuator.poles[i].polar = message.poles[i].polar;
+    actuator.poles[i].azimuth = message.poles[i].azimuth;
+    actuator.poles[i].polarity = message.poles[i].polarity;
+    actuator.poles[i].gain = message.poles[i].gain;
+  }
+  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
+    actuator.coils[j].polar = message.coils[j].polar;
+    actuator.coils[j].azimuth = message.coils[j].azimuth;
+    actuator.coils[j].gain = message.coils[j].gain;
+  }
+  return actuator;
+}
+
 CalibrationReport reportToRos(const CycleReport& report) {
   CalibrationReport message;
   message.cycle = cycleName(report.cycle);

@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/QuaternionStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -16,6 +18,7 @@
 
 #include "spherical_actuator_calibration/core/actuator.hpp"
 #include "spherical_actuator_calibration/core/emulated_sensors.hpp"
+#include "spherical_actuator_calibration/core/free_rotor.hpp"
 #include "spherical_actuator_calibration/core/positioning_fixture.hpp"
 #include "spherical_actuator_calibration/core/true_actuator.hpp"
 #include "spherical_actuator_calibration/drivers/emulated_amplifier.hpp"
@@ -28,8 +31,10 @@ namespace spherical_actuator_calibration {
 /// The laboratory without hardware, at the level of its wires: Modbus TCP devices for joint sensor
 /// and coil amplifier, and what the ROS drivers of a tracker and a force/torque sensor publish
 /// (`tracker/pose`, `ft_sensor/wrench`), each in its own frame. A fixture holds the rotor and
-/// follows `fixture/target`. The unit in it is made from the description by the seed, as
-/// `simulate_recording --seed` makes it.
+/// follows `fixture/target`; released by the private service release_fixture, the rotor moves by
+/// coils and gravity, and the force/torque sensor, which goes with the fixture, is silent. The
+/// private topic `true_orientation` tells what no laboratory knows. The unit in it is made from the
+/// description by the seed, as `simulate_recording --seed` makes it.
 ///
 /// Private services inject faults: lose_tracker, freeze_sensor (the joint sensors' registers stand
 /// still), inject_outlier (one tracker pose and one wrench far off), trip_amplifier.
@@ -49,10 +54,15 @@ class LabEmulatorNode {
   void advertiseFault(const char* name, bool& flag, const char* what);
   void receiveTarget(const sensor_msgs::JointState& message);
   Eigen::Vector3d targetOf(const sensor_msgs::JointState& message) const;
+  bool releaseFixture(SetBool::Request& request, SetBool::Response& response);
   void beat();
+  void moveRotor(double step);
+  /// What the joint sensors would read without their errors [rad].
+  const Eigen::Vector3d& position() const;
   void showJoints();
   void showCurrents();
   void publishPose(const Eigen::Matrix3d& R_stator_rotor);
+  void publishTruth(const Eigen::Matrix3d& R_stator_rotor);
   void publishWrench(const Eigen::Matrix3d& R_stator_rotor);
 
   const LabEmulatorOptions options_;
@@ -63,6 +73,8 @@ class LabEmulatorNode {
 
   std::mutex mutex_;  ///< of all below, up to the publishers
   PositioningFixture fixture_;
+  std::optional<FreeRotor> free_rotor_;  ///< none without torque model
+  bool released_ = false;
   EmulatedAmplifier amplifier_;
   EmulatedJointSensor joints_;
   EmulatedTracker tracker_;
@@ -77,11 +89,13 @@ class LabEmulatorNode {
   double pose_due_ = 0.0;   ///< [s]
   geometry_msgs::PoseStamped pose_message_;
   geometry_msgs::WrenchStamped wrench_message_;
+  geometry_msgs::QuaternionStamped true_message_;
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;
   ros::Publisher pose_publisher_;
   ros::Publisher wrench_publisher_;
+  ros::Publisher true_publisher_;
   ros::Subscriber target_subscriber_;
   std::vector<ros::ServiceServer> services_;
   std::unique_ptr<PeriodicThread> thread_;

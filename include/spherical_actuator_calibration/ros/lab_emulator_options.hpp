@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/core/positioning_fixture.hpp"
 #include "spherical_actuator_calibration/core/registration.hpp"
+#include "spherical_actuator_calibration/core/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/core/true_actuator.hpp"
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 #include "spherical_actuator_calibration/drivers/emulated_amplifier.hpp"
@@ -22,9 +23,12 @@ struct LabEmulatorOptions {
   std::string truth;       ///< file to write the true parameters to; empty: none
   ManufacturingErrors errors;
   RotorLoad load;
+  Eigen::Matrix3d inertia = RigidRotor{}.inertia;  ///< of rotor and load, rotor frame [kg·m²]
   FixtureOptions fixture;
+  double mechanical_stop = 0.9;  ///< of joints 1 and 2 of a released rotor [rad]
   AmplifierDynamics amplifier;
 
+  std::string stator_frame = "stator";
   std::string tracker_frame = "tracker";
   std::string ft_sensor_frame = "ft_sensor";
   Registration registration;  ///< the true one
