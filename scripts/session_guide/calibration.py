@@ -84,10 +84,10 @@ class Calibration:
             for s in samples
         ]
 
-    def plan(self, poses, wanted_stddev):
+    def plan(self, poses, wanted_stddev, cycle="refine"):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan."""
         answer = self.call(
-            "plan_poses", cycle="refine", coil=0, max_poses=poses, wanted_stddev=wanted_stddev
+            "plan_poses", cycle=cycle, coil=0, max_poses=poses, wanted_stddev=wanted_stddev
         )
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)

@@ -151,6 +151,8 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
   try {
     if (request.data != 0) {
       controller_.enable(stampFromRos(ros::Time::now()));
+      // So that a stop in the very first cycle is told as well.
+      was_active_ = true;
       response.message = "The coils hold the rotor, and turn it to orientation_target.";
     } else {
       controller_.disable();

@@ -1,0 +1,120 @@
+"""The rotor under control of its coils, as a program sees it."""
+
+import rospy
+from geometry_msgs.msg import QuaternionStamped
+from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.msg import ActuatorParameters
+from std_srvs.srv import SetBool
+
+from .rotations import angle_between, quaternion_of, rotation_exp, rotation_of, rotor_orientation
+
+TARGET_RATE = 100.0  # [Hz]
+STALE = 0.5  # [s]
+PATIENCE = 30.0  # [s] for topics and services that must be there
+
+
+class CoilDrive:
+    """Enables the orientation controller, and gives it targets. Raises RuntimeError with the reason when it cannot
+    go on."""
+
+    def __init__(self, ns):
+        self._ns = ns
+        self._frame = rospy.get_param(f"{ns}/orientation_controller/frames/stator", "stator")
+        self._joints = None
+        self._joints_time = None
+        self.parameters = None
+        self._targets = rospy.Publisher(f"{ns}/orientation_target", QuaternionStamped, queue_size=1)
+        self._subscribers = [
+            rospy.Subscriber(f"{ns}/joint_states", JointState, self._keep_joints),
+            rospy.Subscriber(f"{ns}/parameters", ActuatorParameters, self._keep_parameters),
+        ]
+
+    def _keep_joints(self, message):
+        self._joints = message.position
+        self._joints_time = rospy.get_time()
+
+    def _keep_parameters(self, message):
+        self.parameters = message
+
+    def _set(self, service, value):
+        name = f"{self._ns}/{service}"
+        try:
+            rospy.wait_for_service(name, PATIENCE)
+            answer = rospy.ServiceProxy(name, SetBool)(value)
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            raise RuntimeError(f"{name} does not answer: {error}") from error
+        if not answer.success:
+            raise RuntimeError(answer.message)
+
+    def start(self, fixture):
+        """Enables the control; with the name of an emulated laboratory, its fixture lets the rotor go."""
+        end = rospy.get_time() + PATIENCE
+        while self.parameters is None or self._joints is None:
+            if rospy.get_time() > end:
+                raise RuntimeError(f"{self._ns}/parameters and joint_states do not come: start the laboratory.")
+            rospy.sleep(0.05)
+        self._set("orientation_controller/enable", True)
+        if fixture:
+            self._set(f"{fixture}/release_fixture", True)
+
+    def stop(self, fixture):
+        """The fixture takes the rotor, then the currents go to zero."""
+        if fixture:
+            self._set(f"{fixture}/release_fixture", False)
+        self._set("orientation_controller/enable", False)
+
+    def joints(self):
+        """Joint angles [rad]; raises RuntimeError without fresh ones."""
+        if self._joints_time is None or rospy.get_time() - self._joints_time > STALE:
+            raise RuntimeError("No joint angles arrive: check the joint sensor.")
+        return self._joints
+
+    def send(self, rotation):
+        message = QuaternionStamped()
+        message.header.stamp = rospy.Time.now()
+        message.header.frame_id = self._frame
+        target = message.quaternion
+        target.x, target.y, target.z, target.w = quaternion_of(rotation)
+        self._targets.publish(message)
+
+    def orientation_at(self, joints):
+        """By the parameters in force."""
+        return rotor_orientation(self.parameters.joints, joints)
+
+    def turn_to(self, rotation, duration):
+        """Sends a target again and again for so long [s]."""
+        rate = rospy.Rate(5.0)
+        end = rospy.get_time() + duration
+        while rospy.get_time() < end:
+            self.send(rotation)
+            rate.sleep()
+
+    def track(self, speed, duration, observe):
+        """Turns about the stator's x axis at `speed` [rad/s]; calls observe(time, desired) at every target."""
+        rate = rospy.Rate(TARGET_RATE)
+        begin = rospy.get_time()
+        while True:
+            time = rospy.get_time() - begin
+            if time > duration:
+                return
+            desired = rotation_exp([speed * time, 0.0, 0.0])
+            self.send(desired)
+            observe(time, desired)
+            rate.sleep()
+
+
+class TrueOrientation:
+    """What an emulated laboratory knows: the true orientation of its rotor."""
+
+    def __init__(self, topic):
+        self._message = None
+        self._subscriber = rospy.Subscriber(topic, QuaternionStamped, self._keep)
+
+    def _keep(self, message):
+        self._message = message
+
+    def error(self, desired):
+        """Angle [rad] to a desired orientation; None without a message."""
+        if self._message is None:
+            return None
+        return angle_between(desired, rotation_of(self._message.quaternion))

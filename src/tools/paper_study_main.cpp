@@ -1,0 +1,334 @@
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "spherical_actuator_calibration/core/atomic_file.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/core/paper_control_study.hpp"
+#include "spherical_actuator_calibration/core/paper_study.hpp"
+#include "spherical_actuator_calibration/core/text_format.hpp"
+#include "spherical_actuator_calibration/core/yaml_writer.hpp"
+
+namespace spherical_actuator_calibration {
+namespace {
+
+constexpr int kSuccess = 0;
+constexpr int kUnusable = 2;
+
+/// Gravity torque that loads the rotor beside its centre [N·m] (doc/method.md, Dynamics).
+const Eigen::Vector3d& load() {
+  static const Eigen::Vector3d value(0.0, 8.8e-3, 0.0);
+  return value;
+}
+constexpr std::uint64_t kSessions = 20;  // of the study of torque errors
+constexpr std::size_t kWorkspacePoses = 500;
+constexpr int kDrawnPoint = 20;  // every so many points of a closed loop are written
+constexpr double kProbabilities[] = {0.0, 0.05, 0.5, 0.95, 1.0};
+
+struct Options {
+  std::string nominal_path;
+  std::string truth_path;
+  std::string output_path;
+  bool force = false;
+  std::uint64_t seeds = 200;
+};
+
+std::optional<Options> parseOptions(int argc, char** argv) {
+  namespace po = boost::program_options;
+  Options options;
+  po::options_description known("Options");
+  known.add_options()("help,h", "print this help and exit")(
+      "actuator", po::value(&options.nominal_path)->required(), "the actuator as drawn (YAML)")(
+      "truth", po::value(&options.truth_path)->required(), "the actuator as made (YAML)")(
+      "output", po::value(&options.output_path)->required(), "results to write (YAML)")(
+      "seeds",
+      po::value(&options.seeds)->default_value(options.seeds),
+      "random sets of orientations per simulation")(
+      "force", po::bool_switch(&options.force), "replace the output if it exists");
+  po::variables_map given;
+  po::store(po::parse_command_line(argc, argv, known), given);
+  if (given.count("help") > 0) {
+    std::cout
+        << "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
+           "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
+           "scripts/paper_study draws tables and figures of it.\n\n"
+        << known;
+    return std::nullopt;
+  }
+  po::notify(given);
+  return options;
+}
+
+/// Quantiles of kProbabilities, "[...]".
+std::string spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::vector<std::string> quantiles;
+  for (const double probability : kProbabilities) {
+    const auto last = static_cast<double>(values.size() - 1);
+    quantiles.push_back(yamlNumber(values[static_cast<std::size_t>(probability * last + 0.5)]));
+  }
+  return yamlList(quantiles);
+}
+
+/// One number per run, in the order of the seeds, to six digits.
+template <typename Run>
+std::string valuesOf(const std::vector<Run>& runs, const std::function<double(const Run&)>& value) {
+  std::vector<std::string> values;
+  for (const Run& run : runs) {
+    values.push_back(format("%.6e", value(run)));
+  }
+  return yamlList(values);
+}
+
+template <typename Run>
+std::string spreadOf(const std::vector<Run>& runs, const std::function<double(const Run&)>& value) {
+  std::vector<double> values;
+  for (const Run& run : runs) {
+    values.push_back(value(run));
+  }
+  return spread(values);
+}
+
+/// Spread per iteration, over runs of different lengths: a run that has ended stays at its last.
+template <typename Run>
+std::string spreadPerIteration(const std::vector<Run>& runs, std::vector<double> Run::*history) {
+  std::size_t longest = 0;
+  for (const Run& run : runs) {
+    longest = std::max(longest, (run.*history).size());
+  }
+  std::vector<std::string> lines;
+  for (std::size_t n = 0; n < longest; ++n) {
+    std::vector<double> values;
+    for (const Run& run : runs) {
+      const std::vector<double>& all = run.*history;
+      if (!all.empty()) {
+        values.push_back(all[std::min(n, all.size() - 1)]);
+      }
+    }
+    lines.push_back(spread(values));
+  }
+  return yamlList(lines);
+}
+
+/// How many runs took so many iterations: "{3: 20, 4: 180}".
+template <typename Run>
+std::string iterationCounts(const std::vector<Run>& runs) {
+  std::vector<std::size_t> counts;
+  for (const Run& run : runs) {
+    const std::size_t iterations = run.errors.empty() ? 0 : run.errors.size() - 1;
+    counts.resize(std::max(counts.size(), iterations + 1), 0);
+    ++counts[iterations];
+  }
+  YamlLine line;
+  for (std::size_t n = 0; n < counts.size(); ++n) {
+    if (counts[n] > 0) {
+      line.add(std::to_string(n), std::to_string(counts[n]));
+    }
+  }
+  return line.text();
+}
+
+class Study {
+ public:
+  explicit Study(const PaperStudyOptions& options) : options_(options) {}
+
+  std::string text() {
+    text_ =
+        "# Results of paper_study. Spreads are minimum, 5 %, median, 95 % and maximum over the "
+        "seeds.\n";
+    text_ += "seeds: " + std::to_string(options_.seeds) + "\n";
+    levelOne();
+    levelOneNoise();
+    situation("situation_1", Situation::kPolesAndCoil, {10, 15, 20, 25, 30, 40}, 30);
+    situation("situation_2", Situation::kCoil, {2, 3, 4, 6, 8, 12, 20}, 4);
+    control();
+    torqueErrors();
+    return text_;
+  }
+
+ private:
+  static void tell(const char* what) { std::fprintf(stderr, "paper_study: %s\n", what); }
+
+  void levelOne() {
+    tell("level 1 without noise");
+    const std::vector<LevelOneRun> runs = studyLevelOne(options_);
+    text_ += "level_1:\n";
+    text_ += "  iterations: " + iterationCounts(runs) + "\n";
+    text_ +=
+        "  initial: " +
+        valuesOf<LevelOneRun>(runs, [](const LevelOneRun& run) { return run.errors.front(); }) +
+        "\n";
+    text_ += "  epsilon_1: " + spreadPerIteration(runs, &LevelOneRun::errors) + "\n";
+    text_ += "  epsilon_1_chord: " + spreadPerIteration(runs, &LevelOneRun::errors_chord) + "\n";
+    text_ += "  axis_deviation_newton: " +
+             spreadPerIteration(runs, &LevelOneRun::axis_deviation_newton) + "\n";
+    text_ +=
+        "  axis_deviation_chord: " + spreadPerIteration(runs, &LevelOneRun::axis_deviation_chord) +
+        "\n";
+    text_ += "  offset_deviation_chord: " +
+             spreadPerIteration(runs, &LevelOneRun::offset_deviation_chord) + "\n";
+  }
+
+  void levelOneNoise() {
+    tell("level 1 with noise");
+    text_ += "level_1_noise:\n";
+    for (const std::size_t count : {2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40}) {
+      const auto runs = studyLevelOneNoise(options_, count);
+      using Run = LevelOneNoiseRun;
+      const auto below = std::count_if(
+          runs.begin(), runs.end(), [](const Run& run) { return run.error < run.added_noise; });
+      YamlLine line;
+      line.add("orientations", std::to_string(count));
+      line.add("added_noise", spreadOf<Run>(runs, [](const Run& run) { return run.added_noise; }));
+      line.add("epsilon_1", spreadOf<Run>(runs, [](const Run& run) { return run.error; }));
+      line.add("epsilon_1_paper",
+               spreadOf<Run>(runs, [](const Run& run) { return run.paper_error; }));
+      line.add("true_error", spreadOf<Run>(runs, [](const Run& run) { return run.true_error; }));
+      line.add("seeds_below_noise", std::to_string(below));
+      text_ += "  - " + line.text() + "\n";
+    }
+  }
+
+  void situation(const std::string& name,
+                 Situation situation,
+                 const std::vector<std::size_t>& counts,
+                 std::size_t papers_count) {
+    tell(name.c_str());
+    text_ += name + ":\n";
+    using Run = LevelTwoRun;
+    const auto observable = [](std::vector<Run> runs) {
+      runs.erase(
+          std::remove_if(runs.begin(), runs.end(), [](const Run& run) { return !run.observable; }),
+          runs.end());
+      return runs;
+    };
+    const std::vector<Run> exact =
+        observable(studyLevelTwo(options_, situation, Orientations::kRandom, papers_count, false));
+    text_ += "  measurements: " + std::to_string(papers_count) + "\n";
+    text_ += "  observable_sets: " + std::to_string(exact.size()) + "\n";
+    if (!exact.empty()) {
+      text_ += "  iterations: " + iterationCounts(exact) + "\n";
+      text_ +=
+          "  initial: " + valuesOf<Run>(exact, [](const Run& run) { return run.errors.front(); }) +
+          "\n";
+      text_ += "  epsilon_2: " + spreadPerIteration(exact, &Run::errors) + "\n";
+      text_ += "  largest_error: " +
+               spreadOf<Run>(exact, [](const Run& run) { return run.largest_error; }) + "\n";
+    }
+    text_ += "  noise:\n";
+    for (const std::size_t count : counts) {
+      for (const Orientations orientations : {Orientations::kRandom, Orientations::kPlanned}) {
+        const std::vector<Run> runs =
+            observable(studyLevelTwo(options_, situation, orientations, count, true));
+        YamlLine line;
+        line.add("measurements", std::to_string(count));
+        line.add("orientations", orientations == Orientations::kRandom ? "random" : "planned");
+        line.add("observable_sets", std::to_string(runs.size()));
+        if (!runs.empty()) {
+          line.add("epsilon_2",
+                   spreadOf<Run>(runs, [](const Run& run) { return run.errors.back(); }));
+          line.add("largest_error",
+                   spreadOf<Run>(runs, [](const Run& run) { return run.largest_error; }));
+          line.add("largest_share",
+                   spreadOf<Run>(runs, [](const Run& run) { return run.largest_share; }));
+          if (count == papers_count) {
+            line.add("largest_shares",
+                     valuesOf<Run>(runs, [](const Run& run) { return run.largest_share; }));
+          }
+        }
+        text_ += "    - " + line.text() + "\n";
+      }
+    }
+  }
+
+  void control() {
+    tell("closed loop");
+    text_ += "control:\n";
+    for (const ControlRun& run : studyControl(options_, load())) {
+      std::vector<std::string> times;
+      std::vector<std::string> errors;
+      std::vector<std::string> angles;
+      double largest = 0.0;
+      for (std::size_t n = 0; n < run.result.points.size(); ++n) {
+        const ClosedLoopPoint& point = run.result.points[n];
+        largest = std::max(largest, point.rotation_error);
+        if (n % kDrawnPoint == 0) {
+          times.push_back(yamlNumber(point.time));
+          errors.push_back(yamlNumber(point.rotation_error));
+          angles.push_back(yamlNumber(point.joint_position[0]));
+        }
+      }
+      text_ += "  - model: " + run.model + "\n";
+      text_ += std::string("    loaded: ") + (run.loaded ? "true" : "false") + "\n";
+      text_ += std::string("    completed: ") + (run.result.completed ? "true" : "false") + "\n";
+      text_ += "    final_error: " + yamlNumber(run.result.points.back().rotation_error) + "\n";
+      text_ += "    largest_error: " + yamlNumber(largest) + "\n";
+      text_ += "    time: " + yamlList(times) + "\n";
+      text_ += "    rotation_error: " + yamlList(errors) + "\n";
+      text_ += "    q_1: " + yamlList(angles) + "\n";
+    }
+  }
+
+  void torqueErrors() {
+    tell("torque over the workspace");
+    text_ += "torque_errors:\n";
+    for (const double tilt : {options_.torque_tilt, options_.joint_tilt}) {
+      for (const TorqueErrorRun& run :
+           studyTorqueErrors(options_, kSessions, kWorkspacePoses, tilt)) {
+        using Error = TorqueMatrixError;
+        double sum = 0.0;
+        for (const Error& error : run.poses) {
+          sum += error.error / static_cast<double>(run.poses.size());
+        }
+        YamlLine line;
+        line.add("model", run.model);
+        line.add("tilt", yamlNumber(tilt));
+        line.add("mean", yamlNumber(sum));
+        line.add("spread", spreadOf<Error>(run.poses, [](const Error& e) { return e.error; }));
+        line.add("smallest_singular_value", spreadOf<Error>(run.poses, [](const Error& e) {
+                   return e.smallest_singular_value;
+                 }));
+        line.add("condition_number",
+                 spreadOf<Error>(run.poses, [](const Error& e) { return e.condition_number; }));
+        text_ += "  - " + line.text() + "\n";
+      }
+    }
+  }
+
+  PaperStudyOptions options_;
+  std::string text_;
+};
+
+}  // namespace
+}  // namespace spherical_actuator_calibration
+
+int main(int argc, char** argv) {
+  namespace sac = spherical_actuator_calibration;
+  try {
+    const auto options = sac::parseOptions(argc, argv);
+    if (!options) {
+      return sac::kSuccess;
+    }
+    sac::PaperStudyOptions study;
+    study.nominal = sac::loadActuator(options->nominal_path);
+    study.truth = sac::loadActuator(options->truth_path);
+    study.seeds = options->seeds;
+    sac::validate(study);
+    sac::writeFileAtomically(
+        options->output_path,
+        sac::Study(study).text(),
+        options->force ? sac::OverwritePolicy::kReplace : sac::OverwritePolicy::kRefuse);
+    return sac::kSuccess;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "paper_study: %s\n", error.what());
+    return sac::kUnusable;
+  }
+}

@@ -1,0 +1,149 @@
+#!/usr/bin/python3
+"""The orientation controller without a laboratory: when it commands currents, and when it stops."""
+
+import math
+import signal
+import sys
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NAMESPACE, PACKAGE, wait_for
+from controller_client import LIMIT, Commands, Controller, description, parameters_of, target
+from driver_node import ERROR, OK
+from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.msg import ActuatorParameters
+
+RATE = 200.0  # [Hz] of joint angles
+
+
+class Joints:
+    """A joint sensor that says what the test wants."""
+
+    def __init__(self):
+        self.position = [0.0, 0.0, 0.0]
+        self.silent = False
+        self._publisher = rospy.Publisher(f"{NAMESPACE}/joint_states", JointState, queue_size=10)
+        self._timer = rospy.Timer(rospy.Duration(1.0 / RATE), self._publish)
+
+    def _publish(self, _event):
+        if not self.silent:
+            message = JointState(name=["joint_1", "joint_2", "joint_3"], position=self.position)
+            message.header.stamp = rospy.Time.now()
+            self._publisher.publish(message)
+
+    def stop(self):
+        self._timer.shutdown()
+        self._publisher.unregister()
+
+
+class OrientationController(unittest.TestCase):
+    """The rotor stands where the test says."""
+
+    def setUp(self):
+        self.publisher = rospy.Publisher(f"{NAMESPACE}/parameters", ActuatorParameters, queue_size=1, latch=True)
+        self.publisher.publish(parameters_of(description()))
+        self.joints = Joints()
+        self.commands = Commands()
+        self.controller = None
+
+    def tearDown(self):
+        if self.controller:
+            self.controller.close()
+        self.joints.stop()
+        self.publisher.unregister()
+
+    def start(self, **parameters):
+        self.controller = Controller(**parameters)
+        return self.controller
+
+    def test_nothing_is_commanded_before_it_is_enabled(self):
+        controller = self.start()
+        controller.wait_for_level("control", OK)
+        controller.send(target(0.1, 0.0, 0.0))
+        rospy.sleep(0.3)
+        self.assertEqual(self.commands.count, 0)
+
+    def test_follows_a_target_once_enabled_and_ends_with_zero(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        controller.send(target(0.1, 0.0, 0.0))
+        # The rotor does not move: the wanted torque stays.
+        wait_for(lambda: self.commands.last > 0.005, "currents")
+        self.assertLessEqual(self.commands.largest, LIMIT)
+        self.assertTrue(controller.enable(False).success)
+        wait_for(self.commands.ended_with_zero, "zero")
+
+    def test_refuses_to_start_without_fresh_joint_angles(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        controller.enable(False)
+        self.joints.silent = True
+        rospy.sleep(0.1)
+        answer = controller.enable()
+        self.assertFalse(answer.success)
+        self.assertIn("s old", answer.message)
+
+    def test_stops_when_joint_angles_cease(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        wait_for(lambda: self.commands.count > 100, "commands")
+        self.joints.silent = True
+        wait_for(self.commands.ended_with_zero, "zero")
+        controller.wait_for_level("control", ERROR)
+        self.assertIn("s old", controller.message("control"))
+        self.joints.silent = False
+        rospy.sleep(0.3)
+        self.assertTrue(self.commands.ended_with_zero())
+        controller.wait_until_enabled()
+        controller.wait_for_level("control", OK)
+
+    def test_stops_outside_the_workspace(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        self.joints.position = [0.0, 0.7, 0.0]
+        wait_for(self.commands.ended_with_zero, "zero")
+        controller.wait_for_level("control", ERROR)
+        self.assertIn("outside of the workspace", controller.message("control"))
+
+    def test_stops_where_the_coils_make_no_torque(self):
+        controller = self.start(least_singular_value=10.0)
+        controller.wait_until_enabled()
+        controller.wait_for_level("control", ERROR)
+        self.assertIn("no torque", controller.message("control"))
+        wait_for(self.commands.ended_with_zero, "zero")
+
+    def test_refuses_targets_and_says_why(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        not_unit = target(0.1, 0.0, 0.0)
+        not_unit.quaternion.w = 2.0
+        not_a_number = target(0.1, 0.0, 0.0)
+        not_a_number.quaternion.x = math.nan
+        for message, reason in (
+            (target(0.1, 0.0, 0.0, "rotor"), 'in the frame "rotor"'),
+            (not_unit, "unit length"),
+            (not_a_number, "unit length"),
+            (target(0.4, 0.0, 0.0), "outside of the workspace"),
+        ):
+            controller.send(message)
+            wait_for(lambda r=reason: r in controller.value("control", "last refusal"), reason)
+        self.assertLess(self.commands.largest, 0.01)
+
+    def test_zero_when_it_is_ended(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            controller = self.start()
+            controller.wait_until_enabled()
+            controller.send(target(0.1, 0.0, 0.0))
+            wait_for(lambda: self.commands.last > 0.0, "currents")
+            controller.end(number)
+            wait_for(self.commands.ended_with_zero, f"zero after signal {number}")
+
+    def test_names_a_wrong_parameter(self):
+        controller = self.start(gains={"proportional": -1.0})
+        self.assertIn("gains.proportional", controller.process.communicate(timeout=30)[1])
+
+
+if __name__ == "__main__":
+    rospy.init_node("orientation_controller_test")
+    rostest.rosrun(PACKAGE, "orientation_controller", OrientationController, sys.argv)

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""The free rotor of the emulated laboratory in the hands of its coils."""
+
+import math
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+import yaml
+from calibration_client import NAMESPACE, PACKAGE, wait_for
+from controller_client import LIMIT, Commands, Controller, parameters_of, target
+from driver_node import ERROR, OK
+from emulated_lab import EmulatedLab
+from geometry_msgs.msg import QuaternionStamped
+from spherical_actuator_calibration.msg import ActuatorParameters
+
+LOAD = [0.003, -0.004, 0.002]  # [N.m] of the shipped emulator
+
+
+class ReleasedRotor(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4)
+        cls.true_orientation = None
+        rospy.Subscriber(f"{NAMESPACE}/lab_emulator/true_orientation", QuaternionStamped, cls.keep)
+        cls.commands = Commands()
+        cls.lab.start()
+        with open(cls.lab.truth, encoding="utf-8") as file:
+            cls.truth = yaml.safe_load(file)["actuator"]
+        cls.controller = Controller(rotor={"unbalance": LOAD})
+        # The true ones, after those of the calibration node.
+        rospy.wait_for_message(f"{NAMESPACE}/parameters", ActuatorParameters)
+        cls.parameters = rospy.Publisher(f"{NAMESPACE}/parameters", ActuatorParameters, queue_size=1, latch=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.controller.close()
+        cls.lab.stop()
+        cls.folder.cleanup()
+
+    @classmethod
+    def keep(cls, message):
+        cls.true_orientation = message.quaternion
+
+    def distance(self, message):
+        """Angle [rad] of the true orientation to a target."""
+        a, b = self.true_orientation, message.quaternion
+        return 2.0 * math.acos(min(1.0, abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w)))
+
+    def test_turns_the_free_rotor_and_stops_when_it_falls(self):
+        self.controller.wait_until_enabled()
+        self.lab.fault("release_fixture", True)
+        goal = target(0.1, 0.05, 0.2)
+        self.controller.send(goal)
+        # By the nominal parameters it comes near; by the true ones, without a jerk, to it.
+        wait_for(lambda: self.distance(goal) < 0.15, "the neighbourhood of the target")
+        wait_for(lambda: self.parameters.get_num_connections() > 0, "the controller to listen")
+        self.parameters.publish(parameters_of(self.truth))
+        wait_for(lambda: self.distance(goal) < 2e-3, "the target")
+        self.assertLessEqual(self.commands.largest, LIMIT)
+        self.assertEqual(self.controller.level("control"), OK)
+
+        self.lab.fault("trip_amplifier", True)
+        self.controller.wait_for_level("control", ERROR)
+        self.assertIn("outside of the workspace", self.controller.message("control"))
+        wait_for(self.commands.ended_with_zero, "zero")
+        self.lab.fault("trip_amplifier", False)
+        self.lab.fault("release_fixture", False)
+        self.lab.move([0.0, 0.0, 0.0])
+        self.controller.wait_until_enabled()
+
+
+if __name__ == "__main__":
+    rospy.init_node("released_rotor_test")
+    rostest.rosrun(PACKAGE, "released_rotor", ReleasedRotor, sys.argv)
