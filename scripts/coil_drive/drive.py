@@ -6,10 +6,11 @@ from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import ActuatorParameters
 from std_srvs.srv import SetBool
 
-from .rotations import angle_between, quaternion_of, rotation_exp, rotation_of, rotor_orientation
+from .rotations import quaternion_of, rotation_exp, rotation_of, rotor_orientation
 
 TARGET_RATE = 100.0  # [Hz]
 STALE = 0.5  # [s]
+STARTING = 5.0  # [s] for the inputs of the controller
 PATIENCE = 30.0  # [s] for topics and services that must be there
 
 
@@ -53,9 +54,21 @@ class CoilDrive:
             if rospy.get_time() > end:
                 raise RuntimeError(f"{self._ns}/parameters and joint_states do not come: start the laboratory.")
             rospy.sleep(0.05)
-        self._set("orientation_controller/enable", True)
+        self._enable()
         if fixture:
             self._set(f"{fixture}/release_fixture", True)
+
+    def _enable(self):
+        """A controller that has just been started may still wait for its inputs."""
+        end = rospy.get_time() + STARTING
+        while True:
+            try:
+                self._set("orientation_controller/enable", True)
+                return
+            except RuntimeError:
+                if rospy.get_time() > end:
+                    raise
+            rospy.sleep(0.1)
 
     def stop(self, fixture):
         """The fixture takes the rotor, then the currents go to zero."""
@@ -113,8 +126,6 @@ class TrueOrientation:
     def _keep(self, message):
         self._message = message
 
-    def error(self, desired):
-        """Angle [rad] to a desired orientation; None without a message."""
-        if self._message is None:
-            return None
-        return angle_between(desired, rotation_of(self._message.quaternion))
+    def rotation(self):
+        """Rotor to stator; None without a message."""
+        return None if self._message is None else rotation_of(self._message.quaternion)

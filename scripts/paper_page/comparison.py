@@ -16,7 +16,7 @@ class Row:
 def position(values, value):
     """Share of values below one, as text."""
     below = sum(v < value for v in values)
-    return f"above {below} of {len(values)}"
+    return f"the paper's is larger than {below} of {len(values)}"
 
 
 def spread_text(spread, unit="", factor=1.0):
@@ -47,6 +47,34 @@ def row_at(rows, key, value):
     return next(row for row in rows if row[key] == value)
 
 
+def table_4(study, published):
+    """Axes by iteration, of the first seed: the paper's orientations are not known."""
+
+    def text(axes):
+        return "; ".join(" ".join(f"{value:.6f}" for value in axis) for axis in axes)
+
+    return [
+        Row(f"Table 4: Δω₁; Δω₂; Δω₃ after iteration {n}", text(axes), text(study["table_4"][n]), "seed 1")
+        for n, axes in sorted(published["table_4_identified_axes"].items())
+    ]
+
+
+def table_5(study, published):
+    poles, coil = published["table_5_poles"], published["table_5_coil_1"]
+    actual = {f"pole_{i}/polar": value for i, value in enumerate(poles["actual_theta"], 1)}
+    actual.update({f"pole_{i}/azimuth": value for i, value in enumerate(poles["actual_phi"], 1)})
+    actual.update(zip(("coil_1/polar", "coil_1/azimuth"), coil["actual"]))
+    return [
+        Row(
+            f"Table 5: {row['name']}, nominal {row['nominal']:.4f} [rad]",
+            f"{actual[row['name']]:.4f}",
+            f"{row['without_noise']:.4f} without noise; {row['with_noise']:.4f} ± {row['stddev']:.4f} with",
+            "seed 1, planned set",
+        )
+        for row in study["table_5"]
+    ]
+
+
 def level_1(study, published):
     ours = study["level_1"]
     initial = published["figure_7"]["epsilon_1_initial"]
@@ -75,6 +103,7 @@ def level_1(study, published):
                 "the chord method's",
             )
         )
+    rows += table_4(study, published)
     noisy = study["level_1_noise"]
     stable = published["figure_8"]["stable_from_orientations"]
     from_stable = [row["seeds_below_noise"] for row in noisy if row["orientations"] >= stable]
@@ -90,7 +119,7 @@ def level_1(study, published):
 
 
 def level_2(study, published):
-    rows = []
+    rows = table_5(study, published)
     for number in (1, 2):
         ours, paper = study[f"situation_{number}"], published[f"situation_{number}"]
         printed = paper["epsilon_2_plotted"][0]

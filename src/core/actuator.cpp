@@ -42,6 +42,10 @@ void validateAxis(const std::string& key, const PoleOrCoil& axis) {
 
 }  // namespace
 
+std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
+  return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
+}
+
 void validate(const Actuator& actuator) {
   validateJoints(actuator.joints);
   for (std::size_t i = 0; i < actuator.poles.size(); ++i) {

@@ -6,7 +6,6 @@
 
 #include "spherical_actuator_calibration/core/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/free_axis_calibration.hpp"
 #include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/core/noise_source.hpp"
 #include "spherical_actuator_calibration/core/pose_planner.hpp"
@@ -161,6 +160,7 @@ LevelTwoRun judge(const CalibrationModel& model,
   const Eigen::VectorXd nominal = model.space().coordinatesOf(options.nominal);
   LevelTwoRun run;
   run.errors = outcome.report.error_history;
+  run.estimates = outcome.report.estimates;
   run.observable = outcome.report.success;
   for (const ParameterEstimate& estimate : outcome.report.estimates) {
     run.observable = run.observable && estimate.observable;
@@ -216,6 +216,7 @@ std::vector<LevelOneRun> studyLevelOne(const PaperStudyOptions& options, std::si
     run.axis_deviation_chord = axisDeviations(chord, truth);
     run.offset_deviation_chord = offsetDeviations(chord, truth);
     run.errors_chord = chord.errors;
+    run.chord = chord.joints;
   }
   return runs;
 }

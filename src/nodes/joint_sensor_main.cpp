@@ -1,30 +1,21 @@
-#include <exception>
-
-#include <ros/console.h>
-#include <ros/init.h>
-
 #include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
 #include "spherical_actuator_calibration/ros/joint_sensor_node.hpp"
+#include "spherical_actuator_calibration/ros/node_main.hpp"
 #include "spherical_actuator_calibration/ros/termination.hpp"
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  ros::init(argc, argv, "joint_sensor", ros::init_options::NoSigintHandler);
-  sac::handleTerminationSignals();
-  // The last handle to go ends ROS, and with it the console that errors are told on.
-  const ros::NodeHandle node;
-  const ros::NodeHandle private_node("~");
-  try {
-    const sac::JointSensorOptions options = sac::loadJointSensorOptions(private_node);
-    const sac::JointSensorNode joint_sensor(node,
-                                            private_node,
-                                            sac::loadDescriptionParameter(node).actuator,
-                                            options,
-                                            sac::makeTransport(options.link));
-    sac::spinUntilTermination();
-  } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
-    return 1;
-  }
-  return 0;
+  return sac::runNode(
+      argc,
+      argv,
+      "joint_sensor",
+      [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+        const sac::JointSensorOptions options = sac::loadJointSensorOptions(private_node);
+        const sac::JointSensorNode joint_sensor(node,
+                                                private_node,
+                                                sac::loadDescriptionParameter(node).actuator,
+                                                options,
+                                                sac::makeTransport(options.link));
+        sac::spinUntilTermination();
+      });
 }

@@ -33,7 +33,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const CalibrationConfig& config)
     : frames_(config.frames),
       builder_(config.samples, modelledCoils(nominal)),
-      joint_reader_({nominal.joints[0].name, nominal.joints[1].name, nominal.joints[2].name}),
+      joint_reader_(jointNames(nominal)),
       joints_("joint_states", kLimits),
       orientations_("measured_orientation", kLimits),
       torques_("measured_torque", kLimits),

@@ -18,10 +18,6 @@ constexpr double kWarningPeriod = 2.0;      // [s]
 constexpr std::uint32_t kQueueLength = 100;
 constexpr double kMicro = 1e6;
 
-std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
-  return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
-}
-
 }  // namespace
 
 void CycleStatistics::add(double begin, double end) {

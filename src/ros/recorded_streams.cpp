@@ -23,7 +23,7 @@ RecordedStreams::RecordedStreams(const Actuator& nominal,
                                  const SampleBuilderOptions& options)
     : nominal_(nominal),
       frames_(frames),
-      joint_reader_({nominal.joints[0].name, nominal.joints[1].name, nominal.joints[2].name}),
+      joint_reader_(jointNames(nominal)),
       builder_(options, modelledCoils(nominal)) {}
 
 void RecordedStreams::add(const sensor_msgs::JointState& message) {

@@ -46,10 +46,6 @@ CalibrationScene startOf(const Actuator& nominal, const VisualizationOptions& op
   return scene;
 }
 
-std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
-  return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
-}
-
 }  // namespace
 
 VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_node) {

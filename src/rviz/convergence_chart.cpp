@@ -25,6 +25,7 @@ ConvergenceChart::ConvergenceChart(QWidget* parent)
   line_->setPointsVisible(true);
   iterations_->setLabelFormat("%d");
   iterations_->setTitleText("iteration");
+  iterations_->setTickType(QtCharts::QValueAxis::TicksDynamic);
   errors_->setLabelFormat("%.0e");
   errors_->setBase(10.0);
   // The chart owns line and axes.
@@ -54,7 +55,8 @@ void ConvergenceChart::setHistory(const QString& title, const std::vector<double
   }
   const auto last = static_cast<double>(std::max<std::size_t>(1, errors.size() - 1));
   iterations_->setRange(0.0, last);
-  iterations_->setTickCount(std::min(static_cast<int>(last), 8) + 1);
+  constexpr double kMostTicks = 10.0;
+  iterations_->setTickInterval(std::ceil(last / kMostTicks));
   errors_->setRange(std::pow(10.0, std::floor(std::log10(smallest))),
                     std::pow(10.0, std::floor(std::log10(largest)) + 1.0));
 }

@@ -265,15 +265,25 @@ std::vector<ParameterLine> PanelModel::parameters() const {
 
 std::vector<double> PanelModel::errorHistory() const {
   std::vector<double> errors = last_.error_history;
-  for (double& error : errors) {
-    error *= 1e3;
+  if (!isStandardized()) {
+    for (double& error : errors) {
+      error *= 1e3;
+    }
   }
   return errors;
+}
+
+// Orientations and torques together have no common unit.
+bool PanelModel::isStandardized() const {
+  return last_.cycle == CalibrationReport::REFINE && status_.orientation_samples > 0;
 }
 
 std::string PanelModel::historyTitle() const {
   if (last_.cycle.empty()) {
     return "No cycle has run";
+  }
+  if (isStandardized()) {
+    return cycleName(last_) + ": standardised residuals [1]";
   }
   const bool is_joint = last_.cycle == CalibrationReport::JOINT;
   return cycleName(last_) + (is_joint ? ": orientation error [mrad]" : ": torque error [mN·m]");

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -20,6 +19,7 @@
 #include "spherical_actuator_calibration/ros/recording_reader.hpp"
 #include "spherical_actuator_calibration/ros/report_page.hpp"
 #include "spherical_actuator_calibration/ros/utc_date.hpp"
+#include "tool_main.hpp"
 
 #include <unistd.h>
 
@@ -30,7 +30,6 @@ namespace fs = std::filesystem;
 
 constexpr int kComplete = 0;
 constexpr int kIncomplete = 1;
-constexpr int kUnusable = 2;
 
 /// Shows the share done on a terminal, and nothing anywhere else.
 std::function<void(double)> terminalProgress() {
@@ -79,8 +78,7 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.urdf = *options.urdf_path;
     files.urdf_template =
         options.urdf_template_path ? *options.urdf_template_path : shippedUrdf(nominal.name);
-    readJoints(files.urdf_template,
-               {nominal.joints[0].name, nominal.joints[1].name, nominal.joints[2].name});
+    readJoints(files.urdf_template, jointNames(nominal));
   }
   if (options.report_folder) {
     files.report = (fs::path(*options.report_folder) / "report.yaml").string();
@@ -229,12 +227,8 @@ int calibrateBag(const CalibrateBagOptions& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("calibrate_bag", [&] {
     const auto options = sac::parseCalibrateBagOptions(argc, argv, std::cout);
     return options ? sac::calibrateBag(*options) : sac::kComplete;
-  } catch (const std::exception& error) {
-    std::cout.flush();
-    std::fprintf(stderr, "calibrate_bag: %s\n", error.what());
-    return sac::kUnusable;
-  }
+  });
 }

@@ -1,6 +1,5 @@
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "spherical_actuator_calibration/core/session_plan_file.hpp"
 #include "spherical_actuator_calibration/core/study_file.hpp"
 #include "spherical_actuator_calibration/core/yaml_writer.hpp"
+#include "tool_main.hpp"
 
 #include <unistd.h>
 
@@ -25,9 +25,6 @@ namespace spherical_actuator_calibration {
 namespace {
 
 namespace po = boost::program_options;
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 constexpr char kIntroduction[] =
     "Usage: calibration_study --actuator A.yaml --output STUDY.yaml [options]\n"
@@ -278,15 +275,11 @@ void study(const Options& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("calibration_study", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {
       sac::study(*options);
     }
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "calibration_study: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

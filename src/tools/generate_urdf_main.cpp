@@ -1,20 +1,14 @@
-#include <cstdio>
-#include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
 
-#include <boost/program_options.hpp>
-
 #include "spherical_actuator_calibration/core/atomic_file.hpp"
 #include "spherical_actuator_calibration/core/description_file.hpp"
 #include "spherical_actuator_calibration/core/urdf_generator.hpp"
+#include "tool_main.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 struct Options {
   std::string actuator_path;
@@ -28,7 +22,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   namespace po = boost::program_options;
   Options options;
   po::options_description known("Options");
-  known.add_options()("help,h", "print this help and exit")(
+  known.add_options()(
       "actuator", po::value(&options.actuator_path)->required(), "actuator description (YAML)")(
       "dimensions",
       po::value(&options.dimensions_path),
@@ -38,16 +32,14 @@ std::optional<Options> parseOptions(int argc, char** argv) {
       "robot description to write (URDF); without it, the standard output")(
       "frame-prefix", po::value(&options.frame_prefix), "before the names of all links")(
       "force", po::bool_switch(&options.force), "replace the output if it exists");
-  po::variables_map given;
-  po::store(po::parse_command_line(argc, argv, known), given);
-  if (given.count("help") > 0) {
-    std::cout << "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
-                 "Writes the robot description of an actuator, with any number of poles and "
-                 "coils.\n\n"
-              << known;
+  if (!parseCommandLine(argc,
+                        argv,
+                        known,
+                        "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
+                        "Writes the robot description of an actuator, with any number of poles and "
+                        "coils.\n")) {
     return std::nullopt;
   }
-  po::notify(given);
   return options;
 }
 
@@ -71,14 +63,11 @@ void writeUrdf(const Options& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("generate_urdf", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {
       sac::writeUrdf(*options);
     }
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "generate_urdf: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <functional>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <boost/program_options.hpp>
 
 #include "spherical_actuator_calibration/core/atomic_file.hpp"
 #include "spherical_actuator_calibration/core/description_file.hpp"
@@ -16,12 +12,10 @@
 #include "spherical_actuator_calibration/core/paper_study.hpp"
 #include "spherical_actuator_calibration/core/text_format.hpp"
 #include "spherical_actuator_calibration/core/yaml_writer.hpp"
+#include "tool_main.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 /// Gravity torque that loads the rotor beside its centre [N·m] (doc/method.md, Dynamics).
 const Eigen::Vector3d& load() {
@@ -31,6 +25,7 @@ const Eigen::Vector3d& load() {
 constexpr std::uint64_t kSessions = 20;  // of the study of torque errors
 constexpr std::size_t kWorkspacePoses = 500;
 constexpr int kDrawnPoint = 20;  // every so many points of a closed loop are written
+constexpr std::size_t kTableIterations = 4;
 constexpr double kProbabilities[] = {0.0, 0.05, 0.5, 0.95, 1.0};
 
 struct Options {
@@ -45,7 +40,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   namespace po = boost::program_options;
   Options options;
   po::options_description known("Options");
-  known.add_options()("help,h", "print this help and exit")(
+  known.add_options()(
       "actuator", po::value(&options.nominal_path)->required(), "the actuator as drawn (YAML)")(
       "truth", po::value(&options.truth_path)->required(), "the actuator as made (YAML)")(
       "output", po::value(&options.output_path)->required(), "results to write (YAML)")(
@@ -53,17 +48,15 @@ std::optional<Options> parseOptions(int argc, char** argv) {
       po::value(&options.seeds)->default_value(options.seeds),
       "random sets of orientations per simulation")(
       "force", po::bool_switch(&options.force), "replace the output if it exists");
-  po::variables_map given;
-  po::store(po::parse_command_line(argc, argv, known), given);
-  if (given.count("help") > 0) {
-    std::cout
-        << "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
-           "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
-           "scripts/paper_study draws tables and figures of it.\n\n"
-        << known;
+  if (!parseCommandLine(
+          argc,
+          argv,
+          known,
+          "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
+          "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
+          "scripts/paper_study draws tables and figures of it.\n")) {
     return std::nullopt;
   }
-  po::notify(given);
   return options;
 }
 
@@ -147,6 +140,7 @@ class Study {
     text_ += "seeds: " + std::to_string(options_.seeds) + "\n";
     levelOne();
     levelOneNoise();
+    tableFive();
     situation("situation_1", Situation::kPolesAndCoil, {10, 15, 20, 25, 30, 40}, 30);
     situation("situation_2", Situation::kCoil, {2, 3, 4, 6, 8, 12, 20}, 4);
     control();
@@ -175,6 +169,46 @@ class Study {
         "\n";
     text_ += "  offset_deviation_chord: " +
              spreadPerIteration(runs, &LevelOneRun::offset_deviation_chord) + "\n";
+    tableFour(runs.front());
+  }
+
+  /// Differences of the identified axes from nominal, by iteration, for the first seed.
+  void tableFour(const LevelOneRun& run) {
+    const Eigen::Matrix3d nominal = jointGeometry(options_.nominal.joints).axes;
+    text_ += "table_4:\n";
+    for (std::size_t n = 1; n <= kTableIterations; ++n) {
+      std::vector<std::string> axes;
+      for (Eigen::Index k = 0; k < nominal.cols(); ++k) {
+        const Eigen::Vector3d difference = run.chord[n].axes.col(k) - nominal.col(k);
+        axes.push_back(format("[%.6f, %.6f, %.6f]", difference[0], difference[1], difference[2]));
+      }
+      text_ += "  " + std::to_string(n) + ": " + yamlList(axes) + "\n";
+    }
+  }
+
+  /// Identified angles of poles and coil 1, without and with noise, for the first seed.
+  void tableFive() {
+    PaperStudyOptions one = options_;
+    one.seeds = 1;
+    constexpr std::size_t kMeasurements = 30;
+    const auto estimates = [&](bool noise) {
+      return studyLevelTwo(
+                 one, Situation::kPolesAndCoil, Orientations::kPlanned, kMeasurements, noise)
+          .front()
+          .estimates;
+    };
+    const std::vector<ParameterEstimate> exact = estimates(false);
+    const std::vector<ParameterEstimate> noisy = estimates(true);
+    text_ += "table_5:\n";
+    for (std::size_t p = 0; p < exact.size(); ++p) {
+      YamlLine line;
+      line.add("name", yamlText(exact[p].name));
+      line.add("nominal", format("%.6f", exact[p].nominal));
+      line.add("without_noise", format("%.6f", exact[p].value));
+      line.add("with_noise", format("%.6f", noisy[p].value));
+      line.add("stddev", format("%.6f", noisy[p].stddev));
+      text_ += "  - " + line.text() + "\n";
+    }
   }
 
   void levelOneNoise() {
@@ -307,28 +341,27 @@ class Study {
   std::string text_;
 };
 
+void writeStudy(const Options& options) {
+  PaperStudyOptions study;
+  study.nominal = loadActuator(options.nominal_path);
+  study.truth = loadActuator(options.truth_path);
+  study.seeds = options.seeds;
+  validate(study);
+  writeFileAtomically(options.output_path,
+                      Study(study).text(),
+                      options.force ? OverwritePolicy::kReplace : OverwritePolicy::kRefuse);
+}
+
 }  // namespace
 }  // namespace spherical_actuator_calibration
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("paper_study", [&] {
     const auto options = sac::parseOptions(argc, argv);
-    if (!options) {
-      return sac::kSuccess;
+    if (options) {
+      sac::writeStudy(*options);
     }
-    sac::PaperStudyOptions study;
-    study.nominal = sac::loadActuator(options->nominal_path);
-    study.truth = sac::loadActuator(options->truth_path);
-    study.seeds = options->seeds;
-    sac::validate(study);
-    sac::writeFileAtomically(
-        options->output_path,
-        sac::Study(study).text(),
-        options->force ? sac::OverwritePolicy::kReplace : sac::OverwritePolicy::kRefuse);
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "paper_study: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -15,12 +14,10 @@
 #include "spherical_actuator_calibration/core/sample_file.hpp"
 #include "spherical_actuator_calibration/core/session_plan_file.hpp"
 #include "spherical_actuator_calibration/ros/recording_reader.hpp"
+#include "tool_main.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 /// Samples measured already, of all files.
 std::vector<Sample> heldSamples(const PlanSessionOptions& options,
@@ -146,15 +143,11 @@ void writePlan(const PlanSessionOptions& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("plan_session", [&] {
     const auto options = sac::parsePlanSessionOptions(argc, argv, std::cout);
     if (options) {
       sac::writePlan(*options);
     }
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "plan_session: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

@@ -1,7 +1,5 @@
 #include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <string>
 
@@ -12,12 +10,10 @@
 #include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/sample_file.hpp"
 #include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+#include "tool_main.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 /// Stamp of the first sample, and the time from one to the next [s]: measurements that were written
 /// down have no clock, and a recording needs one that grows.
@@ -36,21 +32,20 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   namespace po = boost::program_options;
   Options options;
   po::options_description known("Options");
-  known.add_options()("help,h", "print this help and exit")(
+  known.add_options()(
       "actuator", po::value(&options.actuator_path)->required(), "actuator description (YAML)")(
       "samples", po::value(&options.samples_path)->required(), "measured samples (YAML)")(
       "output", po::value(&options.output_path)->required(), "recording to write (bag)")(
       "ns", po::value(&options.ns)->default_value("/actuator"), "namespace of the topics")(
       "force", po::bool_switch(&options.force), "replace the recording if it exists");
-  po::variables_map given;
-  po::store(po::parse_command_line(argc, argv, known), given);
-  if (given.count("help") > 0) {
-    std::cout << "Usage: samples_to_bag --actuator A.yaml --samples S.yaml --output OUT.bag\n\n"
-                 "Writes measured samples as the messages that calibrate_bag reads.\n\n"
-              << known;
+  if (!parseCommandLine(
+          argc,
+          argv,
+          known,
+          "Usage: samples_to_bag --actuator A.yaml --samples S.yaml --output OUT.bag\n\n"
+          "Writes measured samples as the messages that calibrate_bag reads.\n")) {
     return std::nullopt;
   }
-  po::notify(given);
   return options;
 }
 
@@ -86,14 +81,11 @@ void writeBag(const Options& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("samples_to_bag", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {
       sac::writeBag(*options);
     }
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "samples_to_bag: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -12,14 +11,12 @@
 #include "spherical_actuator_calibration/core/session_plan_file.hpp"
 #include "spherical_actuator_calibration/core/session_simulator.hpp"
 #include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
+#include "tool_main.hpp"
 
 #include <unistd.h>
 
 namespace spherical_actuator_calibration {
 namespace {
-
-constexpr int kSuccess = 0;
-constexpr int kUnusable = 2;
 
 /// Shows the share done on a terminal, and nothing anywhere else.
 std::function<void(double)> terminalProgress() {
@@ -93,14 +90,11 @@ void simulateRecording(const SimulateRecordingOptions& options) {
 
 int main(int argc, char** argv) {
   namespace sac = spherical_actuator_calibration;
-  try {
+  return sac::runTool("simulate_recording", [&] {
     const auto options = sac::parseSimulateRecordingOptions(argc, argv, std::cout);
     if (options) {
       sac::simulateRecording(*options);
     }
-    return sac::kSuccess;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "simulate_recording: %s\n", error.what());
-    return sac::kUnusable;
-  }
+    return sac::kToolSuccess;
+  });
 }

@@ -175,5 +175,15 @@ TEST(PanelModel, AFailedCycleShowsItsHistoryButNoParameters) {
   EXPECT_EQ(panel.historyTitle(), "Refinement: torque error [mN·m]");
 }
 
+TEST(PanelModel, ARefinementOfOrientationsAndTorquesHasNoUnit) {
+  PanelModel panel = paperPanel();
+  CalibrationStatus status;
+  status.orientation_samples = 3;
+  panel.receive(status);
+  panel.receive(refinementOf(3e-4, 1e-4));
+  EXPECT_EQ(panel.errorHistory(), (std::vector<double>{0.02, 0.001}));
+  EXPECT_EQ(panel.historyTitle(), "Refinement: standardised residuals [1]");
+}
+
 }  // namespace
 }  // namespace spherical_actuator_calibration

@@ -59,6 +59,9 @@ struct Actuator {
   }
 };
 
+/// Names of the joints, from the stator to the rotor.
+std::array<std::string, kJoints> jointNames(const Actuator& actuator);
+
 /// Throws ConfigError, naming the key, when a value is not finite or out of range, an axis is not
 /// unit to 1e-3, or two joints share a name.
 void validate(const Actuator& actuator);

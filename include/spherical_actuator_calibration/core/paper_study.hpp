@@ -2,11 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "spherical_actuator_calibration/core/actuator.hpp"
+#include "spherical_actuator_calibration/core/calibration_report.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
+#include "spherical_actuator_calibration/core/free_axis_calibration.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -36,6 +37,7 @@ struct LevelOneRun {
   std::vector<double> axis_deviation_chord;
   std::vector<double> offset_deviation_chord;
   std::vector<double> errors_chord;  ///< ε₁ [rad]
+  std::vector<FreeAxes> chord;       ///< parameters before the first and after each iteration
 };
 std::vector<LevelOneRun> studyLevelOne(const PaperStudyOptions& options,
                                        std::size_t orientations = 5);
@@ -64,6 +66,8 @@ struct LevelTwoRun {
   std::vector<double> errors;  ///< ε₂ [N·m] before the first and after each iteration
   double largest_error = 0.0;  ///< of an identified parameter [rad]
   double largest_share = 0.0;  ///< of an identified parameter, over its assigned error
+  std::vector<ParameterEstimate>
+      estimates;  ///< of all parameters that the cycle was free to change
 };
 /// `noise`: with that of the options, or none.
 std::vector<LevelTwoRun> studyLevelTwo(const PaperStudyOptions& options,

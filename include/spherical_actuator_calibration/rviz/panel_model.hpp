@@ -78,7 +78,7 @@ class PanelModel {
   std::string verdict() const;
   /// Every parameter that a cycle was free to change since the nominal ones, by the last that was.
   std::vector<ParameterLine> parameters() const;
-  /// Error before the first and after each iteration of the last cycle: [mrad] or [mN·m].
+  /// Error before the first and after each iteration of the last cycle, in the unit of the title.
   std::vector<double> errorHistory() const;
   /// Name of the last cycle, and of its error with unit.
   std::string historyTitle() const;
@@ -89,6 +89,7 @@ class PanelModel {
     ros::WallTime at;
   };
 
+  bool isStandardized() const;
   std::vector<CoverageBar> poleBars() const;
   std::vector<CoverageBar> coilBars() const;
 

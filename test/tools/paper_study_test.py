@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""The paper study as a reader meets it: results, tables beside the paper's values, every figure, one page."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import yaml
+
+PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+SEEDS = 12
+FIGURES = 8
+SMALLEST_PICTURE = 5000  # [bytes]
+
+
+class PaperStudy(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.results = pathlib.Path(cls.folder.name) / "study.yaml"
+        cls.page = pathlib.Path(cls.folder.name) / "page"
+        cls.run_study("--output", str(cls.results))
+        subprocess.run(
+            [
+                SOURCE / "scripts/render_paper_study",
+                cls.results,
+                SOURCE / "config/paper/published_values.yaml",
+                cls.page,
+            ],
+            check=True,
+        )
+        cls.study = yaml.safe_load(cls.results.read_text())
+        cls.tables = (cls.page / "tables.txt").read_text()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def run_study(cls, *arguments, check=True):
+        return subprocess.run(
+            [
+                PROGRAMS / "paper_study",
+                "--actuator",
+                SOURCE / "config/pm_spherical_8x24.yaml",
+                "--truth",
+                SOURCE / "config/paper/true_actuator.yaml",
+                "--seeds",
+                str(SEEDS),
+                *arguments,
+            ],
+            check=check,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def test_figure_14_before_and_after(self):
+        errors = {(run["model"], run["loaded"]): run for run in self.study["control"]}
+        self.assertAlmostEqual(errors["nominal", False]["final_error"], 0.060, delta=0.002)
+        self.assertLess(errors["both_levels", False]["largest_error"], 1e-4)
+        self.assertAlmostEqual(errors["nominal", True]["largest_error"], 0.090, delta=0.003)
+        self.assertAlmostEqual(errors["level_1", True]["largest_error"], 0.018, delta=0.003)
+        self.assertLess(errors["both_levels", True]["largest_error"], 1e-4)
+
+    def test_tables_stand_beside_the_papers_values(self):
+        for part in (
+            "Table 4: Δω₁; Δω₂; Δω₃ after iteration 4",
+            "-0.000620 -0.015700 0.031410",
+            "Table 5: pole_8/azimuth",
+            "Figure 7: iterations to full recovery",
+            "Situation 2: iterations",
+            "Figure 14: rotation error, nominal",
+        ):
+            self.assertIn(part, self.tables)
+
+    def test_every_figure_is_drawn_and_in_the_page(self):
+        pictures = sorted(self.page.glob("figure_*.png"))
+        self.assertEqual(len(pictures), FIGURES)
+        self.assertEqual(len(list(self.page.glob("figure_*.svg"))), FIGURES)
+        for picture in pictures:
+            self.assertGreater(picture.stat().st_size, SMALLEST_PICTURE, picture.name)
+        page = (self.page / "paper_study.html").read_text()
+        self.assertEqual(page.count("<img src=\"data:image/png;base64,"), FIGURES)
+        self.assertNotIn("http", page)
+
+    def test_the_same_seeds_give_the_same_bytes(self):
+        again = self.results.with_name("again.yaml")
+        self.run_study("--output", str(again))
+        self.assertEqual(again.read_bytes(), self.results.read_bytes())
+
+    def test_refuses_to_overwrite(self):
+        answer = self.run_study("--output", str(self.results), check=False)
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("study.yaml", answer.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
