@@ -34,9 +34,8 @@ class FreeAxisCalibration : public ::testing::Test {
 TEST_F(FreeAxisCalibration, UnitAxesTurnAsThoseOfTheJoint) {
   const Actuator truth = scenarios::paperTruth();
   const Eigen::Vector3d q(0.3, -0.2, 1.1);
-  EXPECT_LT(
-      (rotorOrientation(truth_, q) - rotorOrientation(jointGeometry(truth.joints), q)).norm(),
-      1e-14);
+  EXPECT_LT((rotorOrientation(truth_, q) - rotorOrientation(jointGeometry(truth.joints), q)).norm(),
+            1e-14);
 }
 
 TEST_F(FreeAxisCalibration, GaussNewtonConvergesQuadratically) {

@@ -75,8 +75,8 @@ TEST(PaperStudy, TwoOrientationsAreTooFew) {
 
 TEST(PaperStudy, SituationOneRecoversWithinEightIterations) {
   int observable = 0;
-  for (const LevelTwoRun& run : studyLevelTwo(
-           optionsFor(30), Situation::kPolesAndCoil, Orientations::kRandom, 30, false)) {
+  for (const LevelTwoRun& run :
+       studyLevelTwo(optionsFor(30), Situation::kPolesAndCoil, Orientations::kRandom, 30, false)) {
     if (!run.observable) {
       continue;
     }

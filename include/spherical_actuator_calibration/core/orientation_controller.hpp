@@ -47,8 +47,8 @@ class OrientationController {
   OrientationController(const Actuator& design, const OrientationControllerOptions& options);
 
   /// Parameters in force from now on; as many poles and coils as the design. While active, the
-  /// torque on the rotor goes on without a jump, and the desired motion returns to the target within
-  /// a second. Throws ConfigError when they are not valid.
+  /// torque on the rotor goes on without a jump, and the desired motion returns to the target
+  /// within a second. Throws ConfigError when they are not valid.
   void setParameters(const Actuator& parameters);
   /// A reading of the joint sensors. Those that are not newer than the last change nothing. Throws
   /// DataError when it is not finite.
