@@ -217,8 +217,7 @@ std::vector<ParameterEstimate> CalibrationSession::parameters() const {
 }
 
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
-  const HeldOutValidation result =
-      validateHeldOut(model_, samples_, state_.belief, config_.estimation);
+  const HeldOutValidation result = validateHeldOut(model_, samples_, state_, config_.estimation);
   return result.samples == 0 ? std::nullopt : std::optional(result);
 }
 

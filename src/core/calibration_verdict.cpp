@@ -58,8 +58,7 @@ class Judge {
 
  private:
   bool isContradicted() const {
-    return validation_ && !validation_->residuals.empty() &&
-           validation_->probability < kLeastProbability;
+    return validation_ && validation_->hasVerdict() && validation_->probability < kLeastProbability;
   }
 
   CalibrationGrade grade() const {
@@ -87,8 +86,8 @@ class Judge {
         break;
     }
     return "The calibration is good to use: " + identified() +
-           (validation_ && !validation_->residuals.empty() ? ", and held-out samples agree" : "") +
-           ". " + expectedErrors();
+           (validation_ && validation_->hasVerdict() ? ", and held-out samples agree" : "") + ". " +
+           expectedErrors();
   }
 
   std::string identified() const {
@@ -256,7 +255,7 @@ class Judge {
   }
 
   void addValidation(std::vector<std::string>& steps) const {
-    if (last_success_ != nullptr && (!validation_ || validation_->residuals.empty())) {
+    if (last_success_ != nullptr && (!validation_ || !validation_->hasVerdict())) {
       steps.emplace_back(
           "Hold out samples, so that the calibration is judged by what it has not seen: capture a "
           "few poses for validation, or set validation.hold_out_every.");

@@ -83,6 +83,21 @@ SampleResidual residualOf(const Sample& sample,
   return result;
 }
 
+/// Whether the test counts an observation: not with coils that nothing has identified.
+bool isJudged(const Observation& observation,
+              const Sample& sample,
+              const ParameterSpace& space,
+              const std::vector<bool>& identified,
+              double current_threshold) {
+  if (observation.quantity == Quantity::kOrientation) {
+    return true;
+  }
+  const std::vector<Excitation> excitations = excitedCoils(sample, current_threshold);
+  return std::all_of(excitations.begin(), excitations.end(), [&](const Excitation& excitation) {
+    return identified[static_cast<std::size_t>(space.coil(excitation.coil))];
+  });
+}
+
 double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
@@ -91,8 +106,9 @@ double rootMean(double sum, std::size_t count) {
 
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
-                                  const ParameterBelief& belief,
+                                  const CalibrationState& state,
                                   const EstimationOptions& options) {
+  const ParameterBelief& belief = state.belief;
   const EstimationProblem problem = heldOutProblem(model, samples, belief, options);
   const ObservationEvaluator evaluator(problem, options);
   const std::vector<bool> all_held(static_cast<std::size_t>(model.space().size()), true);
@@ -110,7 +126,15 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     const auto [sample, quantity] = problem.observations[n];
     evaluator.linearize(n, belief.x, linear);
-    misfit.add(linear, evaluator.noise(n, linear));
+    if (isJudged(problem.observations[n],
+                 samples[sample],
+                 model.space(),
+                 state.identified,
+                 options.current_threshold)) {
+      misfit.add(linear, evaluator.noise(n, linear));
+    } else {
+      ++result.unjudged_torques;
+    }
     result.residuals.push_back(residualOf(
         samples[sample], quantity, linear.residual, evaluator.covariance(n, linear, all_held)));
     const bool is_orientation = quantity == Quantity::kOrientation;
@@ -119,7 +143,11 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   }
   result.orientation_rms = rootMean(orientation_sum, result.orientations);
   result.torque_rms = rootMean(torque_sum, result.torques);
-  const auto values = 3.0 * static_cast<double>(problem.observations.size());
+  const std::size_t judged = problem.observations.size() - result.unjudged_torques;
+  if (judged == 0) {
+    return result;
+  }
+  const auto values = 3.0 * static_cast<double>(judged);
   const double chi_square = std::max(misfit.chiSquare(belief.covariance), 0.0);
   result.reduced_chi_square = chi_square / values;
   const boost::math::chi_squared_distribution<double> distribution(values);
@@ -128,7 +156,7 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
 }
 
 std::string verdict(const HeldOutValidation& validation) {
-  if (validation.residuals.empty()) {
+  if (!validation.hasVerdict()) {
     return "No held-out sample can judge: capture some poses with validation set.";
   }
   std::string text = format("%zu held-out samples:", validation.samples);
@@ -137,6 +165,10 @@ std::string verdict(const HeldOutValidation& validation) {
   }
   if (validation.torques > 0) {
     text += format(" torque rms %.3g mN.m,", 1e3 * validation.torque_rms);
+  }
+  if (validation.unjudged_torques > 0) {
+    text += format(" %zu torques of coils that are not calibrated are not judged,",
+                   validation.unjudged_torques);
   }
   text += format(" reduced chi-square %.3g (probability %.2g): ",
                  validation.reduced_chi_square,

@@ -51,4 +51,9 @@ MassProperties rotorMass(const Actuator& actuator, const ActuatorDimensions& d) 
   return rotor;
 }
 
+Eigen::Matrix3d rotorInertia(const Actuator& actuator, const ActuatorDimensions& dimensions) {
+  const MassProperties rotor = rotorMass(actuator, dimensions);
+  return rotor.inertia + pointInertia(rotor.mass, rotor.centre);
+}
+
 }  // namespace spherical_actuator_calibration

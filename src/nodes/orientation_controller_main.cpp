@@ -9,11 +9,12 @@ int main(int argc, char** argv) {
                       argv,
                       "orientation_controller",
                       [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+                        const sac::Actuator design = sac::loadDescriptionParameter(node).actuator;
                         const sac::OrientationControllerNode controller(
                             node,
                             private_node,
-                            sac::loadDescriptionParameter(node).actuator,
-                            sac::loadOrientationControllerOptions(private_node));
+                            design,
+                            sac::loadOrientationControllerOptions(private_node, design));
                         sac::spinUntilTermination();
                       });
 }

@@ -231,7 +231,7 @@ CalibrationReport reportToRos(const CycleReport& report) {
 CalibrationReport validationToRos(const HeldOutValidation& validation) {
   CalibrationReport message;
   message.cycle = "validate";
-  message.success = static_cast<std::uint8_t>(!validation.residuals.empty() &&
+  message.success = static_cast<std::uint8_t>(validation.hasVerdict() &&
                                               validation.probability >= kLeastProbability);
   message.message = verdict(validation);
   message.samples_used = static_cast<std::uint32_t>(validation.samples);

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/orientation_controller_options.hpp"
 
+#include "spherical_actuator_calibration/core/rotor_mass.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/parameter_text.hpp"
 
@@ -33,7 +34,7 @@ void readReference(const YamlMap& map, OrientationReferenceOptions& reference) {
 }  // namespace
 
 OrientationControllerNodeOptions loadOrientationControllerOptions(
-    const ros::NodeHandle& private_node) {
+    const ros::NodeHandle& private_node, const Actuator& design) {
   const YamlMap map =
       YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
   OrientationControllerNodeOptions options;
@@ -45,6 +46,7 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
   if (map.has("frames")) {
     options.stator_frame = map.map("frames").nonEmptyText("stator");
   }
+  controller.rotor.inertia = rotorInertia(design, readDimensions(map));
   if (map.has("rotor")) {
     readRotor(map.map("rotor"), controller.rotor);
   }

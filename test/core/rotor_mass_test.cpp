@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/core/rotor_dynamics.hpp"
 #include "support/scenarios.hpp"
 
 namespace spherical_actuator_calibration {
@@ -85,6 +86,17 @@ TEST(RotorMass, AgreesWithASumOverSmallPieces) {
   EXPECT_LT((rotor.centre - expected.centre).norm(), 1e-9);
   EXPECT_GT(rotor.centre.norm(), 1e-3);
   EXPECT_LT((rotor.inertia - expected.inertia).norm(), 1e-3 * expected.inertia.norm());
+}
+
+TEST(RotorMass, InertiaAboutTheCentreIsThatOfThePapersDynamics) {
+  const Eigen::Matrix3d inertia = rotorInertia(scenarios::paperNominal(), {});
+  EXPECT_LT((inertia - RigidRotor().inertia).cwiseAbs().maxCoeff(), 5e-5);
+  // One magnet less: the centre of gravity leaves the centre, and the inertia about it is less.
+  Actuator lame = scenarios::paperNominal();
+  lame.poles.pop_back();
+  const MassProperties rotor = rotorMass(lame, {});
+  EXPECT_GT(rotor.centre.norm(), 1e-3);
+  EXPECT_GT(rotorInertia(lame, {})(2, 2), rotor.inertia(2, 2));
 }
 
 }  // namespace

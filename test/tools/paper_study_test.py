@@ -12,7 +12,7 @@ import yaml
 PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 SEEDS = 12
-FIGURES = 8
+FIGURES = 10
 SMALLEST_PICTURE = 5000  # [bytes]
 
 
@@ -83,7 +83,7 @@ class PaperStudy(unittest.TestCase):
         for picture in pictures:
             self.assertGreater(picture.stat().st_size, SMALLEST_PICTURE, picture.name)
         page = (self.page / "paper_study.html").read_text()
-        self.assertEqual(page.count("<img src=\"data:image/png;base64,"), FIGURES)
+        self.assertEqual(page.count('<img src="data:image/png;base64,'), FIGURES)
         self.assertNotIn("http", page)
 
     def test_the_same_seeds_give_the_same_bytes(self):

@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/core/calibration_model.hpp"
 #include "spherical_actuator_calibration/core/calibration_report.hpp"
+#include "spherical_actuator_calibration/core/calibration_state.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
 #include "spherical_actuator_calibration/core/sample.hpp"
 
@@ -18,6 +19,8 @@ struct HeldOutValidation {
   double orientation_rms = 0.0;  ///< root mean square norm of the rotation error [rad]
   std::size_t torques = 0;
   double torque_rms = 0.0;  ///< root mean square norm of the torque error [N·m]
+  /// Torques of coils that are not identified: too far from linear in tolerances to be judged.
+  std::size_t unjudged_torques = 0;
   /// Squared Mahalanobis norm of all misfits over their number, with the noise of the samples and
   /// the common uncertainty of the parameters: 1 on average when both are as stated.
   double reduced_chi_square = 0.0;
@@ -25,14 +28,18 @@ struct HeldOutValidation {
   double probability = 1.0;
   /// One per observation; `standardized` with its own covariance, `rejected` never.
   std::vector<SampleResidual> residuals;
+
+  /// Whether any observation took part in the test.
+  bool hasVerdict() const { return residuals.size() > unjudged_torques; }
 };
 
-/// Judges the held-out samples under `belief`. Orientations always count, torques where some coil
-/// is excited and the model has torque. Misfits share the uncertainty of the parameters; the test
-/// accounts for it. Throws DataError on malformed samples.
+/// Judges the held-out samples under a state. Orientations always count, torques where some coil
+/// is excited and the model has torque; those of coils that are not identified have a residual but
+/// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
+/// Throws DataError on malformed samples.
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
-                                  const ParameterBelief& belief,
+                                  const CalibrationState& state,
                                   const EstimationOptions& options);
 
 /// Smaller probabilities mean that the held-out samples contradict the parameters.

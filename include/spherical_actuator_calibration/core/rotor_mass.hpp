@@ -17,4 +17,7 @@ struct MassProperties {
 /// The rotor of iron hoop and magnets, of homogeneous materials; what carries them weighs nothing.
 MassProperties rotorMass(const Actuator& actuator, const ActuatorDimensions& dimensions);
 
+/// Inertia of the same rotor about its centre of rotation, rotor frame [kg·m²].
+Eigen::Matrix3d rotorInertia(const Actuator& actuator, const ActuatorDimensions& dimensions);
+
 }  // namespace spherical_actuator_calibration

@@ -15,9 +15,11 @@ struct OrientationControllerNodeOptions {
   std::string stator_frame = "stator";  ///< that targets must be in
 };
 
-/// Reads the private parameters of a node (config/orientation_controller.yaml). Throws ConfigError
-/// that names the key for anything unknown, of the wrong type or out of range.
+/// Reads the private parameters of a node (config/orientation_controller.yaml, and the map
+/// `dimensions` of config/actuator_dimensions.yaml). Where they have no inertia, it is that of the
+/// described rotor of these dimensions. Throws ConfigError that names the key for anything unknown,
+/// of the wrong type or out of range.
 OrientationControllerNodeOptions loadOrientationControllerOptions(
-    const ros::NodeHandle& private_node);
+    const ros::NodeHandle& private_node, const Actuator& design);
 
 }  // namespace spherical_actuator_calibration
