@@ -2,6 +2,7 @@
 """The free rotor of the emulated laboratory in the hands of its coils."""
 
 import math
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -9,13 +10,15 @@ import unittest
 import rospy
 import rostest
 import yaml
-from calibration_client import NAMESPACE, PACKAGE, wait_for
+from calibration_client import NAMESPACE, PACKAGE, program, wait_for
 from controller_client import LIMIT, Commands, Controller, parameters_of, target
 from driver_node import ERROR, OK
 from emulated_lab import EmulatedLab
 from geometry_msgs.msg import QuaternionStamped
-from spherical_actuator_calibration.msg import ActuatorParameters
+from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationReport
 
+INTERVALS = 5.0  # standard deviations that hold every parameter
+LEVEL_1_TIMEOUT = 150.0  # [s]
 LOAD = [0.003, -0.004, 0.002]  # [N.m] of the shipped emulator
 
 
@@ -49,6 +52,23 @@ class ReleasedRotor(unittest.TestCase):
         """Angle [rad] of the true orientation to a target."""
         a, b = self.true_orientation, message.quaternion
         return 2.0 * math.acos(min(1.0, abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w)))
+
+    def test_level_1_by_its_own_coils(self):
+        reports = []
+        rospy.Subscriber(f"{NAMESPACE}/report", CalibrationReport, reports.append)
+        subprocess.run(
+            [program("level_1_by_coils"), "--fixture", "lab_emulator", "--poses", "5", "--dwell", "0.3"],
+            check=True,
+            timeout=LEVEL_1_TIMEOUT,
+        )
+        report = wait_for(lambda: reports and reports[-1], "the report")
+        self.assertTrue(report.success)
+        self.assertEqual(report.cycle, "joint")
+        values = {estimate.name: estimate for estimate in report.estimates}
+        for joint in self.truth["joints"]:
+            estimate = values[joint["name"] + "/offset"]
+            self.assertTrue(estimate.observable)
+            self.assertLess(abs(estimate.value - joint["offset"]), INTERVALS * estimate.stddev)
 
     def test_turns_the_free_rotor_and_stops_when_it_falls(self):
         self.controller.wait_until_enabled()
