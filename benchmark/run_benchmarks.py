@@ -29,6 +29,8 @@ AUTODIFF_AIM = 4.0
 READING_AIM = 0.7
 NUMPY_AIM = 50.0
 SCIPY_AIM = 100.0
+CONTROL_PERIOD = 1e-3  # [s]
+CONTROL_AIM = 20.0  # cycles in a period: 50 microseconds each
 REFINEMENT_SAMPLES = 132
 SAME_RESULT = 1e-10  # [rad]
 SAME_REFINEMENT = 1e-9  # [rad]
@@ -160,6 +162,13 @@ def compare_with_scipy(times, scenario, report):
     report.figure("    100000 samples take so many times as long as 10000", f"{ratio:.1f}")
 
 
+def list_control(times, report):
+    report.heading("One cycle of the orientation controller, 8 poles and 24 coils, against its period of 1 ms")
+    for name in ("within_limits", "at_the_limits"):
+        cycle = times[f"controlCycle/{name}"]
+        report.ratio(f"{name.replace('_', ' ')}, {1e6 * cycle:.3g} us", CONTROL_PERIOD / cycle, CONTROL_AIM)
+
+
 def list_plans(program, report):
     report.heading("Planned sessions against the paper's protocol at random poses, tilt 0.3 rad")
     figures = subprocess.run([program], check=True, capture_output=True, text=True).stdout
@@ -234,6 +243,7 @@ def main():
     compare_with_numpy(times, scenarios, report)
     compare_with_scipy(times, scenarios["refine"], report)
     list_large_cycles(times, report)
+    list_control(times, report)
     list_plans(programs / "planning_benchmark", report)
     measure_reading(build, report)
     print("\n".join(report.lines))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -16,6 +17,7 @@ namespace {
 constexpr int kMostIterations = 200;
 constexpr int kMostBisections = 50;
 constexpr double kSameTorque = 1e-10;  // relative
+constexpr double kGoodStep = 0.5;      // by which a whole step lessens the misfit
 
 /// Currents of least power within limits for one torque per ampere. With λ the multipliers of QI =
 /// T, I = clamp(Qᵀλ), and Q clamp(Qᵀλ) = T is the gradient of a convex, piecewise quadratic
@@ -36,7 +38,9 @@ class LeastPower {
       if (!step) {
         return std::nullopt;
       }
-      lambda = descended(lambda, *step, torque);
+      const Eigen::Vector3d whole = lambda + *step;
+      const bool is_good = (torque - Q_ * clamped(whole)).norm() < kGoodStep * misfit.norm();
+      lambda = is_good ? whole : descended(lambda, *step, torque);
     }
     return std::nullopt;
   }
@@ -90,23 +94,45 @@ class LeastPower {
   double limit_;
 };
 
-/// Largest share of a torque that the limits allow, and its currents.
-AllocatedCurrents largestShare(const LeastPower& problem,
-                               const Eigen::Vector3d& torque,
-                               Eigen::Index coils) {
-  AllocatedCurrents result;
-  result.outcome = Allocation::kLimited;
-  result.currents = Eigen::VectorXd::Zero(coils);
-  double unreachable = 1.0;
-  for (int n = 0; n < kMostBisections; ++n) {
-    const double share = 0.5 * (result.share + unreachable);
-    if (const auto currents = problem.solve(share * torque)) {
-      result.share = share;
-      result.currents = *currents;
-    } else {
-      unreachable = share;
+/// Largest share of a torque that currents within the limits can make, above 1 as well. What they
+/// can make is a zonotope: the intersection of the slabs |n·T| ≤ limit Σ|q·n| over the normals n =
+/// q_i × q_j of its faces.
+double reachableShare(const Eigen::Matrix3Xd& Q, const Eigen::Vector3d& torque, double limit) {
+  double share = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < Q.cols(); ++i) {
+    const Eigen::Vector3d q_i = Q.col(i);
+    for (Eigen::Index j = i + 1; j < Q.cols(); ++j) {
+      const Eigen::Vector3d normal = q_i.cross(Eigen::Vector3d(Q.col(j)));
+      const double wanted = std::abs(torque.dot(normal));
+      const double most = limit * (normal.transpose() * Q).cwiseAbs().sum();
+      if (most < share * wanted) {
+        share = most / wanted;
+      }
     }
   }
+  return share;
+}
+
+/// Currents of least power for the largest share of a torque that the limits allow.
+AllocatedCurrents limitedCurrents(const Eigen::Matrix3Xd& Q,
+                                  const Eigen::Vector3d& torque,
+                                  double limit,
+                                  const Eigen::VectorXd& minimum_norm) {
+  // At the very edge of what can be reached the solution has no interior to be found in.
+  constexpr double kInside = 1.0 - 1e-3;
+  const double reachable = reachableShare(Q, torque, limit);
+  AllocatedCurrents result;
+  result.outcome = reachable < 1.0 ? Allocation::kLimited : Allocation::kReached;
+  result.share = reachable < 1.0 ? kInside * reachable : 1.0;
+  const auto currents = LeastPower(Q, limit).solve(result.share * torque);
+  if (currents) {
+    result.currents = *currents;
+    return result;
+  }
+  // So close to the edge that it was not found: less torque, in the same direction.
+  result.outcome = Allocation::kLimited;
+  result.share = limit / minimum_norm.cwiseAbs().maxCoeff();
+  result.currents = result.share * minimum_norm;
   return result;
 }
 
@@ -127,16 +153,13 @@ AllocatedCurrents allocateCurrents(const Eigen::Matrix3Xd& torque_per_ampere,
   AllocatedCurrents result;
   result.currents = Eigen::VectorXd::Zero(torque_per_ampere.cols());
   if (smallest >= options.least_singular_value) {
-    const LeastPower problem(torque_per_ampere, options.current_limit);
-    if (torque.isZero(0.0)) {
+    const Eigen::VectorXd minimum_norm = torque_per_ampere.transpose() * gram.ldlt().solve(torque);
+    if (minimum_norm.cwiseAbs().maxCoeff() <= options.current_limit) {
       result.outcome = Allocation::kReached;
       result.share = 1.0;
-    } else if (const auto currents = problem.solve(torque)) {
-      result.outcome = Allocation::kReached;
-      result.share = 1.0;
-      result.currents = *currents;
+      result.currents = minimum_norm;
     } else {
-      result = largestShare(problem, torque, torque_per_ampere.cols());
+      result = limitedCurrents(torque_per_ampere, torque, options.current_limit, minimum_norm);
     }
   }
   result.smallest_singular_value = smallest;
