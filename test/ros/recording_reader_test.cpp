@@ -24,18 +24,6 @@ namespace fs = std::filesystem;
 
 class RecordingReader : public RecordingCase {};
 
-void expectSame(const std::vector<Sample>& a, const std::vector<Sample>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    EXPECT_EQ(a[n].id, b[n].id);
-    EXPECT_EQ(a[n].stamp, b[n].stamp);
-    EXPECT_EQ(a[n].joint_position, b[n].joint_position);
-    EXPECT_EQ(a[n].R_stator_rotor, b[n].R_stator_rotor);
-    EXPECT_EQ(a[n].torque, b[n].torque);
-    EXPECT_EQ(a[n].current, b[n].current);
-  }
-}
-
 TEST_F(RecordingReader, MakesTheSamplesThatTheStreamsGive) {
   const Recording recording = read({session()});
   const Actuator actuator = unit();
