@@ -103,12 +103,12 @@ std::vector<TorqueErrorRun> studyTorqueErrors(const PaperStudyOptions& options,
   NoiseSource random(1, kPoses);
   std::vector<Eigen::Vector3d> places(poses);
   std::generate(places.begin(), places.end(), [&] { return randomPose(tilt, random); });
-  const auto errorsOf = [&](const Actuator& model) {
+  const auto errors_of = [&](const Actuator& model) {
     return torqueMatrixErrors(options.truth, model, places);
   };
   std::vector<TorqueErrorRun> runs = {
-      {"nominal", errorsOf(options.nominal)},
-      {"level_1", errorsOf(levelOneActuator(options.nominal, options.truth))},
+      {"nominal", errors_of(options.nominal)},
+      {"level_1", errors_of(levelOneActuator(options.nominal, options.truth))},
       {"sequential", {}},
       {"refined", {}}};
   const auto append = [](std::vector<TorqueMatrixError>& to,
@@ -117,8 +117,8 @@ std::vector<TorqueErrorRun> studyTorqueErrors(const PaperStudyOptions& options,
   };
   for (std::uint64_t seed = 1; seed <= sessions; ++seed) {
     const Calibrated parameters = calibrated(options, seed);
-    append(runs[2].poses, errorsOf(parameters.sequential));
-    append(runs[3].poses, errorsOf(parameters.refined));
+    append(runs[2].poses, errors_of(parameters.sequential));
+    append(runs[3].poses, errors_of(parameters.refined));
   }
   return runs;
 }

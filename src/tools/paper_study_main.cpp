@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
@@ -66,7 +67,8 @@ std::string spread(std::vector<double> values) {
   std::vector<std::string> quantiles;
   for (const double probability : kProbabilities) {
     const auto last = static_cast<double>(values.size() - 1);
-    quantiles.push_back(yamlNumber(values[static_cast<std::size_t>(probability * last + 0.5)]));
+    quantiles.push_back(
+        yamlNumber(values[static_cast<std::size_t>(std::lround(probability * last))]));
   }
   return yamlList(quantiles);
 }
@@ -75,6 +77,7 @@ std::string spread(std::vector<double> values) {
 template <typename Run>
 std::string valuesOf(const std::vector<Run>& runs, const std::function<double(const Run&)>& value) {
   std::vector<std::string> values;
+  values.reserve(runs.size());
   for (const Run& run : runs) {
     values.push_back(format("%.6e", value(run)));
   }
@@ -84,6 +87,7 @@ std::string valuesOf(const std::vector<Run>& runs, const std::function<double(co
 template <typename Run>
 std::string spreadOf(const std::vector<Run>& runs, const std::function<double(const Run&)>& value) {
   std::vector<double> values;
+  values.reserve(runs.size());
   for (const Run& run : runs) {
     values.push_back(value(run));
   }
@@ -214,7 +218,8 @@ class Study {
   void levelOneNoise() {
     tell("level 1 with noise");
     text_ += "level_1_noise:\n";
-    for (const std::size_t count : {2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40}) {
+    constexpr std::size_t kCounts[] = {2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40};
+    for (const std::size_t count : kCounts) {
       const auto runs = studyLevelOneNoise(options_, count);
       using Run = LevelOneNoiseRun;
       const auto below = std::count_if(
