@@ -191,7 +191,6 @@ std::optional<Actuator> actuatorFromRos(const ActuatorParameters& message, const
   for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
     actuator.poles[i].polar = message.poles[i].polar;
     actuator.poles[i].azimuth = message.poles[i].azimuth;
-    actuator.poles[i].polarity = message.poles[i].polarity > 0 ? 1 : -1;
     actuator.poles[i].gain = message.poles[i].gain;
   }
   for (std::size_t j = 0; j < actuator.coils.size(); ++j) {

@@ -68,7 +68,7 @@ CalibrationSample sampleToRos(const Sample& sample);
 /// Name, serial number and geometry of an actuator; header, revision and source stay empty.
 ActuatorParameters parametersToRos(const Actuator& actuator);
 
-/// `design` with the geometry and the gains of a message; nothing when the message has other
+/// `design` with the identified geometry and gains of a message; nothing when the message has other
 /// numbers of poles or coils.
 std::optional<Actuator> actuatorFromRos(const ActuatorParameters& message, const Actuator& design);
 
