@@ -25,6 +25,9 @@ ConvergenceChart::ConvergenceChart(QWidget* parent)
   line_->setPointsVisible(true);
   iterations_->setLabelFormat("%d");
   iterations_->setTitleText("iteration");
+  // Without an interval, dynamic ticks are without end.
+  iterations_->setRange(0.0, 1.0);
+  iterations_->setTickInterval(1.0);
   iterations_->setTickType(QtCharts::QValueAxis::TicksDynamic);
   errors_->setLabelFormat("%.0e");
   errors_->setBase(10.0);
@@ -54,9 +57,9 @@ void ConvergenceChart::setHistory(const QString& title, const std::vector<double
     largest = std::max(largest, error);
   }
   const auto last = static_cast<double>(std::max<std::size_t>(1, errors.size() - 1));
-  iterations_->setRange(0.0, last);
   constexpr double kMostTicks = 10.0;
   iterations_->setTickInterval(std::ceil(last / kMostTicks));
+  iterations_->setRange(0.0, last);
   errors_->setRange(std::pow(10.0, std::floor(std::log10(smallest))),
                     std::pow(10.0, std::floor(std::log10(largest)) + 1.0));
 }

@@ -134,7 +134,10 @@ TEST(CalibrationMarkers, ConesStandWhereAxesAreIdentified) {
 TEST(CalibrationMarkers, HopelessUncertaintyIsStillACone) {
   CalibrationScene scene = paperScene();
   scene.coil_stddevs.assign(24, 1e3);
-  for (const auto& corner : markerOf(calibrationMarkers(scene), "coil uncertainty", 3).points) {
+  const visualization_msgs::MarkerArray array = calibrationMarkers(scene);
+  const Marker& cone = markerOf(array, "coil uncertainty", 3);
+  ASSERT_FALSE(cone.points.empty());
+  for (const auto& corner : cone.points) {
     EXPECT_LT(std::hypot(corner.x, corner.y, corner.z), 1.0);
   }
 }
