@@ -163,9 +163,21 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
 }
 
 void OrientationControllerNode::beat() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    cycle();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM("The control failed; the node ends: " << error.what());
+    controller_.disable();
+    publish(controller_.update(0), ros::Time::now());
+    was_active_ = false;
+    ros::requestShutdown();
+  }
+}
+
+void OrientationControllerNode::cycle() {
   const double begin = steadySeconds();
   const ros::Time now = ros::Time::now();
-  const std::lock_guard<std::mutex> lock(mutex_);
   const Eigen::VectorXd& currents = controller_.update(stampFromRos(now));
   const bool is_active = controller_.state() == ControlState::kActive;
   // The end of control is a command as well: zero, once.

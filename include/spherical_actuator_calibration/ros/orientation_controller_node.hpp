@@ -67,6 +67,8 @@ class OrientationControllerNode {
   void receiveTarget(const geometry_msgs::QuaternionStamped& message);
   bool enable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void beat();
+  /// One cycle of control. Precondition: mutex_ is held.
+  void cycle();
   void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
