@@ -21,6 +21,7 @@ class CoilDrive:
     def __init__(self, ns):
         self._ns = ns
         self._frame = rospy.get_param(f"{ns}/orientation_controller/frames/stator", "stator")
+        self._names = [joint["name"] for joint in rospy.get_param(f"{ns}/actuator/joints")]
         self._joints = None
         self._joints_time = None
         self.parameters = None
@@ -31,8 +32,10 @@ class CoilDrive:
         ]
 
     def _keep_joints(self, message):
-        self._joints = message.position
-        self._joints_time = rospy.get_time()
+        by_name = dict(zip(message.name, message.position))
+        if all(name in by_name for name in self._names):
+            self._joints = tuple(by_name[name] for name in self._names)
+            self._joints_time = rospy.get_time()
 
     def _keep_parameters(self, message):
         self.parameters = message
@@ -71,10 +74,12 @@ class CoilDrive:
             rospy.sleep(0.1)
 
     def stop(self, fixture):
-        """The fixture takes the rotor, then the currents go to zero."""
-        if fixture:
-            self._set(f"{fixture}/release_fixture", False)
-        self._set("orientation_controller/enable", False)
+        """The fixture takes the rotor, then the currents go to zero, whatever becomes of the fixture."""
+        try:
+            if fixture:
+                self._set(f"{fixture}/release_fixture", False)
+        finally:
+            self._set("orientation_controller/enable", False)
 
     def joints(self):
         """Joint angles [rad]; raises RuntimeError without fresh ones."""

@@ -32,11 +32,16 @@ Eigen::Matrix3d orientationForTorque(const RigidRotor& rotor,
                                      const DesiredMotion& desired,
                                      const Eigen::Vector3d& torque,
                                      const ControlGains& gains) {
-  // What is asked for where nothing is left to turn; the rest is proportional to the rotation.
-  DesiredMotion here = desired;
-  here.R_stator_rotor = state.R_stator_rotor;
-  const Eigen::Vector3d rest = torque - computedTorque(rotor, state, here, gains);
-  return state.R_stator_rotor * rotationExp(rotor.inertia.llt().solve(rest) / gains.proportional);
+  // Beside the rotation's own part, velocity and acceleration depend on it weakly.
+  constexpr int kRounds = 5;
+  const Eigen::LLT<Eigen::Matrix3d> inertia(rotor.inertia);
+  DesiredMotion motion = desired;
+  motion.R_stator_rotor = state.R_stator_rotor;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Vector3d rest = torque - computedTorque(rotor, state, motion, gains);
+    motion.R_stator_rotor *= rotationExp(inertia.solve(rest) / gains.proportional);
+  }
+  return motion.R_stator_rotor;
 }
 
 }  // namespace spherical_actuator_calibration

@@ -120,10 +120,9 @@ AllocatedCurrents limitedCurrents(const Eigen::Matrix3Xd& Q,
                                   const Eigen::VectorXd& minimum_norm) {
   // At the very edge of what can be reached the solution has no interior to be found in.
   constexpr double kInside = 1.0 - 1e-3;
-  const double reachable = reachableShare(Q, torque, limit);
   AllocatedCurrents result;
-  result.outcome = reachable < 1.0 ? Allocation::kLimited : Allocation::kReached;
-  result.share = reachable < 1.0 ? kInside * reachable : 1.0;
+  result.share = std::min(1.0, kInside * reachableShare(Q, torque, limit));
+  result.outcome = result.share < 1.0 ? Allocation::kLimited : Allocation::kReached;
   const auto currents = LeastPower(Q, limit).solve(result.share * torque);
   if (currents) {
     result.currents = *currents;

@@ -156,6 +156,10 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
 }
 
 std::string verdict(const HeldOutValidation& validation) {
+  if (!validation.hasVerdict() && validation.unjudged_torques > 0) {
+    return "The held-out samples are torques of coils that are not calibrated: calibrate these "
+           "first.";
+  }
   if (!validation.hasVerdict()) {
     return "No held-out sample can judge: capture some poses with validation set.";
   }

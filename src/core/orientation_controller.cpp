@@ -49,6 +49,9 @@ void validate(const OrientationControllerOptions& options) {
   requireInRange("largest_age", options.largest_age, ValueRange::positive("s"));
   requireInRange("velocity_cutoff", options.velocity_cutoff, ValueRange::positive("rad/s"));
   requireInRange("workspace_margin", options.workspace_margin, ValueRange::nonNegative("rad"));
+  requireInRange(
+      "largest_tracking_error", options.largest_tracking_error, ValueRange::positive("rad"));
+  requireInRange("total_current_limit", options.total_current_limit, ValueRange::positive("A"));
 }
 
 OrientationController::OrientationController(const Actuator& design,
@@ -81,7 +84,7 @@ void OrientationController::setParameters(const Actuator& parameters) {
 // Orientation and torque look different by other parameters. What the coils do now goes on: the
 // reference turns to where the control asks for just that.
 void OrientationController::keepTorque() {
-  const RotorState rotor = rotorAt(measured_->position);
+  const RotorState rotor = rotorAt(q_);
   const Eigen::Vector3d torque =
       torquePerAmpere(curve_, torques_, rotor.R_stator_rotor) * currents_;
   const DesiredMotion& desired = reference_.motion();
@@ -90,19 +93,18 @@ void OrientationController::keepTorque() {
   reference_.turnReference(R_desired * desired.R_stator_rotor.transpose());
 }
 
-void OrientationController::receive(const JointMeasurement& joints) {
-  if (!joints.position.allFinite()) {
+bool OrientationController::receive(const JointMeasurement& joints) {
+  // Far beyond any number of turns, sines lose their digits.
+  constexpr double kLargestAngle = 1e6;
+  if (!joints.position.allFinite() || joints.position.cwiseAbs().maxCoeff() > kLargestAngle) {
     throw DataError("The joint angles are not finite.");
   }
-  if (!measured_) {
-    measured_ = joints;
-    return;
+  const double elapsed = measured_ ? secondsBetween(measured_->stamp, joints.stamp) : 0.0;
+  const bool is_start = !measured_ || std::abs(elapsed) > kLongestDifference;
+  if (!is_start && elapsed <= 0.0) {
+    return false;
   }
-  const double elapsed = secondsBetween(measured_->stamp, joints.stamp);
-  if (elapsed <= 0.0) {
-    return;
-  }
-  if (elapsed > kLongestDifference) {
+  if (is_start) {
     joint_velocity_.setZero();
   } else {
     const double share = 1.0 - std::exp(-elapsed * options_.velocity_cutoff);
@@ -110,18 +112,46 @@ void OrientationController::receive(const JointMeasurement& joints) {
         share * ((joints.position - measured_->position) / elapsed - joint_velocity_);
   }
   measured_ = joints;
+  return true;
 }
 
 void OrientationController::setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor) {
   requireRotation(R_stator_rotor);
-  const Eigen::Vector3d start =
+  requireWay(R_stator_rotor);
+  reference_.setTarget(stamp, R_stator_rotor);
+}
+
+/// Where the way to a target begins.
+Eigen::Matrix3d OrientationController::present() const {
+  if (state_ == ControlState::kActive) {
+    return reference_.motion().R_stator_rotor;
+  }
+  return measured_ ? rotorOrientation(joints_, measured_->position)
+                   : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
+// The reference goes the shortest way, which may pass outside of the workspace.
+void OrientationController::requireWay(const Eigen::Matrix3d& R_stator_rotor) const {
+  constexpr int kPoints = 20;
+  const Eigen::Matrix3d begin = present();
+  const Eigen::Vector3d way = rotationLog(begin.transpose() * R_stator_rotor);
+  std::optional<Eigen::Vector3d> q =
       measured_ ? measured_->position : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  const auto q = jointAngles(joints_, R_stator_rotor, start);
+  bool leaves = false;
+  for (int n = 1; n <= kPoints && q; ++n) {
+    q = jointAngles(joints_, begin * rotationExp(way * n / static_cast<double>(kPoints)), *q);
+    leaves = leaves || (q && !isInWorkspace(*q, options_.workspace_margin));
+  }
   if (!q || !isInWorkspace(*q, 0.0)) {
     throw DataError(format("The target lies outside of the workspace, ±%.3g rad of tilt.",
                            parameters_.workspace.tilt_limit));
   }
-  reference_.setTarget(stamp, R_stator_rotor);
+  if (leaves) {
+    throw DataError(format(
+        "The way to the target leaves the workspace, ±%.3g rad of tilt; go by another target "
+        "between.",
+        parameters_.workspace.tilt_limit));
+  }
 }
 
 void OrientationController::enable(Stamp now) {
@@ -132,7 +162,8 @@ void OrientationController::enable(Stamp now) {
   if (!defect.empty()) {
     throw DataError(defect);
   }
-  reference_.reset(rotorAt(measured_->position).R_stator_rotor);
+  q_ = measured_->position;
+  reference_.reset(rotorAt(q_).R_stator_rotor);
   last_update_.reset();
   stop_reason_.clear();
   state_ = ControlState::kActive;
@@ -157,9 +188,13 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
       last_update_ ? std::clamp(secondsBetween(*last_update_, now), 0.0, kLongestStep) : 0.0;
   last_update_ = now;
   const DesiredMotion& desired = reference_.advance(now, step);
-  const RotorState rotor =
-      rotorAt(measured_->position + secondsBetween(measured_->stamp, now) * joint_velocity_);
+  q_ = measured_->position + secondsBetween(measured_->stamp, now) * joint_velocity_;
+  const RotorState rotor = rotorAt(q_);
   tracking_error_ = rotationLog(rotor.R_stator_rotor.transpose() * desired.R_stator_rotor).norm();
+  if (tracking_error_ > options_.largest_tracking_error) {
+    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_));
+    return currents_;
+  }
   const AllocatedCurrents allocated =
       allocateCurrents(torquePerAmpere(curve_, torques_, rotor.R_stator_rotor),
                        computedTorque(options_.rotor, rotor, desired, options_.gains),
@@ -171,7 +206,18 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   }
   share_ = allocated.share;
   currents_ = allocated.currents;
+  limitTotal();
   return currents_;
+}
+
+// As the driver would: all currents alike, so that the torque keeps its direction.
+void OrientationController::limitTotal() {
+  const double total = currents_.cwiseAbs().sum();
+  if (total > options_.total_current_limit) {
+    const double share = options_.total_current_limit / total;
+    currents_ *= share;
+    share_ *= share;
+  }
 }
 
 RotorState OrientationController::rotorAt(const Eigen::Vector3d& q) const {
@@ -205,6 +251,9 @@ bool OrientationController::isInWorkspace(const Eigen::Vector3d& q, double margi
 }
 
 void OrientationController::stop(const std::string& reason) {
+  if (state_ != ControlState::kActive) {
+    return;
+  }
   state_ = ControlState::kStopped;
   stop_reason_ = reason;
   currents_.setZero();

@@ -56,10 +56,13 @@ void OrientationReference::reset(const Eigen::Matrix3d& R_stator_rotor) {
 
 void OrientationReference::setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor) {
   const double gap = target_stamp_ ? secondsBetween(*target_stamp_, stamp) : 0.0;
-  const bool is_motion = gap > 0.0 && gap <= options_.largest_gap;
-  target_velocity_ = Eigen::Vector3d::Zero();
-  if (is_motion) {
-    target_velocity_ = rotationLog(target_.transpose() * R_stator_rotor) / gap;
+  target_velocity_.setZero();
+  if (gap > 0.0 && gap <= options_.largest_gap) {
+    const Eigen::Vector3d velocity = rotationLog(target_.transpose() * R_stator_rotor) / gap;
+    // A target that is farther than the rotor may go in that time is a place to go to.
+    if (velocity.norm() <= options_.largest_rate) {
+      target_velocity_ = velocity;
+    }
   }
   target_interval_ = gap;
   target_ = R_stator_rotor;
@@ -76,18 +79,23 @@ Eigen::Matrix3d OrientationReference::asideRotation() const {
   return rotationExp(fading(aside_age_, kReturnDuration) * aside_);
 }
 
-// Between two targets of a stream the motion goes on; where the next one is missing it ends.
+// Between two targets of a stream the motion goes on; where the next one is missing, the last one
+// is the place to be.
+bool OrientationReference::isMoving(Stamp now) const {
+  constexpr double kOverdue = 1.5;  // intervals
+  return target_stamp_ && secondsBetween(*target_stamp_, now) <= kOverdue * target_interval_;
+}
+
 Eigen::Matrix3d OrientationReference::targetAt(Stamp now) const {
-  if (target_velocity_.isZero(0.0)) {
+  if (!isMoving(now)) {
     return target_;
   }
-  const double ahead = std::clamp(secondsBetween(*target_stamp_, now), 0.0, target_interval_);
-  return target_ * rotationExp(ahead * target_velocity_);
+  return target_ *
+         rotationExp(std::max(0.0, secondsBetween(*target_stamp_, now)) * target_velocity_);
 }
 
 Eigen::Vector3d OrientationReference::targetVelocityAt(Stamp now) const {
-  const bool is_over = !target_stamp_ || secondsBetween(*target_stamp_, now) > options_.largest_gap;
-  return is_over ? Eigen::Vector3d::Zero().eval() : target_velocity_;
+  return isMoving(now) ? target_velocity_ : Eigen::Vector3d::Zero().eval();
 }
 
 const DesiredMotion& OrientationReference::advance(Stamp now, double step) {

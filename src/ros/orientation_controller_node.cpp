@@ -113,7 +113,9 @@ void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& mes
     if (!joints) {
       throw DataError("a joint is missing.");
     }
-    controller_.receive(*joints);
+    if (controller_.receive(*joints)) {
+      last_reading_ = steadySeconds();
+    }
   } catch (const Error& error) {
     last_refusal_ = std::string("joint_states: ") + error.what();
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
@@ -178,6 +180,10 @@ void OrientationControllerNode::beat() {
 void OrientationControllerNode::cycle() {
   const double begin = steadySeconds();
   const ros::Time now = ros::Time::now();
+  // The clock of ROS may stand still: a paused replay must not keep the currents on.
+  if (begin - last_reading_ > options_.controller.largest_age) {
+    controller_.stop("no joint angles arrive");
+  }
   const Eigen::VectorXd& currents = controller_.update(stampFromRos(now));
   const bool is_active = controller_.state() == ControlState::kActive;
   // The end of control is a command as well: zero, once.

@@ -61,6 +61,8 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
   positive(map, "velocity_cutoff", "rad/s", controller.velocity_cutoff);
   controller.workspace_margin =
       map.number("workspace_margin", ValueRange::nonNegative("rad"), controller.workspace_margin);
+  positive(map, "largest_tracking_error", "rad", controller.largest_tracking_error);
+  positive(map, "total_current_limit", "A", controller.total_current_limit);
   if (map.has("reference")) {
     readReference(map.map("reference"), controller.reference);
   }

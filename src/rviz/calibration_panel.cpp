@@ -278,9 +278,20 @@ void CalibrationPanel::showAnswer() {
   }
   answer_->setText(QString::fromStdString(answer->message));
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
-  for (QPushButton* button : buttons_) {
-    button->setEnabled(true);
+  setCallsEnabled(true);
+  if (auto_capture_asked_) {
+    if (!answer->success) {
+      auto_capture_->setChecked(!*auto_capture_asked_);
+    }
+    auto_capture_asked_.reset();
   }
+}
+
+void CalibrationPanel::setCallsEnabled(bool enabled) {
+  for (QPushButton* button : buttons_) {
+    button->setEnabled(enabled);
+  }
+  auto_capture_->setEnabled(enabled);
 }
 
 template <typename Service>
@@ -290,9 +301,7 @@ void CalibrationPanel::call(const std::string& service, const typename Service::
   }
   answer_->setText("…");
   answer_->setStyleSheet("");
-  for (QPushButton* button : buttons_) {
-    button->setEnabled(false);
-  }
+  setCallsEnabled(false);
   caller_.call<Service>(node_.resolveName("calibration/" + service), request);
 }
 
@@ -330,6 +339,7 @@ void CalibrationPanel::restore() {
 void CalibrationPanel::setAutoCapture(bool on) {
   std_srvs::SetBool::Request request;
   request.data = static_cast<std::uint8_t>(on);
+  auto_capture_asked_ = on;
   call<std_srvs::SetBool>("set_auto_capture", request);
 }
 

@@ -5,6 +5,7 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/estimation_problem.hpp"
 #include "spherical_actuator_calibration/core/sample_coverage.hpp"
 #include "spherical_actuator_calibration/core/text_format.hpp"
@@ -71,6 +72,15 @@ std::string cycleName(const CalibrationReport& report) {
   }
   return (report.cycle == CalibrationReport::POLES ? "Poles with coil " : "Coil ") +
          std::to_string(report.coil);
+}
+
+/// A malformed sample is somebody else's error, and nothing to show.
+void append(const CalibrationSample& message, std::vector<Sample>& samples) {
+  try {
+    samples.push_back(sampleFromRos(message));
+  } catch (const Error&) {
+    return;
+  }
 }
 
 std::string gradeOf(double orientation, double torque) {
@@ -180,7 +190,9 @@ std::vector<CoverageBar> PanelModel::poleBars() const {
   std::vector<Sample> samples;
   samples.reserve(samples_.samples().size());
   for (const auto& [id, message] : samples_.samples()) {
-    samples.push_back(sampleFromRos(message));
+    if (message.current.size() == nominal_.coils.size() || message.has_torque == 0) {
+      append(message, samples);
+    }
   }
   const SampleCoverage seen = sampleCoverage(model_,
                                              samples,
@@ -191,7 +203,8 @@ std::vector<CoverageBar> PanelModel::poleBars() const {
   for (std::size_t i = 0; i < seen.poles.size(); ++i) {
     const std::string name = "pole_" + std::to_string(i + 1);
     const auto estimate = estimates_.find(name + "/polar");
-    const bool is_done = estimate != estimates_.end() && estimate->second.observable != 0;
+    const bool is_done =
+        isIdentified() && estimate != estimates_.end() && estimate->second.observable != 0;
     bars.push_back({name, seen.poles[i], kAdvisedPerPole, is_done});
   }
   return bars;
@@ -226,7 +239,7 @@ std::string PanelModel::verdict() const {
   if (parameters_.source == ActuatorParameters::RESTORED) {
     return "Restored: run a cycle, or see the saved report, for the uncertainty.";
   }
-  if (estimates_.empty()) {
+  if (!isIdentified()) {
     return "Not calibrated.";
   }
   std::string text =
@@ -246,7 +259,15 @@ std::string PanelModel::verdict() const {
   return text;
 }
 
+// A report may outlive its parameters: after a reset it is still the last one.
+bool PanelModel::isIdentified() const {
+  return parameters_.source == ActuatorParameters::IDENTIFIED && !estimates_.empty();
+}
+
 std::vector<ParameterLine> PanelModel::parameters() const {
+  if (!isIdentified()) {
+    return {};
+  }
   std::vector<ParameterLine> lines;
   lines.reserve(order_.size());
   for (const std::string& name : order_) {

@@ -204,7 +204,7 @@ class Study {
     const std::vector<ParameterEstimate> exact = estimates(false);
     const std::vector<ParameterEstimate> noisy = estimates(true);
     text_ += "table_5:\n";
-    for (std::size_t p = 0; p < exact.size(); ++p) {
+    for (std::size_t p = 0; p < std::min(exact.size(), noisy.size()); ++p) {
       YamlLine line;
       line.add("name", yamlText(exact[p].name));
       line.add("nominal", format("%.6f", exact[p].nominal));

@@ -119,6 +119,32 @@ TEST_F(OrientationControllerTest, NewParametersMakeNoJump) {
   EXPECT_LT(errorTo(target), 1e-4);
 }
 
+TEST_F(OrientationControllerTest, NewParametersMakeNoJumpOnTheWayEither) {
+  start(scenarios::paperNominal());
+  controller_->setTarget(now_, rotationExp({0.2, 0.2, 2.0}));
+  run(0.8);
+  const Eigen::Vector3d before = trueTorque(controller_->update(now_));
+  controller_->setParameters(truth_);
+  const Eigen::Vector3d after = trueTorque(controller_->update(now_));
+  EXPECT_LT((after - before).norm(), 0.02 * before.norm());
+}
+
+TEST_F(OrientationControllerTest, RefusesATargetWhoseWayLeavesTheWorkspace) {
+  rotor_.release({0.5, 0.5, 0.0});
+  restart();
+  start(scenarios::paperNominal());
+  const Eigen::Matrix3d R = rotorOrientation(jointGeometry(scenarios::paperNominal().joints),
+                                             Eigen::Vector3d(0.5, 0.5, 0.0));
+  const Eigen::Matrix3d quarter = rotationExp({0.0, 0.0, 1.5708}) * R;
+  try {
+    controller_->setTarget(now_, quarter);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("The way to the target"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(OrientationControllerTest, CurrentsStayWithinTheLimit) {
   constexpr double kLimit = 0.002;
   options_.allocation.current_limit = kLimit;
@@ -161,6 +187,43 @@ TEST_F(OrientationControllerTest, StopsWhereTheCoilsMakeNoTorqueInSomeDirection)
   expectStopped("no torque in some direction");
 }
 
+TEST_F(OrientationControllerTest, StopsWhenTheRotorDoesNotFollow) {
+  start(truth_);
+  controller_->setTarget(now_, rotationExp({0.0, 0.0, 1.2}));
+  // A sensor that stands still: fresh stamps, the same angles.
+  for (int n = 0; n < 2000; ++n) {
+    now_ += kCycle;
+    controller_->receive({now_, Eigen::Vector3d::Zero()});
+    controller_->update(now_);
+  }
+  expectStopped("does not follow");
+}
+
+TEST_F(OrientationControllerTest, BeginsAnewAfterAJumpOfTheClock) {
+  start(truth_);
+  run(0.1);
+  controller_->receive({now_ + 3600000 * kCycle, rotor_.position()});
+  controller_->update(now_ + kCycle);
+  expectStopped("s old");
+  run(0.01);
+  controller_->enable(now_);
+  run(0.1);
+  EXPECT_EQ(controller_->state(), ControlState::kActive);
+}
+
+TEST_F(OrientationControllerTest, TheSumOfTheCurrentsStaysWithinItsLimit) {
+  constexpr double kTotal = 0.02;
+  options_.total_current_limit = kTotal;
+  restart();
+  start(truth_);
+  controller_->setTarget(now_, rotationExp({0.3, -0.2, 0.8}));
+  for (int n = 0; n < 50; ++n) {
+    run(0.001);
+    EXPECT_LE(controller_->update(now_).cwiseAbs().sum(), kTotal * (1.0 + 1e-9));
+  }
+  EXPECT_LT(controller_->torqueShare(), 1.0);
+}
+
 TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
   start(truth_);
   EXPECT_GT(run(0.2), 0.001);
@@ -196,6 +259,7 @@ TEST_F(OrientationControllerTest, RefusesReadingsThatAreNotFinite) {
   start(truth_);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(controller_->receive({now_ + kCycle, {0.0, nan, 0.0}}), DataError);
+  EXPECT_THROW(controller_->receive({now_ + kCycle, {0.0, 0.0, 1e200}}), DataError);
   run(0.1);
   EXPECT_EQ(controller_->state(), ControlState::kActive);
 }

@@ -65,16 +65,35 @@ TEST(OrientationReference, FollowsAStreamWithoutLag) {
 TEST(OrientationReference, ComesToRestWhenTheStreamEnds) {
   OrientationReference reference({});
   reference.reset(Eigen::Matrix3d::Identity());
+  double farthest = 0.0;
   for (int n = 0; n < 3000; ++n) {
     const double time = n * kStep;
     if (n < 1000 && n % 10 == 0) {
       reference.setTarget(stampOf(time), rotationExp({0.3 * time, 0.0, 0.0}));
     }
     reference.advance(stampOf(time), kStep);
+    farthest = std::max(farthest, rotationLog(reference.motion().R_stator_rotor).x());
   }
   EXPECT_LT(reference.motion().angular_velocity.norm(), 1e-6);
-  // Not beyond where the next target was expected.
-  EXPECT_NEAR(rotationLog(reference.motion().R_stator_rotor).x(), 0.3 * 1.0, 1e-6);
+  EXPECT_NEAR(rotationLog(reference.motion().R_stator_rotor).x(), 0.3 * 0.99, 1e-6);
+  // A critically damped filter that is stopped at 0.3 rad/s runs out by 0.3 / (12 e) rad.
+  EXPECT_LT(farthest, 0.3 + 0.010);
+}
+
+TEST(OrientationReference, TargetsThatFollowTooFastArePlacesToGoTo) {
+  const OrientationReferenceOptions options;
+  OrientationReference reference(options);
+  reference.reset(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d target = rotationExp({0.0, 0.3, 0.0});
+  reference.setTarget(0, Eigen::Matrix3d::Identity());
+  reference.setTarget(1000, target);
+  double fastest = 0.0;
+  for (int n = 1; n <= 3000; ++n) {
+    fastest =
+        std::max(fastest, reference.advance(stampOf(n * kStep), kStep).angular_velocity.norm());
+  }
+  EXPECT_LE(fastest, 1.001 * options.largest_rate);
+  EXPECT_LT(angleBetween(reference.motion().R_stator_rotor, target), 1e-6);
 }
 
 TEST(OrientationReference, TurnedAsideItReturnsSmoothly) {

@@ -85,7 +85,7 @@ class ReleasedRotor(unittest.TestCase):
 
         self.lab.fault("trip_amplifier", True)
         self.controller.wait_for_level("control", ERROR)
-        self.assertIn("outside of the workspace", self.controller.message("control"))
+        self.assertIn("stopped: the rotor", self.controller.message("control"))
         wait_for(self.commands.ended_with_zero, "zero")
         self.lab.fault("trip_amplifier", False)
         self.lab.fault("release_fixture", False)

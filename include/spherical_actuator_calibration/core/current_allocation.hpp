@@ -14,7 +14,7 @@ struct AllocationOptions {
 
 enum class Allocation {
   kReached,   ///< the currents make the torque
-  kLimited,   ///< more than the limits allow: the largest share of the torque, along its direction
+  kLimited,   ///< more than the limits allow: what they do allow along its direction, to 0.1 %
   kSingular,  ///< no torque in some direction at this orientation: no current
 };
 

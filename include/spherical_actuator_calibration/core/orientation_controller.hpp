@@ -25,6 +25,10 @@ struct OrientationControllerOptions {
   double largest_age = 0.05;       ///< of the joint angles [s]; older ones stop the control
   double velocity_cutoff = 150.0;  ///< of the first-order filter of joint velocities [rad/s]
   double workspace_margin = 0.05;  ///< [rad] joints 1 and 2 may leave the tilt limit so far
+  /// Between reference and rotor [rad]; beyond it something holds or pushes the rotor, or a sensor
+  /// stands still.
+  double largest_tracking_error = 0.4;
+  double total_current_limit = 8.0;  ///< of the sum over all coils, as the driver's [A]
 };
 
 /// Throws ConfigError that names the option and its range.
@@ -38,8 +42,8 @@ enum class ControlState {
 
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
 /// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
-/// currents zero, when joint angles are too old, outside the workspace, or where the coils make no
-/// torque in some direction. Not thread-safe.
+/// currents zero, when joint angles are too old, outside the workspace, where the coils make no
+/// torque in some direction, or when the rotor does not follow. Not thread-safe.
 class OrientationController {
  public:
   /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
@@ -50,16 +54,18 @@ class OrientationController {
   /// torque on the rotor goes on without a jump, and the desired motion returns to the target
   /// within a second. Throws ConfigError when they are not valid.
   void setParameters(const Actuator& parameters);
-  /// A reading of the joint sensors. Those that are not newer than the last change nothing. Throws
-  /// DataError when it is not finite.
-  void receive(const JointMeasurement& joints);
-  /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation or
-  /// lies outside the workspace.
+  /// A reading of the joint sensors; false when it is not newer than the last, and changes nothing.
+  /// After a jump of the clock it begins anew. Throws DataError when it cannot be an angle.
+  bool receive(const JointMeasurement& joints);
+  /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
+  /// outside the workspace, or cannot be reached straight within it.
   void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
 
   /// Takes hold of the rotor where it is. Throws DataError with the reason why that cannot be.
   void enable(Stamp now);
   void disable();
+  /// A safe stop: no current until it is enabled again. Changes nothing unless active.
+  void stop(const std::string& reason);
 
   /// One cycle: the currents to command [A], zero unless active.
   const Eigen::VectorXd& update(Stamp now);
@@ -78,7 +84,9 @@ class OrientationController {
   std::string defectAt(Stamp now) const;
   bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
   void keepTorque();
-  void stop(const std::string& reason);
+  void limitTotal();
+  Eigen::Matrix3d present() const;
+  void requireWay(const Eigen::Matrix3d& R_stator_rotor) const;
 
   Actuator parameters_;
   bool has_parameters_ = false;
@@ -89,6 +97,7 @@ class OrientationController {
   OrientationReference reference_;
   std::optional<JointMeasurement> measured_;
   Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d q_ = Eigen::Vector3d::Zero();  ///< joint angles of the last cycle [rad]
   std::optional<Stamp> last_update_;
   ControlState state_ = ControlState::kIdle;
   std::string stop_reason_;

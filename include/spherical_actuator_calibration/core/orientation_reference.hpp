@@ -12,7 +12,7 @@ namespace spherical_actuator_calibration {
 /// How a reference follows its targets.
 struct OrientationReferenceOptions {
   double natural_frequency = 12.0;     ///< of its critically damped approach [rad/s]
-  double largest_rate = 1.5;           ///< relative to the target [rad/s]
+  double largest_rate = 1.5;           ///< of targets, and of the way to them [rad/s]
   double largest_acceleration = 15.0;  ///< [rad/s²]
   /// Targets that follow each other within this time are points of one motion, whose velocity is
   /// followed without lag; a target that stays alone is a place to go to [s].
@@ -42,6 +42,7 @@ class OrientationReference {
   const DesiredMotion& motion() const { return motion_; }
 
  private:
+  bool isMoving(Stamp now) const;
   Eigen::Matrix3d targetAt(Stamp now) const;
   Eigen::Vector3d targetVelocityAt(Stamp now) const;
   Eigen::Matrix3d asideRotation() const;

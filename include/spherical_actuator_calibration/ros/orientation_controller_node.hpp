@@ -82,6 +82,8 @@ class OrientationControllerNode {
   CycleStatistics statistics_;
   std::string last_refusal_;
   bool was_active_ = false;
+  double last_reading_ =
+      0.0;  ///< when joint angles were last accepted, by a clock that never jumps
 
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;

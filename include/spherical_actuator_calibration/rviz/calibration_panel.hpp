@@ -8,6 +8,7 @@
 #include <QTableWidget>
 #include <QTimer>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class CalibrationPanel : public rviz::Panel {
   void showCalibration();
   void showAnswer();
 
+  void setCallsEnabled(bool enabled);
   void capture();
   void calibrate(const std::string& service, std::uint32_t coil);
   void trigger(const std::string& service);
@@ -81,6 +83,7 @@ class CalibrationPanel : public rviz::Panel {
   QDoubleSpinBox* duration_ = nullptr;
   QCheckBox* validation_ = nullptr;
   QCheckBox* auto_capture_ = nullptr;
+  std::optional<bool> auto_capture_asked_;  ///< what the running call asks for
   QSpinBox* coil_ = nullptr;
   QSpinBox* revision_ = nullptr;
   QLabel* answer_ = nullptr;

@@ -89,6 +89,7 @@ class PanelModel {
     ros::WallTime at;
   };
 
+  bool isIdentified() const;
   bool isStandardized() const;
   std::vector<CoverageBar> poleBars() const;
   std::vector<CoverageBar> coilBars() const;
