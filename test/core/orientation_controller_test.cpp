@@ -158,7 +158,7 @@ TEST_F(OrientationControllerTest, CurrentsStayWithinTheLimit) {
 TEST_F(OrientationControllerTest, StopsOnOldJointAngles) {
   start(truth_);
   run(0.1);
-  const Stamp late = now_ + 51 * kCycle;
+  const Stamp late = now_ + 101 * kCycle;
   EXPECT_TRUE(controller_->update(late).isZero(0.0));
   expectStopped("s old");
   // It does not come back by itself.
@@ -235,7 +235,7 @@ TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
 TEST_F(OrientationControllerTest, IsNotEnabledWithoutWhatItNeeds) {
   EXPECT_THROW(controller_->enable(now_), DataError);
   controller_->setParameters(truth_);
-  EXPECT_THROW(controller_->enable(now_ + 100 * kCycle), DataError);
+  EXPECT_THROW(controller_->enable(now_ + 200 * kCycle), DataError);
   EXPECT_EQ(controller_->state(), ControlState::kIdle);
   OrientationController fresh(scenarios::paperNominal(), options_);
   fresh.setParameters(truth_);

@@ -79,7 +79,7 @@ class OrientationController(unittest.TestCase):
         controller.wait_until_enabled()
         controller.enable(False)
         self.joints.silent = True
-        rospy.sleep(0.1)
+        rospy.sleep(0.3)
         answer = controller.enable()
         self.assertFalse(answer.success)
         self.assertIn("s old", answer.message)

@@ -22,7 +22,7 @@ struct OrientationControllerOptions {
   ControlGains gains;
   AllocationOptions allocation;
   OrientationReferenceOptions reference;
-  double largest_age = 0.05;       ///< of the joint angles [s]; older ones stop the control
+  double largest_age = 0.1;        ///< of the joint angles [s]; older ones stop the control
   double velocity_cutoff = 150.0;  ///< of the first-order filter of joint velocities [rad/s]
   double workspace_margin = 0.05;  ///< [rad] joints 1 and 2 may leave the tilt limit so far
   /// Between reference and rotor [rad]; beyond it something holds or pushes the rotor, or a sensor
