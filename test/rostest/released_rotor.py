@@ -44,6 +44,10 @@ class ReleasedRotor(unittest.TestCase):
         cls.lab.stop()
         cls.folder.cleanup()
 
+    def setUp(self):
+        self.lab.fault("release_fixture", False)
+        self.lab.move([0.0, 0.0, 0.0])
+
     @classmethod
     def keep(cls, message):
         cls.true_orientation = message.quaternion
