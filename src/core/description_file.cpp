@@ -211,6 +211,8 @@ CalibrationRecord readCalibration(const YamlMap& map) {
   return record;
 }
 
+}  // namespace
+
 CalibratedDescription readDescription(const YamlMap& file) {
   const YamlMap map = file.map("actuator");
   CalibratedDescription description;
@@ -234,8 +236,6 @@ CalibratedDescription readDescription(const YamlMap& file) {
   file.finish();
   return description;
 }
-
-}  // namespace
 
 CalibratedDescription parseDescription(const std::string& text, const std::string& name) {
   return readDescription(YamlMap::parse(text, name));

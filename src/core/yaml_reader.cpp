@@ -20,6 +20,13 @@
 
 namespace spherical_actuator_calibration {
 
+namespace {
+
+/// Line of what stands in no file that the user could open.
+constexpr int kNoLine = 0;
+
+}  // namespace
+
 /// A value and the line where it, or its key, stands.
 struct YamlMap::Entry {
   YAML::Node node;
@@ -29,6 +36,7 @@ struct YamlMap::Entry {
 /// What the copies of one YamlMap share.
 struct YamlMap::State {
   std::string file;
+  LineNumbers line_numbers;
   std::string path;  ///< key path of this map; empty for the top map
   int line;
   std::map<std::string, Entry> entries;
@@ -38,24 +46,25 @@ struct YamlMap::State {
   std::string keyPath(const std::string& key) const {
     return path.empty() ? key : path + "." + key;
   }
+
+  int lineOf(const YAML::Node& node) const {
+    return line_numbers == LineNumbers::kTold ? node.Mark().line + 1 : kNoLine;
+  }
 };
 
 namespace {
 
-int lineOf(const YAML::Node& node) {
-  return node.Mark().line + 1;
-}
-
+/// "file.yaml:12: key.path", each of the last two only if there is one.
 std::string location(const std::string& file, int line, const std::string& path) {
-  std::string text = file + ":" + std::to_string(line) + ": ";
-  return path.empty() ? text : text + path + ": ";
+  const std::string place = line == kNoLine ? file : file + ":" + std::to_string(line);
+  return path.empty() ? place : place + ": " + path;
 }
 
 [[noreturn]] void failAt(const std::string& file,
                          int line,
                          const std::string& path,
                          const std::string& sentence) {
-  throw ConfigError(location(file, line, path) + sentence);
+  throw ConfigError(location(file, line, path) + ": " + sentence);
 }
 
 std::string entryPath(const std::string& path, std::size_t index) {
@@ -149,7 +158,7 @@ YamlMap YamlMap::load(const std::string& path) {
   return parse(readFile(path), path);
 }
 
-YamlMap YamlMap::parse(const std::string& text, const std::string& name) {
+YamlMap YamlMap::parse(const std::string& text, const std::string& name, LineNumbers line_numbers) {
   std::vector<YAML::Node> documents;
   try {
     documents = YAML::LoadAll(text);
@@ -160,10 +169,10 @@ YamlMap YamlMap::parse(const std::string& text, const std::string& name) {
     throw ConfigError(name + ": the file is empty.");
   }
   if (documents.size() > 1) {
-    failAt(name, lineOf(documents[1]), "", "only one YAML document is allowed in a file.");
+    failAt(name, documents[1].Mark().line + 1, "", "only one YAML document is allowed in a file.");
   }
-  const YamlMap nothing(std::make_shared<State>(State{name, "", 1, {}, {}, {}}));
-  return nothing.child({documents[0], lineOf(documents[0])}, "");
+  const auto above = std::make_shared<State>(State{name, line_numbers, "", kNoLine, {}, {}, {}});
+  return YamlMap(above).child({documents[0], above->lineOf(documents[0])}, "");
 }
 
 YamlMap YamlMap::child(const Entry& entry, const std::string& path) const {
@@ -171,9 +180,9 @@ YamlMap YamlMap::child(const Entry& entry, const std::string& path) const {
   if (!entry.node.IsMap()) {
     failAt(file, entry.line, path, describe(entry.node) + " is not a map of keys and values.");
   }
-  State state{file, path, entry.line, {}, {}, {}};
+  State state{file, state_->line_numbers, path, entry.line, {}, {}, {}};
   for (const auto& pair : entry.node) {
-    const int line = lineOf(pair.first);
+    const int line = state_->lineOf(pair.first);
     if (!pair.first.IsScalar()) {
       failAt(file, line, path, describe(pair.first) + " cannot be a key.");
     }
@@ -300,7 +309,7 @@ std::vector<YamlMap::Entry> YamlMap::sequence(const std::string& key) const {
   }
   std::vector<Entry> items;
   for (const YAML::Node& item : entry.node) {
-    items.push_back({item, lineOf(item)});
+    items.push_back({item, state_->lineOf(item)});
   }
   return items;
 }
@@ -316,7 +325,7 @@ std::vector<double> YamlMap::numbers(const std::string& key, const ValueRange& r
              path,
              describe(item.node) + " is not a number; allowed is " + range.text() + ".");
     }
-    requireInRange(state_->file + ":" + std::to_string(item.line) + ": " + path, value, range);
+    requireInRange(location(state_->file, item.line, path), value, range);
     values.push_back(value);
   }
   return values;
@@ -376,7 +385,7 @@ void YamlMap::finish() const {
 std::string YamlMap::where(const std::string& key) const {
   const auto place = state_->entries.find(key);
   const int line = place == state_->entries.end() ? state_->line : place->second.line;
-  return state_->file + ":" + std::to_string(line) + ": " + state_->keyPath(key);
+  return location(state_->file, line, state_->keyPath(key));
 }
 
 void YamlMap::fail(const std::string& key, const std::string& sentence) const {

@@ -1,15 +1,14 @@
 #include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
 
-#include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/core/description_file.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 
 CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
-  const std::string& name = private_node.getNamespace();
-  const YamlMap map = YamlMap::parse(privateParameterText(private_node), name);
+  const YamlMap map = privateParameters(private_node);
   CalibrationNodeOptions options;
-  options.calibration = readCalibrationConfig(map, name);
+  options.calibration = readCalibrationConfig(map, private_node.getNamespace());
   options.directory = map.text("directory", options.directory);
   options.auto_capture = map.boolean("auto_capture", options.auto_capture);
   options.capture_duration =
@@ -22,7 +21,7 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
 }
 
 CalibratedDescription loadDescriptionParameter(const ros::NodeHandle& node) {
-  return parseDescription(requiredParameterText(node, "actuator"), node.resolveName("actuator"));
+  return readDescription(requiredParameters(node, "actuator"));
 }
 
 }  // namespace spherical_actuator_calibration

@@ -11,7 +11,7 @@
 #include "spherical_actuator_calibration/core/measurements.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/msg_conversion.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -34,8 +34,7 @@ const Actuator& withCoils(const Actuator& actuator) {
 }  // namespace
 
 CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   CurrentAmplifierOptions options = readCurrentAmplifierOptions(map);
   // Read by diagnostic_updater itself.
   map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);

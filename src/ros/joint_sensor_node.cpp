@@ -8,7 +8,7 @@
 #include "spherical_actuator_calibration/core/error.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -25,8 +25,7 @@ StreamLimits limitsFor(double rate) {
 }  // namespace
 
 JointSensorOptions loadJointSensorOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   JointSensorOptions options = readJointSensorOptions(map);
   // Read by diagnostic_updater itself.
   map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);

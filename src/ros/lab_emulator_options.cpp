@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -86,8 +86,7 @@ void readAmplifier(const YamlMap& map, LabEmulatorOptions& options) {
 }  // namespace
 
 LabEmulatorOptions loadLabEmulatorOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   LabEmulatorOptions options;
   options.seed =
       static_cast<std::uint64_t>(map.integer("seed", 0, std::numeric_limits<std::int32_t>::max()));

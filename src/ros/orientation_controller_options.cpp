@@ -2,7 +2,7 @@
 
 #include "spherical_actuator_calibration/core/rotor_mass.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -35,8 +35,7 @@ void readReference(const YamlMap& map, OrientationReferenceOptions& reference) {
 
 OrientationControllerNodeOptions loadOrientationControllerOptions(
     const ros::NodeHandle& private_node, const Actuator& design) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   OrientationControllerNodeOptions options;
   OrientationControllerOptions& controller = options.controller;
   const auto positive = [](const YamlMap& from, const char* key, const char* unit, double& value) {

@@ -1,7 +1,7 @@
 #include "spherical_actuator_calibration/ros/tracker_bridge_options.hpp"
 
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -49,8 +49,7 @@ StreamLimits readLimits(const YamlMap& map, StreamLimits limits) {
 }  // namespace
 
 TrackerBridgeOptions loadTrackerBridgeOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   TrackerBridgeOptions options;
   if (map.has("frames")) {
     options.frames = readFrames(map.map("frames"));

@@ -8,7 +8,7 @@
 #include "spherical_actuator_calibration/core/spherical_joint.hpp"
 #include "spherical_actuator_calibration/core/urdf_generator.hpp"
 #include "spherical_actuator_calibration/core/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 namespace spherical_actuator_calibration {
 namespace {
@@ -49,8 +49,7 @@ CalibrationScene startOf(const Actuator& nominal, const VisualizationOptions& op
 }  // namespace
 
 VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map =
-      YamlMap::parse(privateParameterText(private_node), private_node.getNamespace());
+  const YamlMap map = privateParameters(private_node);
   VisualizationOptions options;
   options.error_magnification = map.number("error_magnification",
                                            ValueRange::closed(1.0, kLargestMagnification),

@@ -49,6 +49,18 @@ TEST(YamlReader, ReadsEveryType) {
   EXPECT_NO_THROW(map.finish());
 }
 
+TEST(YamlReader, TellsNoLineOfWhatIsNoFile) {
+  const YamlMap map = YamlMap::parse("{a: {n: x, l: [1, 0]}}", "/node", LineNumbers::kOmitted);
+  const YamlMap a = map.map("a");
+  const ValueRange range = ValueRange::positive("A");
+  EXPECT_EQ(errorMessage<ConfigError>([&] { a.number("n", range); }),
+            "/node: a.n: \"x\" is not a number; allowed is (0, inf) A.");
+  EXPECT_EQ(errorMessage<ConfigError>([&] { a.numbers("l", range); }),
+            "/node: a.l[1]: 0 is outside (0, inf) A.");
+  EXPECT_EQ(errorMessage<ConfigError>([&] { a.text("absent"); }),
+            "/node: a.absent: the key is missing.");
+}
+
 TEST(YamlReader, FallsBackOnlyWhereTheKeyIsAbsent) {
   const YamlMap map = YamlMap::parse("n: 2\nempty:\n", "f.yaml");
   EXPECT_EQ(map.number("n", ValueRange::finite(), 5.0), 2.0);

@@ -38,11 +38,15 @@ class DriverNode:
         return None if status is None else status.level
 
     def message(self, task):
-        return self._status[task].message
+        return self._reported(task).message
 
     def value(self, task, key):
-        values = {item.key: item.value for item in self._status[task].values}
+        values = {item.key: item.value for item in self._reported(task).values}
         return values[key]
+
+    def _reported(self, task):
+        """The last report, or the first when none has come yet."""
+        return wait_for(lambda: self._status.get(task), f"diagnostics of {task}")
 
     def wait_for_level(self, task, level):
         wait_for(lambda: self.level(task) == level, f"{task} at level {level}")

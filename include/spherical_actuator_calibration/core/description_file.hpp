@@ -6,6 +6,7 @@
 #include "spherical_actuator_calibration/core/actuator.hpp"
 #include "spherical_actuator_calibration/core/atomic_file.hpp"
 #include "spherical_actuator_calibration/core/calibration_record.hpp"
+#include "spherical_actuator_calibration/core/yaml_reader.hpp"
 
 namespace spherical_actuator_calibration {
 
@@ -23,6 +24,8 @@ struct CalibratedDescription {
 CalibratedDescription loadDescription(const std::string& path);
 /// The same for text in memory; `name` stands for the file in messages.
 CalibratedDescription parseDescription(const std::string& text, const std::string& name);
+/// The same for a map that was read already, such as parameters of a node.
+CalibratedDescription readDescription(const YamlMap& file);
 /// The actuator of a description file, nominal or calibrated.
 Actuator loadActuator(const std::string& path);
 

@@ -10,6 +10,9 @@
 
 namespace spherical_actuator_calibration {
 
+/// Whether messages tell the line: not where the text came from elsewhere than a file.
+enum class LineNumbers { kTold, kOmitted };
+
 /// One map of a YAML file, read key by key with types and ranges. Reading is strict: every error is
 /// a ConfigError of the form "file.yaml:12: actuator.poles[3].polar: 2.1 is outside [-1.5708,
 /// 1.5708] rad." Entries of sequences count from 0 in these key paths.
@@ -25,7 +28,9 @@ class YamlMap {
   /// documents or a document that is no map, or when a key is given twice.
   static YamlMap load(const std::string& path);
   /// The same for text in memory; `name` stands for the file in messages.
-  static YamlMap parse(const std::string& text, const std::string& name);
+  static YamlMap parse(const std::string& text,
+                       const std::string& name,
+                       LineNumbers line_numbers = LineNumbers::kTold);
 
   bool has(const std::string& key) const;
 
@@ -74,7 +79,8 @@ class YamlMap {
   /// Rejects every key of this map, and of all maps taken from it, that no getter asked for.
   void finish() const;
 
-  /// "file.yaml:12: actuator.poles[3].polar", for messages about the value of a key that is there
+  /// "file.yaml:12: actuator.poles[3].polar" ("name: actuator.poles[3].polar" without line
+  /// numbers), for messages about the value of a key that is there
   /// (or, with the line of the map, of one that is not).
   std::string where(const std::string& key) const;
 

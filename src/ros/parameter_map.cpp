@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -61,22 +61,24 @@ std::string yamlOfParameter(const XmlRpcValue& value, const std::string& key) {
   }
 }
 
-std::string requiredParameterText(const ros::NodeHandle& node, const std::string& key) {
+YamlMap requiredParameters(const ros::NodeHandle& node, const std::string& key) {
   XmlRpcValue value;
   if (!node.getParam(key, value)) {
     throw ConfigError("The parameter " + node.resolveName(key) +
                       " is missing: load the description with rosparam, or start the node by a "
                       "launch file of this package.");
   }
-  return quoted(key) + ": " + yamlOfParameter(value, node.resolveName(key)) + "\n";
+  const std::string text = quoted(key) + ": " + yamlOfParameter(value, node.resolveName(key));
+  return YamlMap::parse(text, node.getNamespace(), LineNumbers::kOmitted);
 }
 
-std::string privateParameterText(const ros::NodeHandle& private_node) {
+YamlMap privateParameters(const ros::NodeHandle& private_node) {
   XmlRpcValue value;
-  const std::string& key = private_node.getNamespace();
-  return private_node.getParam(key, value) && value.getType() == XmlRpcValue::TypeStruct
-             ? yamlOfParameter(value, key) + "\n"
-             : "{}\n";
+  const std::string& name = private_node.getNamespace();
+  const bool has_parameters =
+      private_node.getParam(name, value) && value.getType() == XmlRpcValue::TypeStruct;
+  return YamlMap::parse(
+      has_parameters ? yamlOfParameter(value, name) : "{}", name, LineNumbers::kOmitted);
 }
 
 }  // namespace spherical_actuator_calibration

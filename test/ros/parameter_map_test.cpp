@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/ros/parameter_text.hpp"
+#include "spherical_actuator_calibration/ros/parameter_map.hpp"
 
 #include <string>
 
@@ -33,7 +33,7 @@ XmlRpcValue descriptionParameter() {
   return actuator;
 }
 
-TEST(ParameterText, IsReadAsADescriptionFile) {
+TEST(ParameterMap, IsReadAsADescriptionFile) {
   const std::string text = "actuator: " + yamlOfParameter(descriptionParameter(), "/actuator");
   const Actuator actuator = parseDescription(text, "/actuator").actuator;
   EXPECT_EQ(actuator.name, "small");
@@ -42,7 +42,7 @@ TEST(ParameterText, IsReadAsADescriptionFile) {
   EXPECT_EQ(actuator.joints[2].offset, 2.1);
 }
 
-TEST(ParameterText, KeepsEveryBitOfANumber) {
+TEST(ParameterMap, KeepsEveryBitOfANumber) {
   for (const double value : {0.1, 1.0 / 3.0, -2.5e-300, 1e22, 0.0}) {
     XmlRpcValue map;
     map["x"] = value;
@@ -51,7 +51,7 @@ TEST(ParameterText, KeepsEveryBitOfANumber) {
   }
 }
 
-TEST(ParameterText, KeepsTypesApart) {
+TEST(ParameterMap, KeepsTypesApart) {
   XmlRpcValue map;
   map["truth"] = true;
   map["word"] = std::string("true");
@@ -65,7 +65,7 @@ TEST(ParameterText, KeepsTypesApart) {
   EXPECT_THROW(read.boolean("word"), ConfigError);
 }
 
-TEST(ParameterText, NamesAValueThatCannotBeUsed) {
+TEST(ParameterMap, NamesAValueThatCannotBeUsed) {
   XmlRpcValue map;
   map["list"][0] = 1;
   std::string bytes = "binary";
