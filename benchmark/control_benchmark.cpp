@@ -1,10 +1,10 @@
 #include <benchmark/benchmark.h>
 
-#include "spherical_actuator_calibration/core/orientation_controller.hpp"
-#include "spherical_actuator_calibration/core/rotations.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "support/scenarios.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr Stamp kCycle = 1000000;  // [ns]
@@ -38,4 +38,4 @@ BENCHMARK_CAPTURE(controlCycle, within_limits, kAmple);
 BENCHMARK_CAPTURE(controlCycle, at_the_limits, kTight);
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks

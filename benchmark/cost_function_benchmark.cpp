@@ -4,10 +4,10 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
-#include "spherical_actuator_calibration/core/cost_functions.hpp"
+#include "spherical_actuator_calibration/estimation/cost_functions.hpp"
 #include "support/autodiff_costs.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr std::size_t kSamples = 30;
@@ -82,4 +82,4 @@ BENCHMARK_CAPTURE(torqueCost, analytic, Derivative::kAnalytic);
 BENCHMARK_CAPTURE(torqueCost, autodiff, Derivative::kAutodiff);
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks

@@ -1,10 +1,10 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
-#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
-#include "spherical_actuator_calibration/core/least_squares.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/estimation/least_squares.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr double kExact = 1e-10;  // what noiseless samples must give [rad]
@@ -94,4 +94,4 @@ BENCHMARK_CAPTURE(runWholeCycle, coil, Cycle::kCoil)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks

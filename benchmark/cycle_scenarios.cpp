@@ -8,7 +8,7 @@
 
 #include "support/scenarios.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr std::uint64_t kSeed = 20;
@@ -221,4 +221,4 @@ std::string toJson(const CycleScenario& scenario, const CalibrationState& soluti
   return json.text();
 }
 
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 
 /// Everything that one cycle starts from, and the truth it should find.
 struct CycleScenario {
@@ -31,4 +31,4 @@ double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x);
 /// The scenario and its solution as a JSON object, every number exact, for the reference script.
 std::string toJson(const CycleScenario& scenario, const CalibrationState& solution);
 
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks

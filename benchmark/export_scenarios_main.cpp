@@ -7,7 +7,7 @@
 
 #include "cycle_scenarios.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 std::string solved(Cycle cycle, std::size_t samples) {
@@ -18,11 +18,11 @@ std::string solved(Cycle cycle, std::size_t samples) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks
 
 int main(int argc, char** argv) {
-  using spherical_actuator_calibration::Cycle;
-  using spherical_actuator_calibration::benchmarks::solved;
+  using sac::Cycle;
+  using sac::benchmarks::solved;
   if (argc != 2) {
     std::cerr << "usage: export_scenarios FILE.json\n";
     return 2;

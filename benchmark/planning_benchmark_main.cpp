@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/cramer_rao_bound.hpp"
-#include "spherical_actuator_calibration/core/pose_planner.hpp"
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
+#include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr std::uint64_t kSeeds = 50;
@@ -96,9 +96,9 @@ void printFigures() {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks
 
 int main() {
-  spherical_actuator_calibration::benchmarks::printFigures();
+  sac::benchmarks::printFigures();
   return 0;
 }

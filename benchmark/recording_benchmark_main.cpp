@@ -13,10 +13,11 @@
 #include <sensor_msgs/JointState.h>
 #include <spherical_actuator_calibration/CoilCurrents.h>
 
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/ros/recording_reader.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 
-namespace spherical_actuator_calibration::benchmarks {
+namespace sac::benchmarks {
 namespace {
 
 constexpr const char* kJointStates = "/actuator/joint_states";
@@ -43,7 +44,7 @@ std::int64_t passOver(const std::string& path) {
     } else if (topic == kJointStates) {
       instantiateAs<sensor_msgs::JointState>(message);
     } else if (topic == kCurrents) {
-      instantiateAs<CoilCurrents>(message);
+      instantiateAs<msg::CoilCurrents>(message);
     } else {
       instantiateAs<geometry_msgs::QuaternionStamped>(message);
     }
@@ -76,10 +77,10 @@ void readSamples(benchmark::State& state, const Actuator& actuator, const std::s
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration::benchmarks
+}  // namespace sac::benchmarks
 
 int main(int argc, char** argv) {
-  using namespace spherical_actuator_calibration;
+  using namespace sac;
   benchmark::Initialize(&argc, argv);
   if (argc != 3) {
     std::cerr << "usage: recording_benchmark ACTUATOR.yaml RECORDING.bag [--benchmark_...]\n";

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// A loop that was held up must not make up for it with one large step [s].
@@ -128,4 +128,4 @@ std::string CoilDriver::stop() {
   return reason;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 // Words that fit into one request (Modbus application protocol).
@@ -134,4 +134,4 @@ void CurrentAmplifier::writeSetpoints(const std::vector<std::uint16_t>& words) {
   }
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

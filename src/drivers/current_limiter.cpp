@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spherical_actuator_calibration/core/value_range.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 void validate(const CurrentLimits& limits) {
   const ValueRange ampere{0.0, 1000.0, "A", true, false};
@@ -56,4 +56,4 @@ const Eigen::VectorXd& CurrentLimiter::stop() {
   return setpoints_;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

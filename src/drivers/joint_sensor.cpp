@@ -6,10 +6,10 @@
 
 #include <Eigen/LU>
 
-#include "spherical_actuator_calibration/core/actuator.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Words that may be read in vain to save a request, and the most that one request holds.
@@ -215,4 +215,4 @@ std::vector<RegisterContent> encodeJoints(const JointSensorOptions& options,
   return contents;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

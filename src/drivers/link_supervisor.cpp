@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 void LinkSupervisor::success() {
   if (!is_up_ && was_up_) {
@@ -21,4 +21,4 @@ void LinkSupervisor::failure(double now, const std::string& reason) {
   next_try_ = now + wait_;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

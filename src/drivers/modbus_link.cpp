@@ -7,10 +7,10 @@
 
 #include <modbus/modbus.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr int kDataBits = 8;
@@ -171,4 +171,4 @@ std::unique_ptr<ModbusTransport> makeTransport(const ModbusLinkOptions& options)
   return std::make_unique<LibmodbusTransport>(options);
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

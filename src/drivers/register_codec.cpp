@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr std::array<std::pair<RegisterType, const char*>, 5> kNames = {{
@@ -115,4 +115,4 @@ std::vector<std::uint16_t> encodeRegisters(double value, RegisterType type, Word
   return twoWords(floatBits(value), order);
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

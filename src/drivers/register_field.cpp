@@ -1,6 +1,6 @@
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 RegisterField readRegisterField(const YamlMap& map) {
   constexpr std::int64_t kLargestUnit = 247;
@@ -23,4 +23,4 @@ RegisterField readRegisterField(const YamlMap& map) {
   return field;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -1,8 +1,9 @@
 #include <ros/spinner.h>
 
-#include "spherical_actuator_calibration/ros/calibration_node.hpp"
-#include "spherical_actuator_calibration/ros/node_main.hpp"
-#include "spherical_actuator_calibration/ros/termination.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
+#include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
+#include "spherical_actuator_calibration/ros/node/node_main.hpp"
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 namespace {
 
@@ -12,7 +13,6 @@ constexpr unsigned kServiceThreads = 4;
 }  // namespace
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runNode(argc,
                       argv,
                       "calibration",

@@ -1,10 +1,9 @@
-#include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
-#include "spherical_actuator_calibration/ros/node_main.hpp"
-#include "spherical_actuator_calibration/ros/orientation_controller_node.hpp"
-#include "spherical_actuator_calibration/ros/termination.hpp"
+#include "spherical_actuator_calibration/ros/controller/orientation_controller_node.hpp"
+#include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
+#include "spherical_actuator_calibration/ros/node/node_main.hpp"
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runNode(argc,
                       argv,
                       "orientation_controller",

@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/rviz/calibration_panel.hpp"
+#include "calibration_panel.hpp"
 
 #include <QGridLayout>
 #include <QHBoxLayout>
@@ -13,10 +13,11 @@
 
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/Restore.h"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/ros/calibration_node_options.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr int kPeriod = 100;       // [ms] between two looks at what has come
@@ -195,10 +196,10 @@ void CalibrationPanel::start() {
     return;
   }
   coil_->setRange(1, std::max(1, static_cast<int>(model_->coils())));
-  feed<CalibrationStatus>("status");
-  feed<CalibrationReport>("report");
-  feed<ActuatorParameters>("parameters");
-  feed<CalibrationSample>("samples");
+  feed<msg::CalibrationStatus>("status");
+  feed<msg::CalibrationReport>("report");
+  feed<msg::ActuatorParameters>("parameters");
+  feed<msg::CalibrationSample>("samples");
   constexpr std::uint32_t kQueueLength = 100;
   subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics",
@@ -306,16 +307,16 @@ void CalibrationPanel::call(const std::string& service, const typename Service::
 }
 
 void CalibrationPanel::capture() {
-  Capture::Request request;
+  msg::Capture::Request request;
   request.duration = duration_->value();
   request.validation = static_cast<std::uint8_t>(validation_->isChecked());
-  call<Capture>("capture", request);
+  call<msg::Capture>("capture", request);
 }
 
 void CalibrationPanel::calibrate(const std::string& service, std::uint32_t coil) {
-  Calibrate::Request request;
+  msg::Calibrate::Request request;
   request.coil = coil;
-  call<Calibrate>(service, request);
+  call<msg::Calibrate>(service, request);
 }
 
 void CalibrationPanel::trigger(const std::string& service) {
@@ -331,9 +332,9 @@ void CalibrationPanel::forgetSamples() {
 }
 
 void CalibrationPanel::restore() {
-  Restore::Request request;
+  msg::Restore::Request request;
   request.revision = static_cast<std::uint32_t>(revision_->value());
-  call<Restore>("restore", request);
+  call<msg::Restore>("restore", request);
 }
 
 void CalibrationPanel::setAutoCapture(bool on) {
@@ -356,6 +357,6 @@ void CalibrationPanel::save(rviz::Config config) const {
   config.mapSetValue("Capture Duration", duration_->value());
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
-PLUGINLIB_EXPORT_CLASS(spherical_actuator_calibration::CalibrationPanel, rviz::Panel)
+PLUGINLIB_EXPORT_CLASS(sac::CalibrationPanel, rviz::Panel)

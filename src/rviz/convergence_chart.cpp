@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/rviz/convergence_chart.hpp"
+#include "convergence_chart.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <QtCharts/QLogValueAxis>
 #include <QtCharts/QValueAxis>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// A logarithm needs something above zero: an error below is drawn there.
@@ -64,4 +64,4 @@ void ConvergenceChart::setHistory(const QString& title, const std::vector<double
                     std::pow(10.0, std::floor(std::log10(largest)) + 1.0));
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

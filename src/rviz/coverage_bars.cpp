@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/rviz/coverage_bars.hpp"
+#include "coverage_bars.hpp"
 
 #include <QHelpEvent>
 #include <QPainter>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 // Sizes [px].
@@ -119,4 +119,4 @@ bool CoverageBars::event(QEvent* event) {
   return true;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

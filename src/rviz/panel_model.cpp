@@ -1,17 +1,18 @@
-#include "spherical_actuator_calibration/rviz/panel_model.hpp"
+#include "panel_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/estimation_problem.hpp"
-#include "spherical_actuator_calibration/core/sample_coverage.hpp"
-#include "spherical_actuator_calibration/core/text_format.hpp"
-#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+#include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Diagnostics come every second; after this they are old [s].
@@ -63,19 +64,19 @@ bool isAngle(const std::string& parameter) {
          ends("/azimuth");
 }
 
-std::string cycleName(const CalibrationReport& report) {
-  if (report.cycle == CalibrationReport::REFINE) {
+std::string cycleName(const msg::CalibrationReport& report) {
+  if (report.cycle == msg::CalibrationReport::REFINE) {
     return "Refinement";
   }
-  if (report.cycle == CalibrationReport::JOINT) {
+  if (report.cycle == msg::CalibrationReport::JOINT) {
     return "Joint";
   }
-  return (report.cycle == CalibrationReport::POLES ? "Poles with coil " : "Coil ") +
+  return (report.cycle == msg::CalibrationReport::POLES ? "Poles with coil " : "Coil ") +
          std::to_string(report.coil);
 }
 
 /// A malformed sample is somebody else's error, and nothing to show.
-void append(const CalibrationSample& message, std::vector<Sample>& samples) {
+void append(const msg::CalibrationSample& message, std::vector<Sample>& samples) {
   try {
     samples.push_back(sampleFromRos(message));
   } catch (const Error&) {
@@ -99,19 +100,19 @@ PanelModel::PanelModel(const Actuator& nominal, const std::string& name_space)
   }
 }
 
-void PanelModel::receive(const CalibrationStatus& message) {
+void PanelModel::receive(const msg::CalibrationStatus& message) {
   status_ = message;
   has_status_ = true;
   samples_.receive(message);
 }
 
-void PanelModel::receive(const CalibrationReport& message) {
+void PanelModel::receive(const msg::CalibrationReport& message) {
   last_ = message;
   if (message.success == 0) {
     return;
   }
   accepted_ = message;
-  for (const ParameterEstimateMessage& estimate : message.estimates) {
+  for (const msg::ParameterEstimate& estimate : message.estimates) {
     if (estimates_.find(estimate.name) == estimates_.end()) {
       order_.push_back(estimate.name);
     }
@@ -119,17 +120,17 @@ void PanelModel::receive(const CalibrationReport& message) {
   }
 }
 
-void PanelModel::receive(const ActuatorParameters& message) {
+void PanelModel::receive(const msg::ActuatorParameters& message) {
   parameters_ = message;
   // Of other than identified parameters the topics tell no uncertainty.
-  if (message.source != ActuatorParameters::IDENTIFIED) {
-    accepted_ = CalibrationReport();
+  if (message.source != msg::ActuatorParameters::IDENTIFIED) {
+    accepted_ = msg::CalibrationReport();
     estimates_.clear();
     order_.clear();
   }
 }
 
-void PanelModel::receive(const CalibrationSample& message) {
+void PanelModel::receive(const msg::CalibrationSample& message) {
   samples_.receive(message);
 }
 
@@ -236,7 +237,7 @@ std::string PanelModel::revision() const {
 }
 
 std::string PanelModel::verdict() const {
-  if (parameters_.source == ActuatorParameters::RESTORED) {
+  if (parameters_.source == msg::ActuatorParameters::RESTORED) {
     return "Restored: run a cycle, or see the saved report, for the uncertainty.";
   }
   if (!isIdentified()) {
@@ -261,7 +262,7 @@ std::string PanelModel::verdict() const {
 
 // A report may outlive its parameters: after a reset it is still the last one.
 bool PanelModel::isIdentified() const {
-  return parameters_.source == ActuatorParameters::IDENTIFIED && !estimates_.empty();
+  return parameters_.source == msg::ActuatorParameters::IDENTIFIED && !estimates_.empty();
 }
 
 std::vector<ParameterLine> PanelModel::parameters() const {
@@ -271,7 +272,7 @@ std::vector<ParameterLine> PanelModel::parameters() const {
   std::vector<ParameterLine> lines;
   lines.reserve(order_.size());
   for (const std::string& name : order_) {
-    const ParameterEstimateMessage& estimate = estimates_.at(name);
+    const msg::ParameterEstimate& estimate = estimates_.at(name);
     if (estimate.observable == 0 || !std::isfinite(estimate.stddev)) {
       lines.push_back({name, "–", "not identified"});
     } else if (isAngle(name)) {
@@ -296,7 +297,7 @@ std::vector<double> PanelModel::errorHistory() const {
 
 // Orientations and torques together have no common unit.
 bool PanelModel::isStandardized() const {
-  return last_.cycle == CalibrationReport::REFINE && status_.orientation_samples > 0;
+  return last_.cycle == msg::CalibrationReport::REFINE && status_.orientation_samples > 0;
 }
 
 std::string PanelModel::historyTitle() const {
@@ -306,8 +307,8 @@ std::string PanelModel::historyTitle() const {
   if (isStandardized()) {
     return cycleName(last_) + ": standardised residuals [1]";
   }
-  const bool is_joint = last_.cycle == CalibrationReport::JOINT;
+  const bool is_joint = last_.cycle == msg::CalibrationReport::JOINT;
   return cycleName(last_) + (is_joint ? ": orientation error [mrad]" : ": torque error [mN·m]");
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -8,11 +8,11 @@
 #include <system_error>
 
 #include "folder_sync.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ std::string CalibrationDirectory::revisionFile(std::uint32_t revision,
   return (fs::path(path_) / file).string();
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "row_access.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration::cycle_table {
+namespace sac::cycle_table {
 namespace {
 
 constexpr std::array<std::pair<ErrorMeasure, const char*>, 3> kErrorMeasures = {{
@@ -186,4 +186,4 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   return report;
 }
 
-}  // namespace spherical_actuator_calibration::cycle_table
+}  // namespace sac::cycle_table

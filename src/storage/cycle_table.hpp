@@ -7,11 +7,11 @@
 
 #include <SQLiteCpp/Database.h>
 
-#include "spherical_actuator_calibration/core/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 
 /// Tables cycles, cycle_errors, cycle_estimates and cycle_residuals (doc/session_database.md).
 /// Throws SQLite::Exception; the caller holds the transaction.
-namespace spherical_actuator_calibration::cycle_table {
+namespace sac::cycle_table {
 
 /// Returns the id of the new row.
 std::int64_t insert(const SQLite::Database& database,
@@ -22,4 +22,4 @@ std::optional<CycleReport> last(const SQLite::Database& database);
 /// Precondition: there is a row with this id.
 CycleReport find(const SQLite::Database& database, std::int64_t id);
 
-}  // namespace spherical_actuator_calibration::cycle_table
+}  // namespace sac::cycle_table

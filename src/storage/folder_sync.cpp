@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 void syncFolder(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -13,4 +13,4 @@ void syncFolder(const std::string& folder) {
   }
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -2,11 +2,10 @@
 
 #include <utility>
 
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/report_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 LiveSession::LiveSession(const CalibratedDescription& start,
                          const CalibrationConfig& config,
@@ -91,10 +90,6 @@ CalibratedDescription LiveSession::description(const std::string& date) const {
   return session_.description(origin(date));
 }
 
-std::string LiveSession::report(const std::string& date) const {
-  return renderReport(session_, origin(date), {});
-}
-
 CalibrationOrigin LiveSession::origin(const std::string& date) const {
   CalibrationOrigin origin;
   origin.date = date;
@@ -108,4 +103,4 @@ void LiveSession::putInForce(const Revision& revision) {
   revision_ = revision;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr std::size_t kBytes = sizeof(double);
@@ -59,4 +59,4 @@ Eigen::MatrixXd matrixOf(const std::string& blob, Eigen::Index rows, Eigen::Inde
   return matrix;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

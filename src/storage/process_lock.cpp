@@ -5,12 +5,12 @@
 
 #include <sys/file.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 [[noreturn]] void failWith(const std::string& path, int error) {
@@ -46,4 +46,4 @@ ProcessLock::~ProcessLock() {
   ::close(descriptor_);
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Makes this process the only one that writes a file: holds a lock on `<path>.lock`, which ends
 /// with the process however it ends. The lock file stays; removing it could hand out two locks.
@@ -19,4 +19,4 @@ class ProcessLock {
   int descriptor_ = -1;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

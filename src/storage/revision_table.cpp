@@ -5,9 +5,9 @@
 
 #include "number_blob.hpp"
 #include "row_access.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration::revision_table {
+namespace sac::revision_table {
 namespace {
 
 RevisionSummary readSummary(RowReader& row) {
@@ -110,4 +110,4 @@ std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32
   return cycles;
 }
 
-}  // namespace spherical_actuator_calibration::revision_table
+}  // namespace sac::revision_table

@@ -10,7 +10,7 @@
 
 /// Table revisions (doc/session_database.md). Throws SQLite::Exception; the caller holds the
 /// transaction.
-namespace spherical_actuator_calibration::revision_table {
+namespace sac::revision_table {
 
 /// What led to a revision.
 struct Lineage {
@@ -27,4 +27,4 @@ std::vector<RevisionSummary> all(const SQLite::Database& database);
 /// Ids of the cycles that led to a revision, in their order.
 std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number);
 
-}  // namespace spherical_actuator_calibration::revision_table
+}  // namespace sac::revision_table

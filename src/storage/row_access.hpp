@@ -10,7 +10,7 @@
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Writes rows: values go to the parameters of an SQL statement one after the other.
 class RowWriter {
@@ -93,4 +93,4 @@ class RowReader {
   int column_ = 0;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

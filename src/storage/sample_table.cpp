@@ -4,7 +4,7 @@
 
 #include "row_access.hpp"
 
-namespace spherical_actuator_calibration::sample_table {
+namespace sac::sample_table {
 namespace {
 
 /// Currents of the samples in use.
@@ -133,4 +133,4 @@ std::uint32_t nextId(const SQLite::Database& database) {
   return row.count();
 }
 
-}  // namespace spherical_actuator_calibration::sample_table
+}  // namespace sac::sample_table

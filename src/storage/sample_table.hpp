@@ -7,11 +7,11 @@
 
 #include <SQLiteCpp/Database.h>
 
-#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 /// Tables samples and sample_currents (doc/session_database.md). Throws SQLite::Exception; the
 /// caller holds the transaction.
-namespace spherical_actuator_calibration::sample_table {
+namespace sac::sample_table {
 
 void insert(const SQLite::Database& database, const Sample& sample, const std::string& date);
 std::vector<Sample> inUse(const SQLite::Database& database);
@@ -21,4 +21,4 @@ bool remove(const SQLite::Database& database, std::uint32_t id, const std::strin
 std::size_t clear(const SQLite::Database& database, const std::string& date);
 std::uint32_t nextId(const SQLite::Database& database);
 
-}  // namespace spherical_actuator_calibration::sample_table
+}  // namespace sac::sample_table

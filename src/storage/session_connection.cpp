@@ -7,7 +7,7 @@
 #include "folder_sync.hpp"
 #include "session_schema.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// How long another program, such as the sqlite3 shell, may hold up a transaction.
@@ -56,4 +56,4 @@ void SessionConnection::write(const std::string& failure,
   });
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -9,7 +9,7 @@
 #include "process_lock.hpp"
 #include "storage_error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// The open file of a session database, locked against other writers. Turns the errors of SQLite
 /// into DataError.
@@ -42,4 +42,4 @@ class SessionConnection {
   SQLite::Database database_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

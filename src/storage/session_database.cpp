@@ -7,11 +7,11 @@
 #include "row_access.hpp"
 #include "sample_table.hpp"
 #include "session_connection.hpp"
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "unit_table.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr char kNotRead[] = "the session cannot be read";
@@ -185,4 +185,4 @@ std::vector<RevisionSummary> SessionDatabase::revisions() const {
                                   [this] { return revision_table::all(tables_->database()); });
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

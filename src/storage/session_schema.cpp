@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "row_access.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "storage_error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
@@ -150,4 +150,4 @@ void createSessionSchema(SQLite::Database& database) {
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,7 +4,7 @@
 
 #include <SQLiteCpp/Database.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// True when the file is a session database; false when it holds nothing yet. Changes nothing.
 /// Throws DataError when it is something else, of a newer version, or damaged.
@@ -13,4 +13,4 @@ bool hasSessionSchema(const SQLite::Database& database, const std::string& path)
 /// Makes the tables of doc/session_database.md, within the caller's transaction.
 void createSessionSchema(SQLite::Database& database);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

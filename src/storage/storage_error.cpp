@@ -1,10 +1,10 @@
 #include "storage_error.hpp"
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
 #include <sqlite3.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr char kDamaged[] =
@@ -52,4 +52,4 @@ void throwDamaged(const std::string& path, const std::string& finding) {
   throw DataError(path + ": " + kDamaged + " (" + finding + ").");
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,7 +4,7 @@
 
 #include <SQLiteCpp/Exception.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Throws DataError for an error of SQLite: the file, what failed ("Sample 3 was not stored"), why,
 /// and what to do.
@@ -15,4 +15,4 @@ namespace spherical_actuator_calibration {
 /// Throws DataError: the database at `path` is damaged, as `finding` tells.
 [[noreturn]] void throwDamaged(const std::string& path, const std::string& finding);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

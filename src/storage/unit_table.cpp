@@ -3,10 +3,10 @@
 #include <optional>
 
 #include "row_access.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "storage_error.hpp"
 
-namespace spherical_actuator_calibration::unit_table {
+namespace sac::unit_table {
 namespace {
 
 constexpr char kTextName[] = "the actuator description";
@@ -65,4 +65,4 @@ void check(const SQLite::Database& database,
   }
 }
 
-}  // namespace spherical_actuator_calibration::unit_table
+}  // namespace sac::unit_table

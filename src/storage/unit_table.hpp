@@ -4,11 +4,11 @@
 
 #include <SQLiteCpp/Database.h>
 
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/laboratory_effects.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
 /// Table unit: whom the database belongs to (doc/session_database.md). Throws SQLite::Exception.
-namespace spherical_actuator_calibration::unit_table {
+namespace sac::unit_table {
 
 /// Throws ConfigError when the description is not valid.
 void insert(const SQLite::Database& database,
@@ -21,4 +21,4 @@ void check(const SQLite::Database& database,
            const CalibratedDescription& start,
            const EffectSelection& effects);
 
-}  // namespace spherical_actuator_calibration::unit_table
+}  // namespace sac::unit_table

@@ -7,23 +7,24 @@
 
 #include "calibrate_bag_options.hpp"
 #include "calibration_text.hpp"
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
-#include "spherical_actuator_calibration/core/model_choice.hpp"
-#include "spherical_actuator_calibration/core/report_file.hpp"
-#include "spherical_actuator_calibration/core/urdf_file.hpp"
-#include "spherical_actuator_calibration/ros/file_checksum.hpp"
-#include "spherical_actuator_calibration/ros/recording_reader.hpp"
-#include "spherical_actuator_calibration/ros/report_page.hpp"
-#include "spherical_actuator_calibration/ros/utc_date.hpp"
+#include "spherical_actuator_calibration/actuator/actuator_design.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/model_choice.hpp"
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/ros/conversion/file_checksum.hpp"
+#include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
+#include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
+#include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 #include "tool_main.hpp"
 
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,10 +224,9 @@ int calibrateBag(const CalibrateBagOptions& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("calibrate_bag", [&] {
     const auto options = sac::parseCalibrateBagOptions(argc, argv, std::cout);
     return options ? sac::calibrateBag(*options) : sac::kComplete;

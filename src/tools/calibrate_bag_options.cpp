@@ -5,10 +5,10 @@
 
 #include <boost/program_options.hpp>
 
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace po = boost::program_options;
@@ -138,4 +138,4 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
   }
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What the command line of calibrate_bag asks for.
 struct CalibrateBagOptions {
@@ -33,4 +33,4 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
                                                             const char* const* argv,
                                                             std::ostream& out);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -10,18 +10,18 @@
 
 #include <boost/program_options.hpp>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/calibration_config.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/session_plan_file.hpp"
-#include "spherical_actuator_calibration/core/study_file.hpp"
-#include "spherical_actuator_calibration/core/yaml_writer.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/study/study_file.hpp"
 #include "tool_main.hpp"
 
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace po = boost::program_options;
@@ -271,10 +271,9 @@ void study(const Options& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("calibration_study", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
-#include "spherical_actuator_calibration/core/sample_influence.hpp"
-#include "spherical_actuator_calibration/core/text_format.hpp"
+#include "spherical_actuator_calibration/assessment/sample_influence.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Half width of the 95 % interval of a normal distribution, in standard deviations.
@@ -225,4 +225,4 @@ std::string parameterTable(const CalibrationSession& session,
   return truth ? text + coverageLine(rows) : text;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "spherical_actuator_calibration/core/calibration_report.hpp"
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/held_out_validation.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// One cycle for people: its message, errors of all iterations, misfit, rejected samples.
 std::string cycleParagraph(const CycleReport& report);
@@ -27,4 +27,4 @@ std::string openParagraph(const CalibrationSession& session);
 /// how many of the 95 % intervals hold it.
 std::string parameterTable(const CalibrationSession& session, const std::optional<Actuator>& truth);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -2,12 +2,12 @@
 #include <optional>
 #include <string>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/urdf_generator.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "tool_main.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 struct Options {
@@ -59,10 +59,9 @@ void writeUrdf(const Options& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("generate_urdf", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {

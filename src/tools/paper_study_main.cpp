@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/paper_control_study.hpp"
-#include "spherical_actuator_calibration/core/paper_study.hpp"
-#include "spherical_actuator_calibration/core/text_format.hpp"
-#include "spherical_actuator_calibration/core/yaml_writer.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/study/paper_control_study.hpp"
+#include "spherical_actuator_calibration/study/paper_study.hpp"
 #include "tool_main.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Gravity torque that loads the rotor beside its centre [N·m] (doc/method.md, Dynamics).
@@ -358,10 +358,9 @@ void writeStudy(const Options& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("paper_study", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {

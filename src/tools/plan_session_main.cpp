@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "plan_session_options.hpp"
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/cycle_selection.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/sample_file.hpp"
-#include "spherical_actuator_calibration/core/session_plan_file.hpp"
-#include "spherical_actuator_calibration/ros/recording_reader.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/measurement/sample_file.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 #include "tool_main.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Samples measured already, of all files.
@@ -139,10 +139,9 @@ void writePlan(const PlanSessionOptions& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("plan_session", [&] {
     const auto options = sac::parsePlanSessionOptions(argc, argv, std::cout);
     if (options) {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/calibration_cycles.hpp"
-#include "spherical_actuator_calibration/core/pose_planner.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What the command line of plan_session asks for.
 struct PlanSessionOptions {
@@ -30,4 +30,4 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
                                                           const char* const* argv,
                                                           std::ostream& out);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -6,13 +6,14 @@
 #include <boost/program_options.hpp>
 #include <rosbag/bag.h>
 
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/sample_file.hpp"
-#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/measurement/sample_file.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "tool_main.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Stamp of the first sample, and the time from one to the next [s]: measurements that were written
@@ -59,13 +60,13 @@ void writeBag(const Options& options) {
   const std::string active_path = options.output_path + ".active";
   rosbag::Bag bag(active_path, rosbag::bagmode::Write);
   ros::Time stamp(kFirstStamp);
-  ActuatorParameters parameters = parametersToRos(actuator);
+  msg::ActuatorParameters parameters = parametersToRos(actuator);
   parameters.header.stamp = stamp;
   parameters.header.frame_id = "stator";
   parameters.source = "nominal";
   bag.write(options.ns + "/parameters", stamp, parameters);
   for (const Sample& sample : samples) {
-    CalibrationSample message = sampleToRos(sample);
+    msg::CalibrationSample message = sampleToRos(sample);
     message.header.stamp = stamp;
     message.header.frame_id = "stator";
     bag.write(options.ns + "/samples", stamp, message);
@@ -77,10 +78,9 @@ void writeBag(const Options& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("samples_to_bag", [&] {
     const auto options = sac::parseOptions(argc, argv);
     if (options) {

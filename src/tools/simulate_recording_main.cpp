@@ -4,18 +4,19 @@
 #include <iostream>
 
 #include "simulate_recording_options.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
-#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
-#include "spherical_actuator_calibration/core/session_plan.hpp"
-#include "spherical_actuator_calibration/core/session_plan_file.hpp"
-#include "spherical_actuator_calibration/core/session_simulator.hpp"
-#include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
+#include "spherical_actuator_calibration/actuator/actuator_design.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/emulation/session_simulator.hpp"
+#include "spherical_actuator_calibration/measurement/session_plan.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/ros/emulation_node/session_bag_writer.hpp"
 #include "tool_main.hpp"
 
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 /// Shows the share done on a terminal, and nothing anywhere else.
@@ -86,10 +87,9 @@ void simulateRecording(const SimulateRecordingOptions& options) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac
 
 int main(int argc, char** argv) {
-  namespace sac = spherical_actuator_calibration;
   return sac::runTool("simulate_recording", [&] {
     const auto options = sac::parseSimulateRecordingOptions(argc, argv, std::cout);
     if (options) {

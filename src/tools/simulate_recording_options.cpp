@@ -9,9 +9,9 @@
 
 #include <boost/program_options.hpp>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace po = boost::program_options;
@@ -322,4 +322,4 @@ std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
   return options;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,13 +4,13 @@
 #include <optional>
 #include <string>
 
-#include "spherical_actuator_calibration/core/atomic_file.hpp"
-#include "spherical_actuator_calibration/core/manufacturing_errors.hpp"
-#include "spherical_actuator_calibration/core/session_plan.hpp"
-#include "spherical_actuator_calibration/core/session_simulator.hpp"
-#include "spherical_actuator_calibration/ros/session_bag_writer.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+#include "spherical_actuator_calibration/emulation/session_simulator.hpp"
+#include "spherical_actuator_calibration/measurement/session_plan.hpp"
+#include "spherical_actuator_calibration/ros/emulation_node/session_bag_writer.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What the command line of simulate_recording asks for.
 struct SimulateRecordingOptions {
@@ -31,4 +31,4 @@ std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
                                                                       const char* const* argv,
                                                                       std::ostream& out);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

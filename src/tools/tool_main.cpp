@@ -4,7 +4,7 @@
 #include <exception>
 #include <iostream>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 int runTool(const char* name, const std::function<int()>& body) {
   try {
@@ -34,4 +34,4 @@ std::optional<boost::program_options::variables_map> parseCommandLine(
   return given;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

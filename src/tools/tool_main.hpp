@@ -6,7 +6,7 @@
 
 #include <boost/program_options.hpp>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Exit status of tools, beside their own: done; bad usage or unreadable input.
 inline constexpr int kToolSuccess = 0;
@@ -24,4 +24,4 @@ std::optional<boost::program_options::variables_map> parseCommandLine(
     boost::program_options::options_description& known,
     const std::string& usage);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/scripted_transport.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
+#include "support/scripted_transport.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr char kShippedFile[] = SOURCE_DIR "/config/coil_driver.yaml";
@@ -280,4 +280,4 @@ TEST(CurrentAmplifier, ConfigurationErrorsNameTheKey) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 Eigen::VectorXd currents(double a, double b, double c) {
@@ -69,4 +69,4 @@ TEST(CurrentLimiter, RefusesLimitsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

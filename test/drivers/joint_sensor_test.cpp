@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/scripted_transport.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
+#include "support/scripted_transport.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr char kShippedFile[] = SOURCE_DIR "/config/joint_sensor.yaml";
@@ -154,4 +154,4 @@ TEST(JointSensor, ConfigurationErrorsNameTheKey) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 TEST(LinkSupervisor, WaitsLongerAfterEachFailureUpToALimit) {
@@ -34,4 +34,4 @@ TEST(LinkSupervisor, BeginsAnewAfterASuccess) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

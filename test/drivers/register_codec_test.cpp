@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 using Words = std::vector<std::uint16_t>;
@@ -63,4 +63,4 @@ TEST(RegisterCodec, NamesItsTypes) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/rviz/panel_model.hpp"
+#include "panel_model.hpp"
 
 #include <limits>
 #include <string>
@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/ros/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "support/scenarios.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 ros::WallTime now() {
@@ -20,8 +21,8 @@ PanelModel paperPanel() {
   return PanelModel(scenarios::paperNominal(), "/actuator");
 }
 
-ActuatorParameters parametersOf(const std::string& source) {
-  ActuatorParameters message = parametersToRos(scenarios::paperTruth());
+msg::ActuatorParameters parametersOf(const std::string& source) {
+  msg::ActuatorParameters message = parametersToRos(scenarios::paperTruth());
   message.source = source;
   message.revision = 7;
   return message;
@@ -38,9 +39,9 @@ diagnostic_msgs::DiagnosticArray diagnosticsOf(const std::string& name,
   return array;
 }
 
-CalibrationReport refinementOf(double orientation_uncertainty, double torque_uncertainty) {
-  CalibrationReport report;
-  report.cycle = CalibrationReport::REFINE;
+msg::CalibrationReport refinementOf(double orientation_uncertainty, double torque_uncertainty) {
+  msg::CalibrationReport report;
+  report.cycle = msg::CalibrationReport::REFINE;
   report.success = 1;
   report.orientation_uncertainty = orientation_uncertainty;
   report.torque_uncertainty = torque_uncertainty;
@@ -91,7 +92,7 @@ TEST(PanelModel, TellsTheMostSeriousTroubleFirst) {
 
 TEST(PanelModel, ShowsWhatIsSampledAndWhatIsMissing) {
   PanelModel panel = paperPanel();
-  CalibrationStatus status;
+  msg::CalibrationStatus status;
   status.orientation_samples = 4;
   status.torque_samples.assign(24, 0U);
   status.torque_samples[4] = 2;
@@ -100,7 +101,7 @@ TEST(PanelModel, ShowsWhatIsSampledAndWhatIsMissing) {
   status.joint_done = 1;
   panel.receive(status);
   // Coil 1 at azimuth 0 sees pole 1 on the equator there, and no other at this orientation.
-  CalibrationSample sample;
+  msg::CalibrationSample sample;
   sample.id = 1;
   sample.has_torque = 1;
   sample.orientation.w = 1.0;
@@ -122,7 +123,7 @@ TEST(PanelModel, ShowsWhatIsSampledAndWhatIsMissing) {
 
 TEST(PanelModel, SamplesThatCannotBeAreLeftOut) {
   PanelModel panel = paperPanel();
-  CalibrationSample sample;
+  msg::CalibrationSample sample;
   sample.id = 1;
   sample.has_torque = 1;
   sample.has_orientation = 1;
@@ -186,7 +187,7 @@ TEST(PanelModel, NominalAndRestoredParametersHaveNoUncertaintyToShow) {
 
 TEST(PanelModel, AFailedCycleShowsItsHistoryButNoParameters) {
   PanelModel panel = paperPanel();
-  CalibrationReport failed = refinementOf(1.0, 1.0);
+  msg::CalibrationReport failed = refinementOf(1.0, 1.0);
   failed.success = 0;
   panel.receive(failed);
   EXPECT_TRUE(panel.parameters().empty());
@@ -196,7 +197,7 @@ TEST(PanelModel, AFailedCycleShowsItsHistoryButNoParameters) {
 
 TEST(PanelModel, ARefinementOfOrientationsAndTorquesHasNoUnit) {
   PanelModel panel = paperPanel();
-  CalibrationStatus status;
+  msg::CalibrationStatus status;
   status.orientation_samples = 3;
   panel.receive(status);
   panel.receive(refinementOf(3e-4, 1e-4));
@@ -205,4 +206,4 @@ TEST(PanelModel, ARefinementOfOrientationsAndTorquesHasNoUnit) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

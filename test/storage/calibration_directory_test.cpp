@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST(CalibrationDirectory, AFolderThatCannotBeMadeIsNamed) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -11,7 +11,7 @@
 
 #include "support/scenarios.hpp"
 
-namespace spherical_actuator_calibration::database_examples {
+namespace sac::database_examples {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -199,4 +199,4 @@ void change(const std::string& path, const std::string& sql) {
   SQLite::Database(path, SQLite::OPEN_READWRITE).exec(sql);
 }
 
-}  // namespace spherical_actuator_calibration::database_examples
+}  // namespace sac::database_examples

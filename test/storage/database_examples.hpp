@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <string>
 
-#include "spherical_actuator_calibration/core/calibration_report.hpp"
-#include "spherical_actuator_calibration/core/calibration_state.hpp"
-#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 
 /// Content for session databases. Numbers are random in every bit but follow from the arguments, so
 /// that what is read can be compared with what was written.
-namespace spherical_actuator_calibration::database_examples {
+namespace sac::database_examples {
 
 inline constexpr char kDate[] = "2024-05-31T12:00:00Z";
 
@@ -39,4 +39,4 @@ std::string query(const std::string& path, const std::string& sql);
 /// Runs SQL that changes the file.
 void change(const std::string& path, const std::string& sql);
 
-}  // namespace spherical_actuator_calibration::database_examples
+}  // namespace sac::database_examples

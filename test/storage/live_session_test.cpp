@@ -7,12 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 constexpr char kDate[] = "2024-05-31T12:00:00Z";
@@ -139,7 +140,8 @@ TEST_F(LiveSessionTest, DescriptionCarriesItsRevision) {
 
 TEST_F(LiveSessionTest, ReportIsOfTheRevisionInForceAndTheSamplesInUse) {
   const auto holds = [](const LiveSession& session, const std::string& part) {
-    return session.report(kDate).find(part) != std::string::npos;
+    return renderReport(session.calibration(), session.origin(kDate), {}).find(part) !=
+           std::string::npos;
   };
   {
     LiveSession session = open();
@@ -158,4 +160,4 @@ TEST_F(LiveSessionTest, ReportIsOfTheRevisionInForceAndTheSamplesInUse) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

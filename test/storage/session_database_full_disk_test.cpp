@@ -8,7 +8,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
@@ -16,7 +16,7 @@
 
 #include <sched.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(FullDisk, ANewDatabaseIsMadeWhenThereIsSpace) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -17,7 +17,7 @@
 
 #include <unistd.h>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 using database_examples::isSame;
@@ -190,4 +190,4 @@ TEST(KilledWriter, LosesNothingThatItAcknowledged) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 using database_examples::identity;
@@ -175,4 +175,4 @@ TEST_F(OpeningTest, AFolderThatTakesNoFilesIsRefused) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

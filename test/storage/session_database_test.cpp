@@ -8,13 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 namespace {
 
 using database_examples::identity;
@@ -243,4 +243,4 @@ TEST_F(SessionDatabaseTest, OtherProgramsReadWhileItIsOpen) {
 }
 
 }  // namespace
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

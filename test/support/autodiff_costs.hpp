@@ -9,15 +9,15 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/rotation.h>
 
-#include "spherical_actuator_calibration/core/calibration_model.hpp"
-#include "spherical_actuator_calibration/core/parameter_space.hpp"
-#include "spherical_actuator_calibration/core/sample.hpp"
-#include "spherical_actuator_calibration/core/torque_curve.hpp"
+#include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/parameter_space.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 /// The residuals of core/cost_functions.hpp stated a second time, straight from the equations of
 /// the paper and without a derivative by hand: Ceres differentiates them. What the analytic costs
 /// are checked against and measured against.
-namespace spherical_actuator_calibration::autodiff {
+namespace sac::autodiff {
 
 template <typename T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
@@ -151,4 +151,4 @@ using OrientationCost = ceres::AutoDiffCostFunction<OrientationResidual, 3, 9>;
 template <int kPoles>
 using TorqueCost = ceres::AutoDiffCostFunction<TorqueResidual, 3, 9, 2 * kPoles, 2>;
 
-}  // namespace spherical_actuator_calibration::autodiff
+}  // namespace sac::autodiff

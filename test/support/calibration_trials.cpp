@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 void TrialStatistics::add(const ParameterBelief& estimated,
                           const Eigen::VectorXd& truth,
@@ -35,4 +35,4 @@ double TrialStatistics::coverage() const {
   return static_cast<double>(covered_) / static_cast<double>(parameters_);
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/core/cramer_rao_bound.hpp"
+#include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Errors of many seeded trials against the bound and against their own intervals.
 class TrialStatistics {
@@ -34,4 +34,4 @@ class TrialStatistics {
   int parameters_ = 0;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

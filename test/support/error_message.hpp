@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Message of the exception of type `Expected` that `action` throws; "no exception" otherwise.
 template <typename Expected, typename Action>
@@ -15,4 +15,4 @@ std::string errorMessage(Action action) {
   return "no exception";
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Jacobian of f at x by central differences, fourth order; error about 1e-10 for smooth f of
 /// size 1.
@@ -24,4 +24,4 @@ inline Eigen::MatrixXd numericJacobian(
   return jacobian;
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

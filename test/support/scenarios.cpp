@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spherical_actuator_calibration/core/rotations.hpp"
-#include "spherical_actuator_calibration/core/spherical_joint.hpp"
-#include "spherical_actuator_calibration/core/torque_model.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 
-namespace spherical_actuator_calibration::scenarios {
+namespace sac::scenarios {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -270,4 +270,4 @@ CalibrationState exactJoints(const ParameterSpace& space,
   return state;
 }
 
-}  // namespace spherical_actuator_calibration::scenarios
+}  // namespace sac::scenarios

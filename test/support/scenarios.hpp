@@ -6,13 +6,13 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/core/actuator.hpp"
-#include "spherical_actuator_calibration/core/calibration_state.hpp"
-#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 /// Actuators, poses and samples with a known truth. Every random number comes from a seeded
 /// generator.
-namespace spherical_actuator_calibration::scenarios {
+namespace sac::scenarios {
 
 using Generator = std::mt19937_64;
 
@@ -88,4 +88,4 @@ CalibrationState exactJoints(const ParameterSpace& space,
                              const Actuator& truth,
                              const ManufacturingTolerance& tolerance);
 
-}  // namespace spherical_actuator_calibration::scenarios
+}  // namespace sac::scenarios

@@ -5,9 +5,9 @@
 #include <functional>
 #include <random>
 
-#include "spherical_actuator_calibration/core/rotations.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 
-namespace spherical_actuator_calibration::synthetic {
+namespace sac::synthetic {
 namespace {
 
 using Generator = std::mt19937_64;
@@ -213,4 +213,4 @@ std::vector<Sample> samplesOf(SampleBuilder& builder, const Streams& streams) {
   return builder.takeSamples();
 }
 
-}  // namespace spherical_actuator_calibration::synthetic
+}  // namespace sac::synthetic

@@ -6,11 +6,11 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/core/measurements.hpp"
-#include "spherical_actuator_calibration/core/sample_builder.hpp"
+#include "spherical_actuator_calibration/measurement/measurements.hpp"
+#include "spherical_actuator_calibration/streams/sample_builder.hpp"
 
 /// Streams of measurements with a known truth, for tests of what turns streams into samples.
-namespace spherical_actuator_calibration::synthetic {
+namespace sac::synthetic {
 
 /// Stamp of a time since the begin of a script [s].
 Stamp stampAt(double time);
@@ -102,4 +102,4 @@ void feedDelayed(SampleBuilder& builder,
 /// All samples of the streams, with finish().
 std::vector<Sample> samplesOf(SampleBuilder& builder, const Streams& streams);
 
-}  // namespace spherical_actuator_calibration::synthetic
+}  // namespace sac::synthetic

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// A folder of its own for each test's files; gone at the end of the test.
 class TemporaryFolder {
@@ -51,4 +51,4 @@ inline std::string contentOf(const std::string& path) {
   return content.str();
 }
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

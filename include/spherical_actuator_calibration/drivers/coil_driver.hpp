@@ -10,7 +10,7 @@
 #include "spherical_actuator_calibration/drivers/current_limiter.hpp"
 #include "spherical_actuator_calibration/drivers/link_supervisor.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Drives the coils of one actuator, beat by beat. Currents are zero unless there is every reason
 /// that they should not be: without a fresh command, after a lost link, after a trip, after an
@@ -62,4 +62,4 @@ class CoilDriver {
   std::optional<double> last_beat_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -11,7 +11,7 @@
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// The current amplifier of all coils, and how it is driven, as a configuration describes them.
 /// Blocks hold one number per coil, in description order, from the field's address on.
@@ -69,4 +69,4 @@ class CurrentAmplifier {
   std::uint16_t heartbeat_ = 0;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

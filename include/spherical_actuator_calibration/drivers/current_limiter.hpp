@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What coils, wires and supply bear.
 struct CurrentLimits {
@@ -42,4 +42,4 @@ class CurrentLimiter {
   std::size_t clamped_ = 0;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -11,7 +11,7 @@
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Two-axis tilt sensor on the part that joints 1 and 2 move. Channel x reads asin g_y, channel y
 /// asin(−g_x), with g the unit vector of gravity's reaction in the sensor (doc/method.md,
@@ -92,4 +92,4 @@ struct RegisterContent {
 std::vector<RegisterContent> encodeJoints(const JointSensorOptions& options,
                                           const Eigen::Vector3d& q);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// How long to wait before a lost device is tried again: doubled after each failure [s].
 struct BackOff {
@@ -44,4 +44,4 @@ class LinkSupervisor {
   std::string last_error_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

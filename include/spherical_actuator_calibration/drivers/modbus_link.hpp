@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 
-#include "spherical_actuator_calibration/core/yaml_reader.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/drivers/modbus_transport.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// How a Modbus device is reached.
 struct ModbusLinkOptions {
@@ -32,4 +32,4 @@ std::string describe(const ModbusLinkOptions& options);
 /// The bus by libmodbus; closed at first. Throws ConfigError when the options cannot be used.
 std::unique_ptr<ModbusTransport> makeTransport(const ModbusLinkOptions& options);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

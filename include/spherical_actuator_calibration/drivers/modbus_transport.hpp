@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// The two register tables of a Modbus device that hold 16-bit words.
 enum class RegisterTable {
@@ -38,4 +38,4 @@ class ModbusTransport {
   virtual void write(int unit, int address, const std::vector<std::uint16_t>& words) = 0;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

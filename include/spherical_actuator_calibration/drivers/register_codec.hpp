@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Forms in which devices keep one number in their registers.
 enum class RegisterType { kInt16, kUint16, kInt32, kUint32, kFloat32 };
@@ -29,4 +29,4 @@ double decodeRegisters(const std::uint16_t* words, RegisterType type, WordOrder 
 /// is not finite or beyond the range of the type.
 std::vector<std::uint16_t> encodeRegisters(double value, RegisterType type, WordOrder order);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/yaml_reader.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/drivers/modbus_transport.hpp"
 #include "spherical_actuator_calibration/drivers/register_codec.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// One number, or a block of numbers of one kind, in the registers of a device:
 /// value = sign · scale · (register − zero).
@@ -38,4 +38,4 @@ struct RegisterField {
 /// names the key.
 RegisterField readRegisterField(const YamlMap& map);
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

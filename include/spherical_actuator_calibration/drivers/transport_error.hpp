@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "spherical_actuator_calibration/core/error.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What went wrong between this machine and a device.
 enum class TransportFailure {
@@ -26,4 +26,4 @@ class TransportError : public Error {
   TransportFailure failure_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "spherical_actuator_calibration/core/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// The folder that holds everything a calibration of one unit writes. Names that come from the
 /// description cannot lead out of it.
@@ -35,4 +35,4 @@ class CalibrationDirectory {
   std::string name_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "spherical_actuator_calibration/core/calibration_config.hpp"
-#include "spherical_actuator_calibration/core/calibration_session.hpp"
-#include "spherical_actuator_calibration/core/session_guidance.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// The calibration of one unit as it grows: samples, cycles and revisions of the parameters. What a
 /// function acknowledges by returning is in the session database; when it throws, nothing has
@@ -58,11 +58,10 @@ class LiveSession {
 
   /// The calibrated description, with its record.
   CalibratedDescription description(const std::string& date) const;
-  /// All figures of the parameters in force and of the samples in use, see renderReport().
-  std::string report(const std::string& date) const;
+  /// Where a description or report of the parameters in force comes from.
+  CalibrationOrigin origin(const std::string& date) const;
 
  private:
-  CalibrationOrigin origin(const std::string& date) const;
   void putInForce(const Revision& revision);
 
   std::string software_;
@@ -71,4 +70,4 @@ class LiveSession {
   CalibrationSession session_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

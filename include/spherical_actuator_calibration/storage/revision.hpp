@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "spherical_actuator_calibration/core/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// Where the parameters of a revision come from, without the parameters.
 struct RevisionSummary {
@@ -22,4 +22,4 @@ struct Revision : RevisionSummary {
   CalibrationState state;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

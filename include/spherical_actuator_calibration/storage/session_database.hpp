@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/core/calibration_config.hpp"
-#include "spherical_actuator_calibration/core/calibration_report.hpp"
-#include "spherical_actuator_calibration/core/calibration_state.hpp"
-#include "spherical_actuator_calibration/core/description_file.hpp"
-#include "spherical_actuator_calibration/core/sample.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/storage/revision.hpp"
 
-namespace spherical_actuator_calibration {
+namespace sac {
 
 /// What the database of one unit belongs to.
 struct SessionIdentity {
@@ -84,4 +84,4 @@ class SessionDatabase {
   std::unique_ptr<Tables> tables_;
 };
 
-}  // namespace spherical_actuator_calibration
+}  // namespace sac

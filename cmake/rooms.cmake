@@ -1,0 +1,113 @@
+# Libraries are made of rooms: folders of include/, src/ and test/ of the same name. A room uses only rooms that
+# were added before it: the includes are held by dev/check_rooms, the symbols by the linker (see add_room()).
+
+# C++17, all warnings, and libraries found from an installed program without LD_LIBRARY_PATH.
+function(use_project_options target)
+  target_compile_definitions(${target} PRIVATE PACKAGE_VERSION="${${PROJECT_NAME}_VERSION}")
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wzero-as-null-pointer-constant -Werror)
+  set_target_properties(${target} PROPERTIES
+    CXX_STANDARD 17
+    CXX_STANDARD_REQUIRED ON
+    CXX_EXTENSIONS OFF
+    POSITION_INDEPENDENT_CODE ON
+    INSTALL_RPATH "$ORIGIN:$ORIGIN/..")
+endfunction()
+
+option(PRECOMPILED_HEADERS "Parse the headers of Eigen, ROS and GoogleTest once, which halves the build" ON)
+
+# The headers that a target precompiles, or shares: use_precompiled_headers(<target> <other target> | <headers...>)
+function(use_precompiled_headers target)
+  if(NOT PRECOMPILED_HEADERS)
+    return()
+  endif()
+  if(TARGET "${ARGV1}")
+    target_precompile_headers(${target} REUSE_FROM ${ARGV1})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# One shared library, whose rooms add their sources. add_library_of_rooms(<name> [ROS] [USES libraries...])
+# ROS: with ROS headers and generated messages, as system headers: their warnings are not ours.
+function(add_library_of_rooms name)
+  cmake_parse_arguments(arg "ROS" "" "USES" ${ARGN})
+  add_library(${name} SHARED)
+  use_project_options(${name})
+  # Without DEFINE_SYMBOL all libraries can share one precompiled header.
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX DEFINE_SYMBOL "")
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include>)
+  target_link_libraries(${name} PUBLIC ${arg_USES})
+  # The link fails as soon as a symbol comes from a library that is not named.
+  target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  if(arg_ROS)
+    target_include_directories(${name} SYSTEM PUBLIC
+      ${catkin_INCLUDE_DIRS}
+      ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+    target_link_libraries(${name} PUBLIC ${catkin_LIBRARIES})
+    add_dependencies(${name} ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+  endif()
+  install(TARGETS ${name}
+    ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+    LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+    RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+endfunction()
+
+# The room of the present folder: add_room(<room> LIBRARY <library> SOURCES files... [PRIVATE libraries...])
+# PRIVATE: libraries that no header of the room shows. With ENABLE_CHECKS each room is linked once with those
+# before it alone, so that a symbol of a later room fails the build.
+function(add_room room)
+  cmake_parse_arguments(arg "" "LIBRARY" "SOURCES;PRIVATE" ${ARGN})
+  list(TRANSFORM arg_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  target_sources(${arg_LIBRARY} PRIVATE ${arg_SOURCES})
+  target_link_libraries(${arg_LIBRARY} PRIVATE ${arg_PRIVATE})
+  set_property(TARGET ${arg_LIBRARY} APPEND PROPERTY ROOMS ${room})
+  if(ENABLE_CHECKS)
+    add_order_check(${room} ${arg_LIBRARY})
+  endif()
+endfunction()
+
+# Links the objects of a room with those of the rooms before it in its library, and with nothing after it.
+function(add_order_check room library)
+  get_target_property(rooms ${library} ROOMS)
+  list(LENGTH rooms count)
+  if(count EQUAL 1)
+    return()  # the library itself is the check
+  endif()
+  list(JOIN rooms "|" alternatives)
+  string(REPLACE "/" "_" name ${room}_order)
+  add_library(${name} MODULE
+    $<FILTER:$<TARGET_OBJECTS:${library}>,INCLUDE,/${library}\\.dir/\(${alternatives}\)/>)
+  set_target_properties(${name} PROPERTIES
+    LINKER_LANGUAGE CXX
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/order)
+  target_link_libraries(${name} PRIVATE $<TARGET_PROPERTY:${library},LINK_LIBRARIES>)
+  target_link_options(${name} PRIVATE -Wl,--no-undefined)
+endfunction()
+
+# Tests of a room, in one program: add_room_tests(<room> SOURCES files of test/<room>... LIBRARIES libraries...)
+# Internal headers of the room are found by their name, SOURCE_DIR is where the shipped files are.
+function(add_room_tests room)
+  if(NOT CATKIN_ENABLE_TESTING)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  string(REPLACE "/" "_" name ${room}_tests)
+  list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/test/${room}/)
+  add_executable(${name} ${exclude_tests_from_all} ${arg_SOURCES})
+  use_project_options(${name})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test)
+  target_compile_definitions(${name} PRIVATE SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} sac_test_support GTest::gtest_main)
+  if(name STREQUAL base_tests)
+    use_precompiled_headers(${name}
+      <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <string> <vector> <gtest/gtest.h>)
+  else()
+    use_precompiled_headers(${name} base_tests)
+  endif()
+  add_dependencies(tests ${name})
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS unit)
+endfunction()

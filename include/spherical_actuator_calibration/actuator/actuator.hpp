@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+
+namespace sac {
+
+/// Number of joints of the spherical joint.
+inline constexpr std::size_t kJoints = 3;
+
+/// One joint of the product of exponentials (paper (1)).
+struct JointAxis {
+  std::string name;                                 ///< joint name in joint_states and URDF
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit axis ω_k
+  double offset = 0.0;                              ///< joint offset δq_k [rad]
+};
+
+/// Axis of one magnet pole in the rotor frame (paper (19)).
+struct PoleAxis {
+  double polar = 0.0;    ///< elevation θ from the equator [rad], within ±π/2
+  double azimuth = 0.0;  ///< φ [rad]
+  int polarity = 1;      ///< p_i: +1 or −1
+  double gain = 1.0;     ///< strength relative to the torque curve; 1 unless identified
+};
+
+/// Axis of one coil in the stator frame (paper (20)).
+struct CoilAxis {
+  double polar = 0.0;    ///< elevation η from the equator [rad], within ±π/2
+  double azimuth = 0.0;  ///< ϕ [rad]
+  double gain = 1.0;     ///< strength relative to the torque curve; 1 unless identified
+};
+
+/// Where the rotor may go.
+struct Workspace {
+  double tilt_limit = 0.6;  ///< largest |q₁| and |q₂| [rad], in (0, π/2)
+};
+
+/// One actuator: geometry, torque curve, workspace. Poles, coils and curve may be absent; then only
+/// the joint can be calibrated.
+struct Actuator {
+  std::string name;
+  std::string serial;  ///< one physical unit; empty when the description names none
+  std::array<JointAxis, kJoints> joints;
+  std::vector<PoleAxis> poles;
+  std::vector<CoilAxis> coils;
+  std::optional<TorqueCurveDescription> torque_curve;
+  Workspace workspace;
+
+  /// True when poles, coils and torque curve are all present, so that torque can be modelled.
+  bool hasTorqueModel() const {
+    return !poles.empty() && !coils.empty() && torque_curve.has_value();
+  }
+};
+
+/// Number of coils that torques are modelled with: 0 when the description lacks poles or curve.
+std::size_t modelledCoils(const Actuator& actuator);
+
+/// Names of the joints, from the stator to the rotor.
+std::array<std::string, kJoints> jointNames(const Actuator& actuator);
+
+/// Throws ConfigError, naming the key, when a value is not finite or out of range, an axis is not
+/// unit to 1e-3, or two joints share a name.
+void validate(const Actuator& actuator);
+
+/// Unit vector of an elevation and azimuth: (cosθ cosφ, cosθ sinφ, sinθ), paper (19).
+Eigen::Vector3d axisFromAngles(double polar, double azimuth);
+
+/// Elevation and azimuth [rad].
+struct AxisAngles {
+  double polar = 0.0;
+  double azimuth = 0.0;
+};
+
+/// Inverse of axisFromAngles. The azimuth is the one nearest to `azimuth_hint`, so that 5.5
+/// stays 5.5; on the axis itself (polar = ±π/2), where it is undefined, it is the hint.
+AxisAngles anglesFromAxis(const Eigen::Vector3d& axis, double azimuth_hint);
+
+}  // namespace sac

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+
+namespace sac {
+
+/// Standard deviations [rad] of one joint's parameters; absent where not identified.
+struct JointStddev {
+  std::optional<double> offset;
+  std::optional<double> axis_u;  ///< along e_u of AxisChart::aroundAxis(nominal axis)
+  std::optional<double> axis_v;  ///< along e_v
+};
+
+/// Standard deviations [rad] of the angles of one pole or coil; absent where not identified.
+struct AngleStddev {
+  std::optional<double> polar;
+  std::optional<double> azimuth;
+};
+
+/// Standard deviations of an actuator's parameters, entry by entry as in the Actuator.
+struct ParameterStddevs {
+  std::array<JointStddev, kJoints> joints;
+  std::vector<AngleStddev> poles;
+  std::vector<AngleStddev> coils;
+};
+
+/// A recording that a calibration rests on.
+struct RecordingSource {
+  std::string recording;  ///< file name
+  std::string checksum;   ///< with its kind: "sha256:…"
+};
+
+/// One cycle of a calibration, in short (message CalibrationReport).
+struct CycleRecord {
+  std::string cycle;       ///< joint, poles, coil or refine
+  std::uint32_t coil = 0;  ///< excited coil, counted from 1; 0 where the cycle has none
+  std::uint32_t samples_used = 0;
+  std::uint32_t samples_rejected = 0;
+  double error_before = 0.0;  ///< ε₁ or ε₂ before the first iteration, in `unit`
+  double error_after = 0.0;   ///< after the last one
+  std::string unit;           ///< of the two errors
+  double reduced_chi_square = 0.0;
+};
+
+/// A laboratory effect that was identified beside the geometry. Gains and torque curve are in the
+/// actuator as well.
+struct EffectRecord {
+  std::string name;     ///< see EffectLayout
+  double value = 0.0;   ///< in its own unit
+  double stddev = 0.0;  ///< the same
+};
+
+/// Residuals of the samples that were held out.
+struct ValidationRecord {
+  std::uint32_t samples = 0;
+  std::optional<double> orientation_rms;  ///< [rad]
+  std::optional<double> torque_rms;       ///< [N·m]
+};
+
+/// Where a calibration comes from and how good it is.
+struct CalibrationRecord {
+  std::string date;  ///< ISO 8601, with time: 2024-05-31T12:00:00Z
+  std::uint32_t revision = 0;
+  std::vector<RecordingSource> source;
+  std::string software;  ///< version of this package
+  std::vector<CycleRecord> cycles;
+  std::vector<EffectRecord> effects;      ///< none where none was modelled
+  std::vector<std::string> unidentified;  ///< names of parameters that the data leave open
+  std::optional<ValidationRecord> validation;
+  std::optional<double> orientation_uncertainty;  ///< see workspace_uncertainty.hpp [rad]
+  std::optional<double> torque_uncertainty;       ///< [N·m/A]
+};
+
+}  // namespace sac

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// How well one choice of laboratory effects explains the samples.
+struct ModelFit {
+  std::string effects;     ///< for people: "none", "all", "without torque_bias"
+  bool converged = false;  ///< the refinement found a solution; else what follows is of the last
+                           ///< point that it reached
+  std::size_t parameters = 0;  ///< estimated
+  std::size_t values = 0;      ///< measured, three per observation
+  double chi_square = 0.0;     ///< of all observations, outliers included
+  double reduced_chi_square = 0.0;
+  /// Bayesian information criterion χ² + k ln n, the smaller the better: a difference of ten is
+  /// decisive.
+  double bic = 0.0;
+};
+
+/// Refines with none of the effects that the configuration models, with all, and with each one left
+/// out. Empty when none is modelled. Throws as CalibrationSession.
+std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
+                                     const std::vector<Sample>& samples,
+                                     const CalibrationConfig& config);
+
+/// One line per fit for people, the best one marked.
+std::vector<std::string> describe(const std::vector<ModelFit>& fits);
+
+}  // namespace sac

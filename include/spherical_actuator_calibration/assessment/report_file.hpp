@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+
+namespace sac {
+
+/// All figures of a calibration as YAML, for programs: origin, verdict, configuration, samples,
+/// every cycle with its estimates and residuals, validation, parameters in force, coverage,
+/// uncertainty over the workspace. Angles in rad, torques in N·m. `recording` tells in words what
+/// became of the recordings, one line each.
+std::string renderReport(const CalibrationSession& session,
+                         const CalibrationOrigin& origin,
+                         const std::vector<std::string>& recording);
+
+}  // namespace sac

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// How often the samples that serve an estimate look at each part of the actuator. How much such a
+/// look tells is in the standard deviations, not here.
+struct SampleCoverage {
+  /// Range of one joint's sensor angle over the samples [rad]; both 0 without samples.
+  struct Motion {
+    double lowest = 0.0;
+    double highest = 0.0;
+  };
+  std::array<Motion, kJoints> joints;
+  /// Torque samples in which some excited coil reaches the pole.
+  std::vector<std::uint32_t> poles;
+  /// Torque samples in which the coil is excited and reaches some pole.
+  std::vector<std::uint32_t> coils;
+};
+
+/// Counts over all samples that are not held out. `x` are the coordinates in force, `threshold` the
+/// current from which on a coil counts as excited [A].
+SampleCoverage sampleCoverage(const CalibrationModel& model,
+                              const std::vector<Sample>& samples,
+                              const Eigen::VectorXd& x,
+                              double threshold);
+
+}  // namespace sac

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace sac {
+
+/// Text as printf() writes it, of any length.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace sac

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/open_directions.hpp"
+
+namespace sac {
+
+/// The cycles of a calibration: level 1, level 2 situations 1 and 2, and all parameters at once.
+enum class Cycle { kJoint, kPoles, kCoil, kRefine };
+
+/// joint, poles, coil, refine: as in CalibrationReport messages.
+std::string cycleName(Cycle cycle);
+
+/// One parameter after a cycle (message ParameterEstimate). Angles in rad.
+struct ParameterEstimate {
+  std::string name;
+  double nominal = 0.0;
+  double initial = 0.0;  ///< before the cycle
+  double value = 0.0;
+  double stddev = 0.0;  ///< of value; of the prior where not observable
+  /// False: the value is the initial one, or, where the parameter takes part in an open direction,
+  /// differs from it by no more than what the data tell.
+  bool observable = false;
+};
+
+/// One observation after a cycle (message SampleResidual).
+struct SampleResidual {
+  std::uint32_t id = 0;
+  Quantity quantity = Quantity::kOrientation;
+  double residual = 0.0;      ///< norm [rad] or [N·m]
+  double standardized = 0.0;  ///< about 1 when it fits its stated uncertainty
+  bool rejected = false;
+  std::string reason;  ///< why rejected, in words; else empty
+};
+
+/// What a cycle tells (message CalibrationReport).
+struct CycleReport {
+  Cycle cycle = Cycle::kJoint;
+  std::size_t coil = 0;  ///< excited coil, counted from 1; 0 where the cycle has none
+  bool success = false;
+  std::string message;  ///< a sentence or two that an operator can act on
+  std::uint32_t samples_used = 0;
+  std::uint32_t samples_rejected = 0;
+  std::uint32_t iterations = 0;
+  ErrorMeasure error_measure = ErrorMeasure::kOrientation;
+  std::vector<double> error_history;
+  double reduced_chi_square = 0.0;
+  double condition_number = 0.0;
+  double solve_time = 0.0;  ///< [s]
+  std::vector<ParameterEstimate> estimates;
+  std::vector<OpenDirection> open_directions;  ///< beside single unobservable parameters
+  std::vector<SampleResidual> residuals;
+  double orientation_uncertainty = 0.0;  ///< see workspace_uncertainty.hpp [rad]
+  double torque_uncertainty = 0.0;       ///< [N·m/A]
+};
+
+}  // namespace sac

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// Where a calibration comes from; the core can know none of it.
+struct CalibrationOrigin {
+  std::string date;  ///< ISO 8601, with time
+  std::vector<RecordingSource> recordings;
+  std::string software;  ///< version of this package
+  /// Of the result; without it one more than that of the description at the start.
+  std::optional<std::uint32_t> revision = std::nullopt;
+};
+
+/// The calibration of one actuator from its samples: runs cycles one after the other, each from the
+/// result of those before it. Samples may come and go between cycles.
+class CalibrationSession {
+ public:
+  /// Starts from a description. What a calibrated description states with a standard deviation
+  /// counts as identified by it; all else is uncertain by the manufacturing tolerance. Throws
+  /// ConfigError when description or configuration, DataError when a sample is not valid.
+  CalibrationSession(CalibratedDescription start,
+                     std::vector<Sample> samples,
+                     CalibrationConfig config);
+
+  /// Takes up a session again: samples (with what is held out as it was) and parameters in force,
+  /// with the reports of the cycles that led to them. Throws as above, and DataError when the state
+  /// does not belong to the description.
+  CalibrationSession(CalibratedDescription start,
+                     std::vector<Sample> samples,
+                     CalibrationConfig config,
+                     CalibrationState state,
+                     std::vector<CycleReport> reports);
+
+  const CalibratedDescription& start() const { return start_; }
+  const CalibrationModel& model() const { return model_; }
+  const CalibrationConfig& config() const { return config_; }
+  const std::vector<Sample>& samples() const { return samples_; }
+  const CalibrationState& state() const { return state_; }
+
+  /// The sample as it would be taken: checked, and held out when it is its turn
+  /// (CalibrationConfig::hold_out_every). Throws DataError when it cannot be used.
+  Sample prepared(Sample sample) const;
+  /// Takes a prepared sample.
+  void add(Sample sample) { samples_.push_back(std::move(sample)); }
+  /// False when there is no sample with this id.
+  bool remove(std::uint32_t id);
+  void clearSamples() { samples_.clear(); }
+
+  /// Parameters of the description at the start, as if no cycle had run.
+  CalibrationState startState() const;
+  /// Puts other parameters in force. Throws DataError when they do not belong to the description.
+  void resume(CalibrationState state, std::vector<CycleReport> reports);
+
+  /// Runs one cycle. Its parameters are in force afterwards if it succeeded.
+  const CycleReport& run(const CycleRequest& request);
+  /// Of all cycles run, in their order.
+  const std::vector<CycleReport>& reports() const { return reports_; }
+
+  /// True when every cycle succeeded and openParameters() is empty.
+  bool isComplete() const;
+  /// Parameters that some cycle was to estimate and none could.
+  std::vector<std::string> openParameters() const;
+
+  /// All parameters as they are in force: `observable` tells whether they are identified, `initial`
+  /// is the nominal value.
+  std::vector<ParameterEstimate> parameters() const;
+
+  /// Judges the samples that were held out; nothing when there are none.
+  std::optional<HeldOutValidation> validation() const;
+
+  /// The calibrated description. Axes and offsets that were not identified are those of the start,
+  /// to the last bit.
+  CalibratedDescription description(const CalibrationOrigin& origin) const;
+
+ private:
+  CalibrationRecord record(const CalibrationOrigin& origin) const;
+
+  CalibratedDescription start_;
+  std::vector<Sample> samples_;
+  CalibrationConfig config_;
+  CalibrationModel model_;
+  CalibrationState state_;
+  std::vector<CycleReport> reports_;
+};
+
+/// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.
+std::string unitOf(ErrorMeasure measure);
+
+/// Root mean square norm of the residuals of one kind that were not rejected; nothing when there
+/// are none.
+std::optional<double> residualRms(const CycleReport& report, Quantity quantity);
+
+}  // namespace sac

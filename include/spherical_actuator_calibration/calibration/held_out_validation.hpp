@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// How samples that no estimate has used agree with the parameters.
+struct HeldOutValidation {
+  std::size_t samples = 0;  ///< held out; the rest is meaningless when there are none
+  std::size_t orientations = 0;
+  double orientation_rms = 0.0;  ///< root mean square norm of the rotation error [rad]
+  std::size_t torques = 0;
+  double torque_rms = 0.0;  ///< root mean square norm of the torque error [N·m]
+  /// Torques of coils that are not identified: too far from linear in tolerances to be judged.
+  std::size_t unjudged_torques = 0;
+  /// Squared Mahalanobis norm of all misfits over their number, with the noise of the samples and
+  /// the common uncertainty of the parameters: 1 on average when both are as stated.
+  double reduced_chi_square = 0.0;
+  /// Probability of misfits at least this large when the stated uncertainties hold.
+  double probability = 1.0;
+  /// One per observation; `standardized` with its own covariance, `rejected` never.
+  std::vector<SampleResidual> residuals;
+
+  /// Whether any observation took part in the test.
+  bool hasVerdict() const { return residuals.size() > unjudged_torques; }
+};
+
+/// Judges the held-out samples under a state. Orientations always count, torques where some coil
+/// is excited and the model has torque; those of coils that are not identified have a residual but
+/// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
+/// Throws DataError on malformed samples.
+HeldOutValidation validateHeldOut(const CalibrationModel& model,
+                                  const std::vector<Sample>& samples,
+                                  const CalibrationState& state,
+                                  const EstimationOptions& options);
+
+/// Smaller probabilities mean that the held-out samples contradict the parameters.
+inline constexpr double kLeastProbability = 1e-3;
+
+/// The verdict in a sentence that an operator can act on.
+std::string verdict(const HeldOutValidation& validation);
+
+}  // namespace sac

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+
+namespace sac {
+
+/// What to measure so that coordinates which a cycle left open become observable, one sentence per
+/// joint, pole or coil: "Pole 5 is seen by no sample: excite coil 1 with joint_3 near 2.40 rad."
+/// `x` are the coordinates in force.
+std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
+                                               const std::vector<Sample>& samples,
+                                               const std::vector<Observation>& observations,
+                                               const CycleRequest& request,
+                                               const Eigen::VectorXd& x,
+                                               const std::vector<Eigen::Index>& unobservable);
+
+}  // namespace sac

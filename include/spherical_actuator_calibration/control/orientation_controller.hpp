@@ -1,0 +1,109 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/control/computed_torque_control.hpp"
+#include "spherical_actuator_calibration/control/current_allocation.hpp"
+#include "spherical_actuator_calibration/control/orientation_reference.hpp"
+#include "spherical_actuator_calibration/measurement/measurements.hpp"
+
+namespace sac {
+
+struct OrientationControllerOptions {
+  RigidRotor rotor;
+  ControlGains gains;
+  AllocationOptions allocation;
+  OrientationReferenceOptions reference;
+  double largest_age = 0.1;        ///< of the joint angles [s]; older ones stop the control
+  double velocity_cutoff = 150.0;  ///< of the first-order filter of joint velocities [rad/s]
+  double workspace_margin = 0.05;  ///< [rad] joints 1 and 2 may leave the tilt limit so far
+  /// Between reference and rotor [rad]; beyond it something holds or pushes the rotor, or a sensor
+  /// stands still.
+  double largest_tracking_error = 0.4;
+  double total_current_limit = 8.0;  ///< of the sum over all coils, as the driver's [A]
+};
+
+/// Throws ConfigError that names the option and its range.
+void validate(const OrientationControllerOptions& options);
+
+enum class ControlState {
+  kIdle,     ///< not enabled: no current
+  kActive,   ///< follows its targets
+  kStopped,  ///< stopped by itself: no current until it is enabled again
+};
+
+/// Turns the rotor to target orientations by computed torque: orientation and velocity from the
+/// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
+/// currents zero, when joint angles are too old, outside the workspace, where the coils make no
+/// torque in some direction, or when the rotor does not follow. Not thread-safe.
+class OrientationController {
+ public:
+  /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
+  /// or an option is not valid.
+  OrientationController(const Actuator& design, const OrientationControllerOptions& options);
+
+  /// Parameters in force from now on; as many poles and coils as the design. While active, the
+  /// torque on the rotor goes on without a jump, and the desired motion returns to the target
+  /// within a second. Throws ConfigError when they are not valid.
+  void setParameters(const Actuator& parameters);
+  /// A reading of the joint sensors; false when it is not newer than the last, and changes nothing.
+  /// After a jump of the clock it begins anew. Throws DataError when it cannot be an angle.
+  bool receive(const JointMeasurement& joints);
+  /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
+  /// outside the workspace, or cannot be reached straight within it.
+  void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
+
+  /// Takes hold of the rotor where it is. Throws DataError with the reason why that cannot be.
+  void enable(Stamp now);
+  void disable();
+  /// A safe stop: no current until it is enabled again. Changes nothing unless active.
+  void stop(const std::string& reason);
+
+  /// One cycle: the currents to command [A], zero unless active.
+  const Eigen::VectorXd& update(Stamp now);
+
+  ControlState state() const { return state_; }
+  /// Why it stopped, or nothing.
+  const std::string& stopReason() const { return stop_reason_; }
+  /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
+  double torqueShare() const { return share_; }
+  /// Angle between the orientation that the model sees and the reference [rad].
+  double trackingError() const { return tracking_error_; }
+
+ private:
+  /// What the model makes of the joint angles.
+  RotorState rotorAt(const Eigen::Vector3d& q) const;
+  std::string defectAt(Stamp now) const;
+  bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
+  void keepTorque();
+  void limitTotal();
+  Eigen::Matrix3d present() const;
+  void requireWay(const Eigen::Matrix3d& R_stator_rotor) const;
+
+  Actuator parameters_;
+  bool has_parameters_ = false;
+  OrientationControllerOptions options_;
+  TorqueCurve curve_;
+  JointGeometry joints_;
+  TorqueGeometry torques_;
+  OrientationReference reference_;
+  std::optional<JointMeasurement> measured_;
+  Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d q_ = Eigen::Vector3d::Zero();  ///< joint angles of the last cycle [rad]
+  std::optional<Stamp> last_update_;
+  ControlState state_ = ControlState::kIdle;
+  std::string stop_reason_;
+  Eigen::VectorXd currents_;
+  double share_ = 1.0;
+  double tracking_error_ = 0.0;
+};
+
+}  // namespace sac

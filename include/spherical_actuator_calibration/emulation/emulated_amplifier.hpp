@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
+#include "spherical_actuator_calibration/emulation/modbus_server.hpp"
+
+namespace sac {
+
+/// How an emulated amplifier behaves.
+struct AmplifierDynamics {
+  double time_constant = 2e-3;  ///< of the currents' first-order lag [s]
+  /// Its own watchdog, where there is a heartbeat register: so long without a change of it the
+  /// currents go to zero [s].
+  double watchdog = 0.5;
+};
+
+/// Throws ConfigError that names the option, its value and the allowed range.
+void validate(const AmplifierDynamics& dynamics);
+
+/// The current amplifier that a CurrentAmplifier drives, behind the registers of its configuration.
+/// Not thread-safe by itself; its registers may be read and written at any time.
+class EmulatedAmplifier {
+ public:
+  /// Adds its units to `server`, which must outlive it.
+  EmulatedAmplifier(const CurrentAmplifierOptions& options,
+                    const AmplifierDynamics& dynamics,
+                    std::size_t coils,
+                    ModbusServer& server);
+
+  /// Follows the setpoints for `step` ≥ 0 [s].
+  void advance(double step);
+  /// A tripped amplifier has no current and says so.
+  void setTripped(bool tripped);
+
+  const Eigen::VectorXd& currents() const { return currents_; }  ///< actual ones [A]
+  /// What its current measurement reads [A]. Throws DataError when one does not fit its register.
+  void show(const Eigen::VectorXd& measured);
+
+ private:
+  bool isOn(double step);
+  Eigen::VectorXd setpoints() const;
+
+  CurrentAmplifierOptions options_;
+  AmplifierDynamics dynamics_;
+  std::size_t coils_;
+  ModbusServer& server_;
+  Eigen::VectorXd currents_;
+  bool tripped_ = false;
+  std::uint16_t heartbeat_ = 0;
+  double heartbeat_age_ = 0.0;  ///< [s]
+};
+
+}  // namespace sac

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+
+namespace sac {
+
+/// How much a misfit counts.
+enum class Loss {
+  kSquared,
+  kHuber,   ///< linear beyond the transition: converges from afar
+  kCauchy,  ///< fades beyond the transition: gross errors lose their pull
+};
+
+/// What is known beforehand of some directions of the coordinates.
+struct LinearPrior {
+  Eigen::MatrixXd directions;  ///< P×d, orthonormal columns
+  Eigen::VectorXd mean;        ///< of directionsᵀ x [rad]
+  Eigen::MatrixXd covariance;  ///< of directionsᵀ x [rad²], d×d
+};
+
+/// One nonlinear least-squares solution over chosen observations and coordinates.
+struct LeastSquaresInput {
+  const EstimationProblem* problem = nullptr;
+  const ObservationEvaluator* evaluator = nullptr;
+  const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< per observation
+  std::vector<bool> active;                                 ///< per observation
+  std::vector<bool> free;                                   ///< per coordinate
+  Eigen::VectorXd start;                                    ///< all coordinates
+  LinearPrior prior;                                        ///< counts beside the observations
+  Loss loss = Loss::kSquared;
+  double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
+  int max_iterations = 50;
+  double parameter_tolerance = 1e-12;  ///< of a step, relative to the norm of the coordinates
+};
+
+struct LeastSquaresResult {
+  Termination termination = Termination::kNumericalFailure;
+  std::vector<Eigen::VectorXd>
+      path;                 ///< coordinates at the start and after each accepted iteration
+  double solve_time = 0.0;  ///< [s]
+
+  const Eigen::VectorXd& solution() const { return path.back(); }
+};
+
+/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt, by Ceres or, for many observations,
+/// as in accumulated_least_squares.hpp. Analytic Jacobians, one thread, so that the same input
+/// gives the same bits.
+LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
+
+}  // namespace sac

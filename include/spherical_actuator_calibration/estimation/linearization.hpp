@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+
+namespace sac {
+
+/// One observation linearised in all coordinates: residual(x + δ) ≈ residual + jacobian δ.
+struct LinearizedObservation {
+  Eigen::Vector3d residual;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian;  ///< 3×P, zero where unused
+  std::vector<Eigen::Index> columns;  ///< coordinates that can be nonzero, ascending
+};
+
+/// Evaluates the observations of one problem: residuals, Jacobians and covariances.
+class ObservationEvaluator {
+ public:
+  /// Keeps references: the problem must outlive the evaluator.
+  ObservationEvaluator(const EstimationProblem& problem, const EstimationOptions& options);
+
+  const std::vector<Excitation>& excitations(std::size_t observation) const {
+    return excitations_[observation];
+  }
+
+  Eigen::Vector3d residual(std::size_t observation, const Eigen::VectorXd& x) const;
+
+  /// Fills `out`, whose storage is reused.
+  void linearize(std::size_t observation,
+                 const Eigen::VectorXd& x,
+                 LinearizedObservation& out) const;
+
+  /// Covariance of an observation from the sensors' noise alone, joint sensors included.
+  Eigen::Matrix3d noise(std::size_t observation, const LinearizedObservation& linear) const;
+
+  /// noise() plus what the prior uncertainty of the coordinates marked in `held` adds to it.
+  Eigen::Matrix3d covariance(std::size_t observation,
+                             const LinearizedObservation& linear,
+                             const std::vector<bool>& held) const;
+
+ private:
+  const EstimationProblem& problem_;
+  const EstimationOptions& options_;
+  std::vector<std::vector<Excitation>> excitations_;
+  std::vector<bool> uncertain_;  ///< per coordinate: its prior variance is not zero
+};
+
+}  // namespace sac

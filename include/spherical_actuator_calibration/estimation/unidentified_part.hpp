@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/parameter_space.hpp"
+
+namespace sac {
+
+/// What the data of a problem leave open, and how it is held at the prior.
+struct UnidentifiedPart {
+  /// Coordinates that are held whole, ascending.
+  std::vector<Eigen::Index> coordinates;
+  /// P×d, orthonormal columns that are zero in `coordinates`: directions of which only the
+  /// component along them is held. The data tell the rest of the coordinates that they span.
+  Eigen::MatrixXd directions;
+};
+
+/// Coordinates that take part in directions (P×d, orthonormal columns): more than 1 % of their unit
+/// vector lies there, squared. Ascending.
+std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions);
+
+/// Judges the information matrix (F×F) of the coordinates `free` (ascending): a standard deviation
+/// above `limit` [rad] is open.
+///
+/// A laboratory effect that takes part in an open direction is held first: it was an option. Where
+/// few coordinates share the open directions, as those of a pole that no sample sees, they are held
+/// whole. Where many do, as when only torques were measured and the stator may be turned against
+/// the joint as a whole (doc/method.md, Gauge), holding them whole would throw away what the data
+/// tell: only the directions are held.
+UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
+                                  const std::vector<Eigen::Index>& free,
+                                  const ParameterSpace& space,
+                                  double limit);
+
+}  // namespace sac

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace sac {
+
+/// Acquisition time in nanoseconds since the epoch of the clock in use (ROS time at the shells).
+using Stamp = std::int64_t;
+
+inline constexpr double kSecondsPerTick = 1e-9;
+
+/// Seconds from `begin` to `end`.
+inline double secondsBetween(Stamp begin, Stamp end) {
+  return static_cast<double>(end - begin) * kSecondsPerTick;
+}
+
+/// One static dwell with one current pattern: the unit of data of every cycle
+/// (message CalibrationSample).
+struct Sample {
+  std::uint32_t id = 0;
+  Stamp stamp = 0;                                           ///< middle of the dwell
+  bool validation = false;                                   ///< held out: never used to estimate
+  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
+  Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();    ///< of the mean [rad]
+  bool has_orientation = false;
+  Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();  ///< measured (R_a)
+  bool has_torque = false;
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< on the rotor, rotor frame [N·m]
+  Eigen::VectorXd current;                           ///< per coil [A]; empty without coils
+  double duration = 0.0;                             ///< [s]
+  std::uint32_t measurements = 0;                    ///< averaged into it
+  double orientation_stddev = 0.0;                   ///< of the mean, per component [rad]
+  double torque_stddev = 0.0;                        ///< of the mean, per component [N·m]
+};
+
+/// Throws DataError that names the sample and the field: not finite, a rotation that is none
+/// (1e-6), negative uncertainty, or a current vector that has not `coils` entries though the sample
+/// carries torque.
+void validate(const Sample& sample, std::size_t coils);
+
+}  // namespace sac

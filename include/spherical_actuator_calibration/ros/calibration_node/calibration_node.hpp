@@ -1,0 +1,112 @@
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <ros/wall_timer.h>
+#include <spherical_actuator_calibration/Capture.h>
+#include <spherical_actuator_calibration/ListSamples.h>
+#include <spherical_actuator_calibration/RemoveSample.h>
+#include <spherical_actuator_calibration/Restore.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "spherical_actuator_calibration/Calibrate.h"
+#include "spherical_actuator_calibration/CalibrationReport.h"
+#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/storage/calibration_directory.hpp"
+#include "spherical_actuator_calibration/storage/live_session.hpp"
+
+namespace sac {
+
+/// The calibration of one unit while it is measured: takes samples on request or by itself, runs
+/// the cycles, keeps everything in the session database, and publishes the parameters in force.
+///
+/// Measurements are received in a thread of their own. Services are served by any number of
+/// threads; those that touch the session take turns.
+class CalibrationNode {
+ public:
+  /// Takes up the session in the calibration directory and publishes its parameters. `node` is in
+  /// the namespace of the actuator. Throws ConfigError and DataError when description, options or
+  /// directory cannot be used.
+  CalibrationNode(const ros::NodeHandle& node,
+                  const ros::NodeHandle& private_node,
+                  const CalibratedDescription& start,
+                  const CalibrationNodeOptions& options);
+  CalibrationNode(const CalibrationNode&) = delete;
+  CalibrationNode& operator=(const CalibrationNode&) = delete;
+
+ private:
+  void advertiseServices();
+
+  // Samples.
+  bool capture(msg::Capture::Request& request, msg::Capture::Response& response);
+  bool listSamples(msg::ListSamples::Request& request, msg::ListSamples::Response& response);
+  bool removeSample(msg::RemoveSample::Request& request, msg::RemoveSample::Response& response);
+  bool setAutoCapture(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool clearSamples(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  // Cycles.
+  bool calibrateJoint(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool calibratePoles(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool calibrateCoil(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  void run(const CycleRequest& request, msg::Calibrate::Response& response);
+
+  // Parameters.
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool restore(msg::Restore::Request& request, msg::Restore::Response& response);
+  bool save(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  CaptureProgress waitForCapture(double duration) const;
+  void takeAutomaticSamples();
+  void keep(const std::vector<Sample>& samples);
+  void storeWaitingSamples();
+  Sample store(const Sample& sample);
+  std::string saveFiles();
+  /// Writes the figures of the parameters in force; returns the folder that holds them.
+  std::string saveReport() const;
+  void publishStatus();
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  /// Answers a service: `action` returns the message of success; what it throws becomes that of
+  /// failure.
+  template <typename Response, typename Action>
+  void answer(Response& response, Action action);
+
+  ros::NodeHandle node_;
+  ros::NodeHandle private_node_;
+  const CalibrationNodeOptions options_;
+
+  std::mutex session_mutex_;  ///< of everything down to topics_
+  CalibrationDirectory directory_;
+  LiveSession session_;
+  std::deque<Sample> waiting_;  ///< captured by itself, not stored yet: the disk did not take it
+  std::string last_error_;
+  CalibrationTopics topics_;
+
+  std::atomic<bool> auto_capture_;
+  MeasurementIntake intake_;
+  std::uint64_t received_before_ = 0;  ///< used by the timer alone, like the next two
+  ros::WallTime last_received_;
+  bool finished_ = true;
+
+  diagnostic_updater::Updater diagnostics_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer sample_timer_;
+  ros::WallTimer diagnostics_timer_;
+};
+
+}  // namespace sac

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include <ros/node_handle.h>
+
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+
+namespace sac {
+
+/// Everything about the calibration node that is a matter of choice. Defaults are those of the
+/// members.
+struct CalibrationNodeOptions {
+  CalibrationConfig calibration;  ///< keys of config/calibration.yaml
+  /// Calibration directory; empty: $ROS_HOME/spherical_actuator_calibration/<serial>.
+  std::string directory;
+  bool auto_capture = false;      ///< at start: every dwell is captured by itself
+  double capture_duration = 1.0;  ///< of a capture that asks for none [s]
+  bool report_page = true;        ///< save also makes the page of the report, which takes seconds
+};
+
+/// Reads the private parameters of a node. Throws ConfigError that names the key for anything
+/// unknown, of the wrong type or out of range.
+CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node);
+
+}  // namespace sac

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/storage/live_session.hpp"
+
+namespace sac {
+
+/// What the calibration node publishes: `parameters`, `report` and `status`, latched, and
+/// `samples`.
+class CalibrationTopics {
+ public:
+  /// `frame`: name of the stator frame.
+  CalibrationTopics(ros::NodeHandle node, std::string frame);
+
+  void publishParameters(const LiveSession& session);
+  void publishReport(const msg::CalibrationReport& report);
+  void publishStatus(const LiveSession& session,
+                     const SessionProgress& progress,
+                     const std::string& next_step);
+  void publishSample(const msg::CalibrationSample& sample);
+
+  /// Messages with their header, stamped now where they have no time of their own.
+  msg::CalibrationReport stamped(msg::CalibrationReport report) const;
+  msg::CalibrationSample sampleMessage(const Sample& sample) const;
+
+ private:
+  std_msgs::Header header() const;
+
+  std::string frame_;
+  ros::Publisher parameters_;
+  ros::Publisher report_;
+  ros::Publisher status_;
+  ros::Publisher samples_;
+};
+
+}  // namespace sac

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include <ros/node_handle.h>
+
+#include "spherical_actuator_calibration/control/orientation_controller.hpp"
+
+namespace sac {
+
+/// Everything about the controller node that is a matter of choice.
+struct OrientationControllerNodeOptions {
+  OrientationControllerOptions controller;
+  double rate = 1000.0;                 ///< of the control cycles [Hz]
+  std::string stator_frame = "stator";  ///< that targets must be in
+};
+
+/// Reads the private parameters of a node (config/orientation_controller.yaml, and the map
+/// `dimensions` of config/actuator_dimensions.yaml). Where they have no inertia, it is that of the
+/// described rotor of these dimensions. Throws ConfigError that names the key for anything unknown,
+/// of the wrong type or out of range.
+OrientationControllerNodeOptions loadOrientationControllerOptions(
+    const ros::NodeHandle& private_node, const Actuator& design);
+
+}  // namespace sac

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+
+namespace sac {
+
+/// Reads the actuator description from the parameter `actuator` in the namespace of `node`. Throws
+/// ConfigError when it is missing, or as parseDescription().
+CalibratedDescription loadDescriptionParameter(const ros::NodeHandle& node);
+
+}  // namespace sac

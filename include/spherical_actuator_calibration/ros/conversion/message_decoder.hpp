@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <ros/serialization.h>
+#include <rosbag/message_instance.h>
+
+namespace sac {
+
+/// Reads messages of a bag into storage that is reused from message to message;
+/// MessageInstance::instantiate() would allocate each anew.
+class MessageDecoder {
+ public:
+  /// Fills `message` and returns it. The type must be the recorded one: see RecordedTopics. Throws
+  /// what rosbag and the message class throw when the bag is damaged.
+  template <typename Message>
+  const Message& decode(const rosbag::MessageInstance& instance, Message& message) {
+    instance.write(bytes_);
+    ros::serialization::IStream stream(bytes_.data(), bytes_.size());
+    ros::serialization::deserialize(stream, message);
+    return message;
+  }
+
+ private:
+  /// Takes the bytes of one message, as MessageInstance::write() gives them.
+  class Bytes {
+   public:
+    std::uint8_t* advance(std::uint32_t size) {
+      bytes_.resize(size);
+      return bytes_.data();
+    }
+    std::uint8_t* data() { return bytes_.data(); }
+    std::uint32_t size() const { return static_cast<std::uint32_t>(bytes_.size()); }
+
+   private:
+    std::vector<std::uint8_t> bytes_;
+  };
+
+  Bytes bytes_;
+};
+
+}  // namespace sac

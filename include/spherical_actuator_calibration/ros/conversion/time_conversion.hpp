@@ -1,0 +1,16 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// The core's stamp [ns since the epoch of the ROS clock] of a ROS time. Exact.
+Stamp stampFromRos(const ros::Time& time);
+
+/// The ROS time of a stamp of the core [ns]. Exact. Throws DataError when the stamp is negative or
+/// does not fit into ROS's 32 bits of seconds.
+ros::Time stampToRos(Stamp stamp);
+
+}  // namespace sac

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include <ros/time.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+namespace sac {
+
+/// Transforms of tf2 at the stamp of a measurement. Listens from construction on, in a thread of
+/// its own.
+class TransformLookup {
+ public:
+  /// `wait`: how long a transform that is not there yet is waited for [s of the wall clock].
+  explicit TransformLookup(double wait);
+
+  /// X_parent_child at a time. After a wait in vain the next calls do not wait for a while, so that
+  /// a missing transform does not hold up everything. Throws DataError that names the transform and
+  /// how to publish it.
+  Eigen::Isometry3d at(const std::string& parent, const std::string& child, const ros::Time& time);
+
+  /// Whether it is known at any time.
+  bool has(const std::string& parent, const std::string& child) const;
+
+ private:
+  void wait(const std::string& parent, const std::string& child, const ros::Time& time);
+
+  const ros::WallDuration wait_;
+  ros::WallTime impatient_until_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+};
+
+/// "there is no transform from … to …: …" with the command that publishes it.
+std::string missingTransform(const std::string& parent, const std::string& child);
+
+}  // namespace sac

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace sac {
+
+/// Makes SIGINT and SIGTERM end spinUntilTermination() instead of the process, so that a node's
+/// objects are destroyed in order. roscpp by itself dies on SIGTERM without any clean-up. Call
+/// after ros::init() with ros::init_options::NoSigintHandler.
+void handleTerminationSignals();
+
+/// True once SIGINT or SIGTERM came.
+bool terminationRequested();
+
+/// Serves the global callback queue until a signal came or ROS is shut down from outside. ROS
+/// itself still runs afterwards in the first case, so that last messages can be sent.
+void spinUntilTermination();
+
+/// The same for a node whose callbacks are served by spinners: only waits.
+void waitForTermination();
+
+}  // namespace sac

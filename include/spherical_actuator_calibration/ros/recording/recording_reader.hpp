@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
+#include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
+
+namespace sac {
+
+/// How recordings are read.
+struct RecordingOptions {
+  std::string ns = "/actuator";  ///< namespace of the actuator's topics
+  MeasurementFrames frames;
+  SampleBuilderOptions samples;
+  std::function<void(double)>
+      progress;  ///< told the share done (0 to 1) now and then; may be empty
+};
+
+/// Samples of recordings, and how they were obtained.
+struct Recording {
+  std::vector<Sample> samples;  ///< ids are unique
+  RecordingReport report;
+};
+
+/// Reads the samples of one actuator out of recordings: from the topic `samples` where it was
+/// recorded, else from the raw streams by a SampleBuilder. Bags are read in the order of their
+/// begin; those recorded side by side are read as one. Beside rosbag's index, memory does not grow
+/// with their length.
+///
+/// Throws DataError, naming the file, for bags that cannot be read, that miss topics, are of
+/// another actuator, unit or number of coils, or whose measurements are all in another frame.
+/// Throws ConfigError when the options are not valid.
+Recording readRecordings(const std::vector<std::string>& paths,
+                         const Actuator& nominal,
+                         const RecordingOptions& options);
+
+}  // namespace sac

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "spherical_actuator_calibration/Calibrate.h"
+#include "spherical_actuator_calibration/CalibrationReport.h"
+#include "spherical_actuator_calibration/CalibrationSample.h"
+#include "spherical_actuator_calibration/CalibrationStatus.h"
+#include "spherical_actuator_calibration/CoilCurrents.h"
+#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/view/calibration_markers.hpp"
+#include "spherical_actuator_calibration/ros/view/sample_mirror.hpp"
+
+namespace sac {
+
+/// Gathers from the topics of a calibration what the live view shows of it. Messages of another
+/// design (other numbers of poles or coils) change nothing.
+class LiveScene {
+ public:
+  /// `start` holds the nominal actuator, dimensions, magnification and frames.
+  explicit LiveScene(CalibrationScene start);
+
+  void receive(const msg::ActuatorParameters& message);
+  void receive(const msg::CalibrationReport& message);
+  void receive(const msg::CoilCurrents& message);
+  void receive(const msg::CalibrationSample& message);
+  void receive(const msg::CalibrationStatus& message);
+
+  /// The samples in use; it asks for them where topics do not tell.
+  SampleMirror& samples() { return samples_; }
+
+  /// True when the scene has changed since the last call.
+  bool takeChange();
+
+  /// Joints by the parameters in force.
+  const std::array<JointAxis, kJoints>& joints() const { return scene_.identified.joints; }
+  CalibrationScene scene() const;
+
+ private:
+  struct Residual {
+    double standardized = 0.0;
+    bool rejected = false;
+  };
+
+  std::optional<double> stddevOf(const std::string& axis, double polar) const;
+  SampledDirection directionOf(const msg::CalibrationSample& sample) const;
+
+  CalibrationScene scene_;
+  bool is_identified_ = false;             ///< the parameters in force are those of a cycle
+  std::map<std::string, double> stddevs_;  ///< of parameters that are identified, by name [rad]
+  SampleMirror samples_;
+  std::map<std::uint32_t, Residual> residuals_;
+  bool changed_ = true;
+};
+
+}  // namespace sac

@@ -1,0 +1,95 @@
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+
+#include <cmath>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kUnitTolerance = 1e-3;
+
+/// Key of an entry as a description file counts it, from 0: "poles[3]".
+std::string entryKey(const std::string& list, std::size_t index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+void validateJoints(const std::array<JointAxis, kJoints>& joints) {
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const std::string key = entryKey("joints", k);
+    const JointAxis& joint = joints[k];
+    requireInRange(key + ".axis: length",
+                   joint.axis.norm(),
+                   ValueRange::closed(1.0 - kUnitTolerance, 1.0 + kUnitTolerance));
+    requireInRange(key + ".offset", joint.offset, ValueRange::finite("rad"));
+    for (std::size_t other = 0; other < k; ++other) {
+      if (joints[other].name == joint.name) {
+        throw ConfigError(key + ".name: \"" + joint.name + "\" is also the name of " +
+                          entryKey("joints", other) + "; each joint needs its own.");
+      }
+    }
+  }
+}
+
+template <typename PoleOrCoil>
+void validateAxis(const std::string& key, const PoleOrCoil& axis) {
+  requireInRange(key + ".polar", axis.polar, ValueRange::closed(-kPi / 2.0, kPi / 2.0, "rad"));
+  requireInRange(key + ".azimuth", axis.azimuth, ValueRange::finite("rad"));
+  requireInRange(key + ".gain", axis.gain, ValueRange::positive());
+}
+
+}  // namespace
+
+std::size_t modelledCoils(const Actuator& actuator) {
+  return actuator.hasTorqueModel() ? actuator.coils.size() : 0;
+}
+
+std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
+  return {actuator.joints[0].name, actuator.joints[1].name, actuator.joints[2].name};
+}
+
+void validate(const Actuator& actuator) {
+  validateJoints(actuator.joints);
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    const std::string key = entryKey("poles", i);
+    validateAxis(key, actuator.poles[i]);
+    if (std::abs(actuator.poles[i].polarity) != 1) {
+      throw ConfigError(key + ".polarity: " + std::to_string(actuator.poles[i].polarity) +
+                        " is neither 1 nor -1.");
+    }
+  }
+  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
+    validateAxis(entryKey("coils", j), actuator.coils[j]);
+  }
+  if (actuator.torque_curve) {
+    validate(*actuator.torque_curve);
+  }
+  requireInRange("workspace.tilt_limit",
+                 actuator.workspace.tilt_limit,
+                 ValueRange::open(0.0, kPi / 2.0, "rad"));
+}
+
+Eigen::Vector3d axisFromAngles(double polar, double azimuth) {
+  const double equatorial = std::cos(polar);
+  return {equatorial * std::cos(azimuth), equatorial * std::sin(azimuth), std::sin(polar)};
+}
+
+AxisAngles anglesFromAxis(const Eigen::Vector3d& axis, double azimuth_hint) {
+  // Below this share of the length the azimuth is made of rounding errors alone.
+  constexpr double kEquatorialFloor = 1e-15;
+  const double equatorial = std::hypot(axis.x(), axis.y());
+  AxisAngles angles;
+  angles.polar = std::atan2(axis.z(), equatorial);
+  if (equatorial <= kEquatorialFloor * std::abs(axis.z())) {
+    angles.azimuth = azimuth_hint;
+    return angles;
+  }
+  const double azimuth = std::atan2(axis.y(), axis.x());
+  const double turns = std::round((azimuth_hint - azimuth) / (2.0 * kPi));
+  angles.azimuth = azimuth + 2.0 * kPi * turns;
+  return angles;
+}
+
+}  // namespace sac

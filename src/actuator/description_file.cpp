@@ -1,0 +1,258 @@
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// ---- actuator
+// --------------------------------------------------------------------------------------
+
+Eigen::Vector3d readUnitAxis(const YamlMap& joint) {
+  constexpr double kTolerance = 1e-3;
+  // An axis this close to unit length was normalised before: saved again, it is the same.
+  constexpr double kRounding = 1e-14;
+  const std::vector<double> values = joint.numbers("axis", ValueRange::finite(), kJoints);
+  const Eigen::Vector3d axis(values[0], values[1], values[2]);
+  requireInRange(joint.where("axis") + ": length",
+                 axis.norm(),
+                 ValueRange::closed(1.0 - kTolerance, 1.0 + kTolerance));
+  return std::abs(axis.norm() - 1.0) > kRounding ? axis.normalized() : axis;
+}
+
+std::optional<double> optionalNumber(const YamlMap& map,
+                                     const std::string& key,
+                                     const ValueRange& range) {
+  return map.has(key) ? std::make_optional(map.number(key, range)) : std::nullopt;
+}
+
+JointStddev readJointStddev(const YamlMap& joint) {
+  if (!joint.has("stddev")) {
+    return {};
+  }
+  const YamlMap map = joint.map("stddev");
+  const ValueRange range = ValueRange::nonNegative("rad");
+  return {optionalNumber(map, "offset", range),
+          optionalNumber(map, "axis_u", range),
+          optionalNumber(map, "axis_v", range)};
+}
+
+AngleStddev readAngleStddev(const YamlMap& pole_or_coil) {
+  if (!pole_or_coil.has("stddev")) {
+    return {};
+  }
+  const YamlMap map = pole_or_coil.map("stddev");
+  const ValueRange range = ValueRange::nonNegative("rad");
+  return {optionalNumber(map, "polar", range), optionalNumber(map, "azimuth", range)};
+}
+
+void readJoints(const YamlMap& map, CalibratedDescription& description) {
+  const std::vector<YamlMap> items = map.maps("joints");
+  if (items.size() != kJoints) {
+    map.fail("joints",
+             "the list has " + std::to_string(items.size()) + " joints; exactly " +
+                 std::to_string(kJoints) + " are needed.");
+  }
+  std::array<JointAxis, kJoints>& joints = description.actuator.joints;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const YamlMap& item = items[k];
+    const std::string name = item.nonEmptyText("name");
+    const auto* const end = joints.begin() + k;
+    if (std::any_of(joints.cbegin(), end, [&](const auto& other) { return other.name == name; })) {
+      item.fail("name", "\"" + name + "\" is another joint's name; each joint needs its own.");
+    }
+    joints[k] = {name, readUnitAxis(item), item.number("offset", ValueRange::finite("rad"))};
+    description.stddevs.joints[k] = readJointStddev(item);
+  }
+}
+
+double readPolar(const YamlMap& item) {
+  // π/2 as people write it, rounded up, is meant to be in range.
+  constexpr double kRoundedLimit = 1.5708;
+  const double polar =
+      item.number("polar", ValueRange::closed(-kRoundedLimit, kRoundedLimit, "rad"));
+  return std::clamp(polar, -kPi / 2.0, kPi / 2.0);
+}
+
+int readPolarity(const YamlMap& item) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  const std::int64_t polarity = item.integer("polarity", Limits::min(), Limits::max());
+  if (polarity != 1 && polarity != -1) {
+    item.fail("polarity", std::to_string(polarity) + " is neither 1 nor -1.");
+  }
+  return static_cast<int>(polarity);
+}
+
+/// What poles and coils have in common.
+template <typename PoleOrCoil>
+PoleOrCoil readAngles(const YamlMap& item) {
+  PoleOrCoil axis;
+  axis.polar = readPolar(item);
+  axis.azimuth = item.number("azimuth", ValueRange::finite("rad"));
+  axis.gain = item.number("gain", ValueRange::positive(), axis.gain);
+  return axis;
+}
+
+void readPoles(const YamlMap& map, CalibratedDescription& description) {
+  for (const YamlMap& item : map.maps("poles")) {
+    PoleAxis pole = readAngles<PoleAxis>(item);
+    pole.polarity = readPolarity(item);
+    description.actuator.poles.push_back(pole);
+    description.stddevs.poles.push_back(readAngleStddev(item));
+  }
+}
+
+void readCoils(const YamlMap& map, CalibratedDescription& description) {
+  for (const YamlMap& item : map.maps("coils")) {
+    description.actuator.coils.push_back(readAngles<CoilAxis>(item));
+    description.stddevs.coils.push_back(readAngleStddev(item));
+  }
+}
+
+TorqueCurveDescription readTorqueCurve(const YamlMap& actuator) {
+  const YamlMap map = actuator.map("torque_curve");
+  TorqueCurveDescription curve;
+  const bool in_degrees = map.choice("angle_unit", {"deg", "rad"}) == "deg";
+  curve.angle_unit = in_degrees ? AngleUnit::kDegree : AngleUnit::kRadian;
+  curve.coefficients = map.numbers("coefficients", ValueRange::finite());
+  const ValueRange angles = ValueRange::open(0.0, in_degrees ? 180.0 : kPi, map.text("angle_unit"));
+  curve.blend_start = map.number("blend_start", angles);
+  const std::vector<double> support = map.numbers("support", angles, 2);
+  curve.support_begin = support[0];
+  curve.support_end = support[1];
+  try {
+    validate(curve);
+  } catch (const ConfigError& error) {
+    actuator.fail("torque_curve", error.what());
+  }
+  return curve;
+}
+
+Workspace readWorkspace(const YamlMap& actuator) {
+  const YamlMap map = actuator.map("workspace");
+  return {map.number("tilt_limit", ValueRange::open(0.0, kPi / 2.0, "rad"))};
+}
+
+// ---- calibration
+// -----------------------------------------------------------------------------------
+
+/// A count that fits its message field.
+std::uint32_t readCount(const YamlMap& map, const std::string& key) {
+  return static_cast<std::uint32_t>(map.integer(key, 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+std::string readDate(const YamlMap& map) {
+  const std::string form = "dddd-dd-ddTdd:dd:dd";
+  std::string date = map.text("date");
+  const auto fits = [](char expected, char c) {
+    return expected == 'd' ? c >= '0' && c <= '9' : c == expected;
+  };
+  if (date.size() < form.size() || !std::equal(form.begin(), form.end(), date.begin(), fits)) {
+    map.fail("date", "\"" + date + "\" is not of the form 2024-05-31T12:00:00Z.");
+  }
+  return date;
+}
+
+CycleRecord readCycle(const YamlMap& map) {
+  CycleRecord record;
+  record.cycle = map.choice("cycle", {"joint", "poles", "coil", "refine"});
+  record.coil = readCount(map, "coil");
+  record.samples_used = readCount(map, "samples_used");
+  record.samples_rejected = readCount(map, "samples_rejected");
+  record.error_before = map.number("error_before", ValueRange::nonNegative());
+  record.error_after = map.number("error_after", ValueRange::nonNegative());
+  record.unit = map.nonEmptyText("unit");
+  record.reduced_chi_square = map.number("reduced_chi_square", ValueRange::nonNegative());
+  return record;
+}
+
+ValidationRecord readValidation(const YamlMap& map) {
+  return {readCount(map, "samples"),
+          optionalNumber(map, "orientation_rms", ValueRange::nonNegative("rad")),
+          optionalNumber(map, "torque_rms", ValueRange::nonNegative("N*m"))};
+}
+
+CalibrationRecord readCalibration(const YamlMap& map) {
+  CalibrationRecord record;
+  record.date = readDate(map);
+  record.revision = readCount(map, "revision");
+  for (const YamlMap& item : map.maps("source")) {
+    record.source.push_back({item.nonEmptyText("recording"), item.nonEmptyText("checksum")});
+  }
+  record.software = map.nonEmptyText("software");
+  for (const YamlMap& item : map.maps("cycles")) {
+    record.cycles.push_back(readCycle(item));
+  }
+  if (map.has("effects")) {
+    for (const YamlMap& item : map.maps("effects")) {
+      record.effects.push_back({item.nonEmptyText("name"),
+                                item.number("value", ValueRange::finite()),
+                                item.number("stddev", ValueRange::nonNegative())});
+    }
+  }
+  record.unidentified = map.texts("unidentified");
+  if (map.has("validation")) {
+    record.validation = readValidation(map.map("validation"));
+  }
+  record.orientation_uncertainty =
+      optionalNumber(map, "orientation_uncertainty", ValueRange::nonNegative("rad"));
+  record.torque_uncertainty =
+      optionalNumber(map, "torque_uncertainty", ValueRange::nonNegative("N*m/A"));
+  return record;
+}
+
+}  // namespace
+
+CalibratedDescription readDescription(const YamlMap& file) {
+  const YamlMap map = file.map("actuator");
+  CalibratedDescription description;
+  Actuator& actuator = description.actuator;
+  actuator.name = map.nonEmptyText("name");
+  actuator.serial = map.text("serial", "");
+  readJoints(map, description);
+  if (map.has("poles")) {
+    readPoles(map, description);
+  }
+  if (map.has("coils")) {
+    readCoils(map, description);
+  }
+  if (map.has("torque_curve")) {
+    actuator.torque_curve = readTorqueCurve(map);
+  }
+  actuator.workspace = readWorkspace(map);
+  if (map.has("calibration")) {
+    description.calibration = readCalibration(map.map("calibration"));
+  }
+  file.finish();
+  return description;
+}
+
+CalibratedDescription parseDescription(const std::string& text, const std::string& name) {
+  return readDescription(YamlMap::parse(text, name));
+}
+
+CalibratedDescription loadDescription(const std::string& path) {
+  return readDescription(YamlMap::load(path));
+}
+
+Actuator loadActuator(const std::string& path) {
+  return loadDescription(path).actuator;
+}
+
+void saveDescription(const std::string& path,
+                     const CalibratedDescription& description,
+                     OverwritePolicy policy) {
+  writeFileAtomically(path, renderDescription(description, path), policy);
+}
+
+}  // namespace sac

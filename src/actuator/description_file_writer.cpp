@@ -1,0 +1,213 @@
+#include <sstream>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
+
+namespace sac {
+namespace {
+
+void addOptional(YamlLine& line, const std::string& key, const std::optional<double>& value) {
+  if (value) {
+    line.add(key, yamlNumber(*value));
+  }
+}
+
+void addStddev(YamlLine& line, const YamlLine& stddev) {
+  if (!stddev.empty()) {
+    line.add("stddev", stddev.text());
+  }
+}
+
+std::string numberList(const std::vector<double>& values) {
+  std::vector<std::string> items;
+  items.reserve(values.size());
+  for (const double value : values) {
+    items.push_back(yamlNumber(value));
+  }
+  return yamlList(items);
+}
+
+std::string jointLine(const JointAxis& joint, const JointStddev& stddev) {
+  YamlLine line;
+  line.add("name", yamlText(joint.name));
+  line.add("axis", numberList({joint.axis.x(), joint.axis.y(), joint.axis.z()}));
+  line.add("offset", yamlNumber(joint.offset));
+  YamlLine values;
+  addOptional(values, "offset", stddev.offset);
+  addOptional(values, "axis_u", stddev.axis_u);
+  addOptional(values, "axis_v", stddev.axis_v);
+  addStddev(line, values);
+  return line.text();
+}
+
+/// What follows the angles of poles and coils: gains other than 1, standard deviations.
+template <typename PoleOrCoil>
+void addGainAndStddev(YamlLine& line, const PoleOrCoil& axis, const AngleStddev& stddev) {
+  if (axis.gain != 1.0) {
+    line.add("gain", yamlNumber(axis.gain));
+  }
+  YamlLine values;
+  addOptional(values, "polar", stddev.polar);
+  addOptional(values, "azimuth", stddev.azimuth);
+  addStddev(line, values);
+}
+
+std::string poleLine(const PoleAxis& pole, const AngleStddev& stddev) {
+  YamlLine line;
+  line.add("polar", yamlNumber(pole.polar));
+  line.add("azimuth", yamlNumber(pole.azimuth));
+  line.add("polarity", std::to_string(pole.polarity));
+  addGainAndStddev(line, pole, stddev);
+  return line.text();
+}
+
+std::string coilLine(const CoilAxis& coil, const AngleStddev& stddev) {
+  YamlLine line;
+  line.add("polar", yamlNumber(coil.polar));
+  line.add("azimuth", yamlNumber(coil.azimuth));
+  addGainAndStddev(line, coil, stddev);
+  return line.text();
+}
+
+std::string curveLine(const TorqueCurveDescription& curve) {
+  YamlLine line;
+  line.add("angle_unit", curve.angle_unit == AngleUnit::kDegree ? "deg" : "rad");
+  line.add("coefficients", numberList(curve.coefficients));
+  line.add("blend_start", yamlNumber(curve.blend_start));
+  line.add("support", numberList({curve.support_begin, curve.support_end}));
+  return line.text();
+}
+
+std::string cycleLine(const CycleRecord& record) {
+  YamlLine line;
+  line.add("cycle", yamlText(record.cycle));
+  line.add("coil", std::to_string(record.coil));
+  line.add("samples_used", std::to_string(record.samples_used));
+  line.add("samples_rejected", std::to_string(record.samples_rejected));
+  line.add("error_before", yamlNumber(record.error_before));
+  line.add("error_after", yamlNumber(record.error_after));
+  line.add("unit", yamlText(record.unit));
+  line.add("reduced_chi_square", yamlNumber(record.reduced_chi_square));
+  return line.text();
+}
+
+std::string validationLine(const ValidationRecord& record) {
+  YamlLine line;
+  line.add("samples", std::to_string(record.samples));
+  addOptional(line, "orientation_rms", record.orientation_rms);
+  addOptional(line, "torque_rms", record.torque_rms);
+  return line.text();
+}
+
+/// "key:" and one line per entry; "key: []" without entries.
+void writeList(std::ostream& text,
+               const std::string& indent,
+               const std::string& key,
+               const std::vector<std::string>& lines) {
+  text << indent << key << (lines.empty() ? ": []\n" : ":\n");
+  for (const std::string& line : lines) {
+    text << indent << "  - " << line << "\n";
+  }
+}
+
+/// Writes the axes of poles or coils, unless there are none.
+template <typename PoleOrCoil, typename LineOf>
+void writeAxes(std::ostream& text,
+               const std::string& key,
+               const std::vector<PoleOrCoil>& axes,
+               const std::vector<AngleStddev>& stddevs,
+               LineOf line_of) {
+  if (!stddevs.empty() && stddevs.size() != axes.size()) {
+    throw ConfigError(key + ": " + std::to_string(stddevs.size()) +
+                      " standard deviations do not belong to " + std::to_string(axes.size()) + " " +
+                      key + ".");
+  }
+  if (axes.empty()) {
+    return;
+  }
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    lines.push_back(line_of(axes[i], stddevs.empty() ? AngleStddev{} : stddevs[i]));
+  }
+  writeList(text, "  ", key, lines);
+}
+
+void writeCalibration(std::ostream& text, const CalibrationRecord& record) {
+  const std::string indent = "    ";
+  text << "  calibration:\n";
+  text << indent << "date: " << yamlText(record.date) << "\n";
+  text << indent << "revision: " << record.revision << "\n";
+  std::vector<std::string> source;
+  for (const RecordingSource& item : record.source) {
+    YamlLine line;
+    line.add("recording", yamlText(item.recording)).add("checksum", yamlText(item.checksum));
+    source.push_back(line.text());
+  }
+  writeList(text, indent, "source", source);
+  text << indent << "software: " << yamlText(record.software) << "\n";
+  std::vector<std::string> cycles;
+  for (const CycleRecord& cycle : record.cycles) {
+    cycles.push_back(cycleLine(cycle));
+  }
+  writeList(text, indent, "cycles", cycles);
+  if (!record.effects.empty()) {
+    std::vector<std::string> effects;
+    for (const EffectRecord& effect : record.effects) {
+      effects.push_back(YamlLine()
+                            .add("name", yamlText(effect.name))
+                            .add("value", yamlNumber(effect.value))
+                            .add("stddev", yamlNumber(effect.stddev))
+                            .text());
+    }
+    writeList(text, indent, "effects", effects);
+  }
+  std::vector<std::string> unidentified;
+  for (const std::string& name : record.unidentified) {
+    unidentified.push_back(yamlText(name));
+  }
+  writeList(text, indent, "unidentified", unidentified);
+  if (record.validation) {
+    text << indent << "validation: " << validationLine(*record.validation) << "\n";
+  }
+  if (record.orientation_uncertainty) {
+    text << indent << "orientation_uncertainty: " << yamlNumber(*record.orientation_uncertainty)
+         << "\n";
+  }
+  if (record.torque_uncertainty) {
+    text << indent << "torque_uncertainty: " << yamlNumber(*record.torque_uncertainty) << "\n";
+  }
+}
+
+}  // namespace
+
+std::string renderDescription(const CalibratedDescription& description, const std::string& name) {
+  const Actuator& actuator = description.actuator;
+  std::ostringstream text;
+  text << "actuator:\n";
+  text << "  name: " << yamlText(actuator.name) << "\n";
+  if (!actuator.serial.empty()) {
+    text << "  serial: " << yamlText(actuator.serial) << "\n";
+  }
+  std::vector<std::string> joints;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    joints.push_back(jointLine(actuator.joints[k], description.stddevs.joints[k]));
+  }
+  writeList(text, "  ", "joints", joints);
+  writeAxes(text, "poles", actuator.poles, description.stddevs.poles, poleLine);
+  writeAxes(text, "coils", actuator.coils, description.stddevs.coils, coilLine);
+  if (actuator.torque_curve) {
+    text << "  torque_curve: " << curveLine(*actuator.torque_curve) << "\n";
+  }
+  YamlLine workspace;
+  workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));
+  text << "  workspace: " << workspace.text() << "\n";
+  if (description.calibration) {
+    writeCalibration(text, *description.calibration);
+  }
+  // What cannot be loaded again must not be saved: the reader is the judge.
+  parseDescription(text.str(), name);
+  return text.str();
+}
+
+}  // namespace sac

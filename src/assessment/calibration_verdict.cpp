@@ -1,0 +1,309 @@
+#include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/calibration/operator_advice.hpp"
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+
+namespace sac {
+namespace {
+
+std::string number(std::size_t value) {
+  return std::to_string(value);
+}
+
+/// "3, 7, 8 and 4 more" of ascending numbers.
+std::string enumerate(const std::vector<std::uint32_t>& ids) {
+  constexpr std::size_t kMostNamed = 8;
+  std::string text;
+  for (std::size_t n = 0; n < ids.size() && n < kMostNamed; ++n) {
+    text += n == 0 ? "" : ", ";
+    text += number(ids[n]);
+  }
+  if (ids.size() > kMostNamed) {
+    text += " and " + number(ids.size() - kMostNamed) + " more";
+  }
+  return text;
+}
+
+/// Collects grade, sentence and next steps of one session.
+class Judge {
+ public:
+  Judge(const CalibrationSession& session,
+        const std::vector<SampleInfluence>& influences,
+        const std::vector<ModelFit>& fits)
+      : session_(session),
+        influences_(influences),
+        fits_(fits),
+        validation_(session.validation()),
+        open_(session.openParameters()) {
+    for (const CycleReport& report : session.reports()) {
+      last_success_ = report.success ? &report : last_success_;
+    }
+  }
+
+  CalibrationVerdict verdict() const {
+    CalibrationVerdict verdict;
+    verdict.grade = grade();
+    verdict.sentence = sentence(verdict.grade);
+    collectSteps(verdict.next_steps);
+    return verdict;
+  }
+
+ private:
+  bool isContradicted() const {
+    return validation_ && validation_->hasVerdict() && validation_->probability < kLeastProbability;
+  }
+
+  CalibrationGrade grade() const {
+    if (last_success_ == nullptr) {
+      return CalibrationGrade::kFailed;
+    }
+    if (isContradicted()) {
+      return CalibrationGrade::kContradicted;
+    }
+    return session_.isComplete() ? CalibrationGrade::kComplete : CalibrationGrade::kIncomplete;
+  }
+
+  std::string sentence(CalibrationGrade grade) const {
+    switch (grade) {
+      case CalibrationGrade::kFailed:
+        return session_.reports().empty() ? "Nothing is calibrated: no cycle was run."
+                                          : "Nothing is calibrated: no cycle succeeded.";
+      case CalibrationGrade::kContradicted:
+        return "Do not use this calibration yet: " + identified() +
+               ", but the held-out samples contradict them.";
+      case CalibrationGrade::kIncomplete:
+        return "The calibration can be used as far as it goes: " + identified() + openInWords() +
+               ". " + expectedErrors();
+      case CalibrationGrade::kComplete:
+        break;
+    }
+    return "The calibration is good to use: " + identified() +
+           (validation_ && validation_->hasVerdict() ? ", and held-out samples agree" : "") + ". " +
+           expectedErrors();
+  }
+
+  std::string identified() const {
+    const std::vector<ParameterEstimate> all = session_.parameters();
+    const auto count = static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [](const ParameterEstimate& parameter) {
+          return parameter.observable;
+        }));
+    return count == all.size()
+               ? "all " + number(count) + " parameters are identified"
+               : number(count) + " of " + number(all.size()) + " parameters are identified";
+  }
+
+  std::string openInWords() const {
+    if (open_.empty()) {
+      return ", but a cycle failed";
+    }
+    return ", " + number(open_.size()) + " that were asked for are not";
+  }
+
+  std::string expectedErrors() const {
+    std::string text = format("Expected error over the workspace: orientation %.2g mrad",
+                              1e3 * last_success_->orientation_uncertainty);
+    if (session_.model().hasTorqueModel()) {
+      text += format(", torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
+    }
+    return text + " (1 sigma, 95 % of all poses are better).";
+  }
+
+  void collectSteps(std::vector<std::string>& steps) const {
+    if (isContradicted()) {
+      steps.emplace_back(
+          "Find out why the held-out samples differ: compare their residuals with those of the "
+          "samples in use, and check that nothing was moved in between.");
+    }
+    addFailures(steps);
+    addOpen(steps);
+    addGuidance(steps);
+    addRejected(steps);
+    addMisfit(steps);
+    addIrreplaceable(steps);
+    addModelChoice(steps);
+    addValidation(steps);
+    if (steps.empty()) {
+      addWeakest(steps);
+    }
+  }
+
+  /// The last word of each cycle that did not succeed.
+  void addFailures(std::vector<std::string>& steps) const {
+    std::map<std::string, const CycleReport*> last;
+    for (const CycleReport& report : session_.reports()) {
+      last[cycleText({report.cycle, report.coil})] = &report;
+    }
+    for (const auto& [name, report] : last) {
+      if (!report->success) {
+        steps.push_back(report->message);
+      }
+    }
+  }
+
+  void addOpen(std::vector<std::string>& steps) const {
+    if (open_.empty() || last_success_ == nullptr) {
+      return;
+    }
+    if (!last_success_->open_directions.empty()) {
+      steps.emplace_back(
+          "Measure the orientation at 3 or more poses: torques alone leave open how the stator is "
+          "turned.");
+      return;
+    }
+    const ParameterSpace& space = session_.model().space();
+    std::vector<Eigen::Index> coordinates;
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      if (std::find(open_.begin(), open_.end(), space.name(p)) != open_.end()) {
+        coordinates.push_back(p);
+      }
+    }
+    const EstimationOptions& estimation = session_.config().estimation;
+    const std::vector<std::string> advice = adviceForUnobservable(
+        session_.model(),
+        session_.samples(),
+        selectObservations(session_.samples(), {Cycle::kRefine, 0}, estimation),
+        {Cycle::kPoles, polesCoil()},
+        session_.state().belief.x,
+        coordinates);
+    steps.insert(steps.end(), advice.begin(), advice.end());
+  }
+
+  /// Coil that the poles were measured with, from 1.
+  std::size_t polesCoil() const {
+    for (const CycleReport& report : session_.reports()) {
+      if (report.cycle == Cycle::kPoles) {
+        return report.coil;
+      }
+    }
+    return 1;
+  }
+
+  /// What was not tried yet.
+  void addGuidance(std::vector<std::string>& steps) const {
+    SessionProgress progress = progressOf(
+        session_.model(), session_.samples(), session_.state(), session_.config().estimation);
+    progress.refined = last_success_ != nullptr && last_success_->cycle == Cycle::kRefine;
+    const bool has_all_coils =
+        std::find(progress.coil_done.begin(), progress.coil_done.end(), false) ==
+        progress.coil_done.end();
+    const bool torque_done = !session_.model().hasTorqueModel() ||
+                             (progress.poles_done && has_all_coils && progress.refined);
+    if (progress.joint_done && torque_done) {
+      return;
+    }
+    steps.push_back(
+        nextStep(session_.model(), session_.samples(), progress, session_.config().estimation));
+  }
+
+  void addRejected(std::vector<std::string>& steps) const {
+    if (last_success_ == nullptr || last_success_->samples_rejected == 0) {
+      return;
+    }
+    std::vector<std::uint32_t> ids;
+    for (const SampleResidual& residual : last_success_->residuals) {
+      if (residual.rejected && (ids.empty() || ids.back() != residual.id)) {
+        ids.push_back(residual.id);
+      }
+    }
+    steps.push_back("Look at the rejected samples (" + enumerate(ids) +
+                    "): was the tracker's view blocked, the rotor touched, a current switched?");
+  }
+
+  void addMisfit(std::vector<std::string>& steps) const {
+    constexpr double kNotable = 1.5;
+    if (last_success_ == nullptr || last_success_->reduced_chi_square < kNotable) {
+      return;
+    }
+    steps.push_back(
+        format("Residuals are %.1f times their stated uncertainty: model a laboratory effect "
+               "(effects in the configuration), or correct the stated noise. All standard "
+               "deviations here are already widened by it.",
+               std::sqrt(last_success_->reduced_chi_square)));
+  }
+
+  void addIrreplaceable(std::vector<std::string>& steps) const {
+    std::vector<std::uint32_t> ids;
+    for (const SampleInfluence& influence : influences_) {
+      if (influence.irreplaceable && (ids.empty() || ids.back() != influence.id)) {
+        ids.push_back(influence.id);
+      }
+    }
+    if (!ids.empty()) {
+      steps.push_back("Add poses near those of samples " + enumerate(ids) +
+                      ": nothing checks them, so that an error in them would not be noticed.");
+    }
+  }
+
+  void addModelChoice(std::vector<std::string>& steps) const {
+    const auto best =
+        std::min_element(fits_.begin(), fits_.end(), [](const ModelFit& a, const ModelFit& b) {
+          return a.bic < b.bic;
+        });
+    if (best != fits_.end() && best->converged && best->effects != "all") {
+      steps.push_back("The samples are explained best by other laboratory effects: \"" +
+                      best->effects + "\" instead of all that are modelled.");
+    }
+  }
+
+  void addValidation(std::vector<std::string>& steps) const {
+    if (last_success_ != nullptr && (!validation_ || !validation_->hasVerdict())) {
+      steps.emplace_back(
+          "Hold out samples, so that the calibration is judged by what it has not seen: capture a "
+          "few poses for validation, or set validation.hold_out_every.");
+    }
+  }
+
+  void addWeakest(std::vector<std::string>& steps) const {
+    const std::vector<ParameterEstimate> all = session_.parameters();
+    const auto weakest = std::max_element(
+        all.begin(), all.end(), [](const ParameterEstimate& a, const ParameterEstimate& b) {
+          return a.stddev < b.stddev;
+        });
+    steps.push_back(
+        format("Nothing needs to be done. The least certain parameter is %s "
+               "(± %.2g mrad); further poses, planned by plan_session or plan_poses, "
+               "make it better.",
+               weakest->name.c_str(),
+               1e3 * weakest->stddev));
+  }
+
+  const CalibrationSession& session_;
+  const std::vector<SampleInfluence>& influences_;
+  const std::vector<ModelFit>& fits_;
+  const std::optional<HeldOutValidation> validation_;
+  const std::vector<std::string> open_;
+  const CycleReport* last_success_ = nullptr;
+};
+
+}  // namespace
+
+std::string gradeName(CalibrationGrade grade) {
+  switch (grade) {
+    case CalibrationGrade::kComplete:
+      return "complete";
+    case CalibrationGrade::kIncomplete:
+      return "incomplete";
+    case CalibrationGrade::kContradicted:
+      return "contradicted";
+    case CalibrationGrade::kFailed:
+      break;
+  }
+  return "failed";
+}
+
+CalibrationVerdict judgeCalibration(const CalibrationSession& session,
+                                    const std::vector<SampleInfluence>& influences,
+                                    const std::vector<ModelFit>& fits) {
+  return Judge(session, influences, fits).verdict();
+}
+
+}  // namespace sac

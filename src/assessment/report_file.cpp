@@ -1,0 +1,345 @@
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+
+#include <optional>
+#include <sstream>
+
+#include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
+#include "spherical_actuator_calibration/assessment/model_choice.hpp"
+#include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
+#include "spherical_actuator_calibration/assessment/sample_influence.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
+
+namespace sac {
+namespace {
+
+std::string truthText(bool value) {
+  return value ? "true" : "false";
+}
+
+const char* quantityName(Quantity quantity) {
+  return quantity == Quantity::kOrientation ? "orientation" : "torque";
+}
+
+/// Of a vector of doubles of any kind.
+template <typename Numbers>
+std::string numberList(const Numbers& values) {
+  std::vector<std::string> items;
+  items.reserve(static_cast<std::size_t>(values.size()));
+  for (const double value : values) {
+    items.push_back(yamlNumber(value));
+  }
+  return yamlList(items);
+}
+
+std::vector<std::string> texts(const std::vector<std::string>& plain) {
+  std::vector<std::string> lines;
+  lines.reserve(plain.size());
+  for (const std::string& text : plain) {
+    lines.push_back(yamlText(text));
+  }
+  return lines;
+}
+
+std::vector<std::string> matrixLines(const Eigen::MatrixXd& matrix) {
+  std::vector<std::string> lines;
+  lines.reserve(static_cast<std::size_t>(matrix.rows()));
+  for (const auto& row : matrix.rowwise()) {
+    lines.push_back(numberList(row));
+  }
+  return lines;
+}
+
+/// Writes nested maps and lists, two spaces a level.
+class ReportWriter {
+ public:
+  void map(int level, const std::string& key) { line(level, key + ":"); }
+  void entry(int level, const std::string& key, const std::string& value) {
+    line(level, key + ": " + value);
+  }
+  void optional(int level, const std::string& key, const std::optional<double>& value) {
+    if (value) {
+      entry(level, key, yamlNumber(*value));
+    }
+  }
+  void list(int level, const std::string& key, const std::vector<std::string>& items) {
+    line(level, key + (items.empty() ? ": []" : ":"));
+    for (const std::string& item : items) {
+      line(level + 1, "- " + item);
+    }
+  }
+  void line(int level, const std::string& text) {
+    text_ << std::string(2 * static_cast<std::size_t>(level), ' ') << text << "\n";
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
+
+/// With `initial` and `observable` of a cycle, or with `identified` of the parameters in force.
+YamlLine estimateLine(const ParameterEstimate& estimate, bool is_of_cycle) {
+  YamlLine line;
+  line.add("name", estimate.name).add("nominal", yamlNumber(estimate.nominal));
+  if (is_of_cycle) {
+    line.add("initial", yamlNumber(estimate.initial));
+  }
+  line.add("value", yamlNumber(estimate.value)).add("stddev", yamlNumber(estimate.stddev));
+  line.add(is_of_cycle ? "observable" : "identified", truthText(estimate.observable));
+  return line;
+}
+
+std::vector<std::string> estimateLines(const std::vector<ParameterEstimate>& estimates) {
+  std::vector<std::string> lines;
+  lines.reserve(estimates.size());
+  for (const ParameterEstimate& estimate : estimates) {
+    lines.push_back(estimateLine(estimate, true).text());
+  }
+  return lines;
+}
+
+const char* unitOf(const ParameterSpace& space, Eigen::Index parameter) {
+  if (parameter < space.effect()) {
+    return "rad";
+  }
+  switch (space.effects().effect(parameter - space.effect())) {
+    case LaboratoryEffect::kTorqueBias:
+    case LaboratoryEffect::kRotorUnbalance:
+      return "N·m";
+    case LaboratoryEffect::kEncoderHarmonics:
+    case LaboratoryEffect::kMarkerRegistration:
+    case LaboratoryEffect::kTrackerRegistration:
+      return "rad";
+    default:
+      return "1";
+  }
+}
+
+void writeParameters(ReportWriter& writer, const CalibrationSession& session) {
+  std::vector<std::string> lines;
+  Eigen::Index parameter = 0;
+  for (const ParameterEstimate& estimate : session.parameters()) {
+    YamlLine line = estimateLine(estimate, false);
+    line.add("unit", yamlText(unitOf(session.model().space(), parameter++)));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "parameters", lines);
+}
+
+std::vector<std::string> residualLines(const std::vector<SampleResidual>& residuals) {
+  std::vector<std::string> lines;
+  for (const SampleResidual& residual : residuals) {
+    YamlLine line;
+    line.add("id", std::to_string(residual.id));
+    line.add("quantity", quantityName(residual.quantity));
+    line.add("residual", yamlNumber(residual.residual));
+    line.add("standardized", yamlNumber(residual.standardized));
+    line.add("rejected", truthText(residual.rejected));
+    if (residual.rejected) {
+      line.add("reason", yamlText(residual.reason));
+    }
+    lines.push_back(line.text());
+  }
+  return lines;
+}
+
+void writeCycle(ReportWriter& writer, const CycleReport& report) {
+  writer.line(2, "- cycle: " + cycleName(report.cycle));
+  writer.entry(3, "coil", std::to_string(report.coil));
+  writer.entry(3, "success", truthText(report.success));
+  writer.entry(3, "message", yamlText(report.message));
+  writer.entry(3, "samples_used", std::to_string(report.samples_used));
+  writer.entry(3, "samples_rejected", std::to_string(report.samples_rejected));
+  writer.entry(3, "iterations", std::to_string(report.iterations));
+  writer.entry(3, "error_unit", yamlText(unitOf(report.error_measure)));
+  writer.entry(3, "error_history", numberList(report.error_history));
+  writer.optional(3, "orientation_rms", residualRms(report, Quantity::kOrientation));
+  writer.optional(3, "torque_rms", residualRms(report, Quantity::kTorque));
+  writer.entry(3, "reduced_chi_square", yamlNumber(report.reduced_chi_square));
+  writer.entry(3, "condition_number", yamlNumber(report.condition_number));
+  writer.entry(3, "solve_time", yamlNumber(report.solve_time));
+  writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));
+  writer.entry(3, "torque_uncertainty", yamlNumber(report.torque_uncertainty));
+  writer.list(3, "estimates", estimateLines(report.estimates));
+  writer.list(3, "residuals", residualLines(report.residuals));
+}
+
+void writeValidation(ReportWriter& writer, const HeldOutValidation& validation) {
+  writer.map(1, "validation");
+  writer.entry(2, "samples", std::to_string(validation.samples));
+  writer.entry(2, "orientations", std::to_string(validation.orientations));
+  writer.entry(2, "orientation_rms", yamlNumber(validation.orientation_rms));
+  writer.entry(2, "torques", std::to_string(validation.torques));
+  writer.entry(2, "torque_rms", yamlNumber(validation.torque_rms));
+  writer.entry(2, "reduced_chi_square", yamlNumber(validation.reduced_chi_square));
+  writer.entry(2, "probability", yamlNumber(validation.probability));
+  writer.entry(2, "verdict", yamlText(verdict(validation)));
+  writer.list(2, "residuals", residualLines(validation.residuals));
+}
+
+void writeOrigin(ReportWriter& writer,
+                 const CalibrationSession& session,
+                 const CalibrationOrigin& origin) {
+  const Actuator& actuator = session.model().space().nominal();
+  writer.entry(1, "actuator", yamlText(actuator.name));
+  writer.entry(1, "serial", yamlText(actuator.serial));
+  writer.entry(1, "date", yamlText(origin.date));
+  writer.entry(1, "software", yamlText(origin.software));
+  if (origin.revision) {
+    writer.entry(1, "revision", std::to_string(*origin.revision));
+  }
+  std::vector<std::string> sources;
+  for (const RecordingSource& source : origin.recordings) {
+    YamlLine line;
+    line.add("recording", yamlText(source.recording)).add("checksum", yamlText(source.checksum));
+    sources.push_back(line.text());
+  }
+  writer.list(1, "source", sources);
+}
+
+void writeVerdict(ReportWriter& writer, const CalibrationVerdict& verdict) {
+  YamlLine line;
+  line.add("grade", gradeName(verdict.grade)).add("sentence", yamlText(verdict.sentence));
+  writer.entry(1, "verdict", line.text());
+  writer.list(1, "next_steps", texts(verdict.next_steps));
+}
+
+void writeSamples(ReportWriter& writer, const CalibrationSession& session) {
+  const double threshold = session.config().estimation.current_threshold;
+  std::vector<std::string> lines;
+  for (const Sample& sample : session.samples()) {
+    std::vector<std::string> coils;
+    for (const Excitation& excitation : excitedCoils(sample, threshold)) {
+      coils.push_back(std::to_string(excitation.coil + 1));
+    }
+    YamlLine line;
+    line.add("id", std::to_string(sample.id));
+    line.add("joint_position", numberList(sample.joint_position));
+    line.add("orientation", truthText(sample.has_orientation));
+    line.add("torque", truthText(sample.has_torque));
+    line.add("coils", yamlList(coils));
+    line.add("validation", truthText(sample.validation));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "samples", lines);
+}
+
+void writeCoverage(ReportWriter& writer, const CalibrationSession& session) {
+  const SampleCoverage coverage = sampleCoverage(session.model(),
+                                                 session.samples(),
+                                                 session.state().belief.x,
+                                                 session.config().estimation.current_threshold);
+  const Actuator& actuator = session.model().space().nominal();
+  std::vector<std::string> joints;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    YamlLine line;
+    line.add("name", yamlText(actuator.joints[k].name));
+    line.add("lowest", yamlNumber(coverage.joints[k].lowest));
+    line.add("highest", yamlNumber(coverage.joints[k].highest));
+    joints.push_back(line.text());
+  }
+  const auto counts = [](const std::vector<std::uint32_t>& numbers) {
+    std::vector<std::string> items;
+    items.reserve(numbers.size());
+    for (const std::uint32_t count : numbers) {
+      items.push_back(std::to_string(count));
+    }
+    return yamlList(items);
+  };
+  writer.map(1, "coverage");
+  writer.list(2, "joints", joints);
+  writer.entry(2, "poles", counts(coverage.poles));
+  writer.entry(2, "coils", counts(coverage.coils));
+}
+
+void writeWorkspace(ReportWriter& writer, const CalibrationSession& session) {
+  const WorkspaceMap map = workspaceMap(session.model(), session.state().belief);
+  writer.map(1, "workspace");
+  writer.entry(2, "tilt", numberList(map.tilt));
+  writer.list(2, "orientation", matrixLines(map.orientation));
+  writer.list(2, "torque", matrixLines(map.torque));
+}
+
+/// Of the observations of the last cycle, where it succeeded.
+std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
+  if (session.reports().empty()) {
+    return {};
+  }
+  return sampleInfluences(session.model(),
+                          session.samples(),
+                          session.reports().back(),
+                          session.state(),
+                          session.config().estimation);
+}
+
+void writeInfluences(ReportWriter& writer, const std::vector<SampleInfluence>& influences) {
+  std::vector<std::string> lines;
+  for (const SampleInfluence& influence : influences) {
+    YamlLine line;
+    line.add("id", std::to_string(influence.id));
+    line.add("quantity", quantityName(influence.quantity));
+    line.add("leverage", yamlNumber(influence.leverage));
+    line.add("largest_shift", yamlNumber(influence.largest_shift));
+    line.add("irreplaceable", truthText(influence.irreplaceable));
+    line.add("parameter", influence.parameter);
+    lines.push_back(line.text());
+  }
+  writer.list(1, "influences", lines);
+}
+
+void writeModelChoice(ReportWriter& writer, const std::vector<ModelFit>& fits) {
+  std::vector<std::string> lines;
+  for (const ModelFit& fit : fits) {
+    YamlLine line;
+    line.add("effects", yamlText(fit.effects));
+    line.add("converged", truthText(fit.converged));
+    line.add("parameters", std::to_string(fit.parameters));
+    line.add("chi_square", yamlNumber(fit.chi_square));
+    line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
+    line.add("bic", yamlNumber(fit.bic));
+    lines.push_back(line.text());
+  }
+  if (!lines.empty()) {
+    writer.list(1, "model_choice", lines);
+  }
+}
+
+void writeConfiguration(ReportWriter& writer, const CalibrationConfig& config) {
+  writer.map(1, "configuration");
+  std::istringstream configuration(renderCalibrationConfig(config));
+  for (std::string line; std::getline(configuration, line);) {
+    writer.line(2, line);
+  }
+}
+
+}  // namespace
+
+std::string renderReport(const CalibrationSession& session,
+                         const CalibrationOrigin& origin,
+                         const std::vector<std::string>& recording) {
+  const std::vector<SampleInfluence> influences = influencesOf(session);
+  const std::vector<ModelFit> fits =
+      compareEffects(session.start(), session.samples(), session.config());
+  ReportWriter writer;
+  writer.map(0, "calibration_report");
+  writeOrigin(writer, session, origin);
+  writeVerdict(writer, judgeCalibration(session, influences, fits));
+  writer.list(1, "recording", texts(recording));
+  writeConfiguration(writer, session.config());
+  writeSamples(writer, session);
+  writer.line(1, session.reports().empty() ? "cycles: []" : "cycles:");
+  for (const CycleReport& report : session.reports()) {
+    writeCycle(writer, report);
+  }
+  if (const auto validation = session.validation()) {
+    writeValidation(writer, *validation);
+  }
+  writeParameters(writer, session);
+  writeCoverage(writer, session);
+  writeWorkspace(writer, session);
+  writeInfluences(writer, influences);
+  writeModelChoice(writer, fits);
+  return writer.text();
+}
+
+}  // namespace sac

@@ -1,0 +1,231 @@
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::int64_t kLargestCount = 1'000'000;
+
+/// Meets every option of a configuration under its section and key, in the order of the file.
+/// `Visitor` has section(name), and option(key, value, …) for each type of value. Reading and
+/// writing share it, so that neither can forget an option.
+template <typename Config, typename Visitor>
+void visitDwell(Config& c, Visitor& visit) {
+  const ValueRange seconds = ValueRange::positive("s");
+  const ValueRange wait = ValueRange::nonNegative("s");
+  const ValueRange angle = ValueRange::positive("rad");
+  visit.section("dwell");
+  visit.option("rest_window", c.samples.rest_window, seconds);
+  visit.option("largest_joint_spread", c.samples.largest_joint_spread, angle);
+  visit.option("largest_joint_drift", c.samples.largest_joint_drift, angle);
+  visit.option("largest_orientation_motion", c.samples.largest_orientation_motion, angle);
+  visit.option("settle_after_motion", c.samples.settle_after_motion, wait);
+  visit.option("guard_before_motion", c.samples.guard_before_motion, wait);
+  visit.option("largest_dwell", c.samples.largest_dwell, ValueRange::closed(0.0, 3600.0, "s"));
+
+  visit.section("currents");
+  visit.option("threshold", c.samples.current_threshold, ValueRange::positive("A"));
+  visit.option("tolerance", c.samples.current_tolerance, ValueRange::positive("A"));
+  visit.option("settle_after_change", c.samples.settle_after_current_change, wait);
+  visit.option("guard_before_change", c.samples.guard_before_current_change, wait);
+  visit.option("bias_removal", c.samples.bias_removal);
+}
+
+template <typename Config, typename Visitor>
+void visitMeans(Config& c, Visitor& visit) {
+  const ValueRange seconds = ValueRange::positive("s");
+  visit.section("means");
+  visit.option("smallest_duration", c.samples.smallest_duration, seconds);
+  visit.option("smallest_count", c.samples.smallest_count, 3);
+  visit.option("outlier_factor", c.samples.outlier_factor, ValueRange::closed(3.0, 1e6));
+  visit.option("joint_stddev_floor", c.samples.joint_stddev_floor, ValueRange::nonNegative("rad"));
+  visit.option("orientation_stddev_floor",
+               c.samples.orientation_stddev_floor,
+               ValueRange::nonNegative("rad"));
+  visit.option(
+      "torque_stddev_floor", c.samples.torque_stddev_floor, ValueRange::nonNegative("N·m"));
+
+  visit.section("streams");
+  visit.option("largest_gap", c.samples.largest_gap, seconds);
+  visit.option("timeout", c.samples.stream_timeout, ValueRange::closed(0.01, 60.0, "s"));
+  visit.option("clock_reset", c.samples.clock_reset, seconds);
+  visit.option("largest_jump", c.samples.largest_jump, seconds);
+}
+
+template <typename Config, typename Visitor>
+void visitEstimation(Config& c, Visitor& visit) {
+  visit.section("estimation");
+  visit.option("max_iterations", c.estimation.max_iterations, 1);
+  visit.option("unobservable_stddev",
+               c.estimation.unobservable_stddev,
+               ValueRange{0.0, 1.0, "rad", true, false});
+  visit.option(
+      "false_alarm_probability", c.estimation.false_alarm_probability, ValueRange::open(0.0, 0.5));
+  visit.option("max_rejected_fraction",
+               c.estimation.max_rejected_fraction,
+               ValueRange{0.0, 0.5, "", false, true});
+  visit.option("max_reduced_chi_square",
+               c.estimation.max_reduced_chi_square,
+               ValueRange{1.0, std::numeric_limits<double>::infinity(), "", true, false});
+  visit.option("min_joint_motion", c.estimation.min_joint_motion, ValueRange::positive("rad"));
+  visit.option("default_orientation_stddev",
+               c.estimation.default_orientation_stddev,
+               ValueRange::positive("rad"));
+  visit.option(
+      "default_torque_stddev", c.estimation.default_torque_stddev, ValueRange::positive("N·m"));
+
+  const ValueRange tolerance = ValueRange::closed(0.0, 1.0, "rad");
+  visit.section("tolerance");
+  visit.option("joint_offset", c.tolerance.joint_offset, tolerance);
+  visit.option("joint_axis", c.tolerance.joint_axis, tolerance);
+  visit.option("pole", c.tolerance.pole, tolerance);
+  visit.option("coil", c.tolerance.coil, tolerance);
+  visit.option("effect", c.tolerance.effect, ValueRange::closed(0.0, 1.0));
+}
+
+template <typename Config, typename Visitor>
+void visitOptions(Config& c, Visitor& visit) {
+  visit.section("frames");
+  visit.option("stator", c.frames.stator);
+  visit.option("rotor", c.frames.rotor);
+  visitDwell(c, visit);
+  visitMeans(c, visit);
+  visitEstimation(c, visit);
+  visit.section("effects");
+  for (std::size_t e = 0; e < kLaboratoryEffects; ++e) {
+    const auto effect = static_cast<LaboratoryEffect>(e);
+    visit.option(effectName(effect), c.effects[effect]);
+  }
+  visit.section("validation");
+  visit.option("hold_out_every", c.hold_out_every, 0);
+}
+
+/// Reads the options that a file gives; the others keep their values.
+class OptionReader {
+ public:
+  explicit OptionReader(const YamlMap& file) : file_(file), section_(file) {}
+
+  void section(const std::string& name) {
+    has_section_ = file_.has(name);
+    if (has_section_) {
+      section_ = file_.map(name);
+    }
+  }
+  void option(const std::string& key, double& value, const ValueRange& range) const {
+    if (has_section_) {
+      value = section_.number(key, range, value);
+    }
+  }
+  void option(const std::string& key, int& value, std::int64_t minimum) const {
+    if (has_section_) {
+      value = static_cast<int>(section_.integer(key, minimum, kLargestCount, value));
+    }
+  }
+  void option(const std::string& key, std::string& value) const {
+    if (has_section_ && section_.has(key)) {
+      value = section_.nonEmptyText(key);
+    }
+  }
+  void option(const std::string& key, bool& value) const {
+    if (has_section_) {
+      value = section_.boolean(key, value);
+    }
+  }
+  void option(const std::string& key, BiasRemoval& value) const {
+    if (has_section_ && section_.has(key)) {
+      const bool none = section_.choice(key, {"none", "zero_current"}) == "none";
+      value = none ? BiasRemoval::kNone : BiasRemoval::kZeroCurrent;
+    }
+  }
+
+ private:
+  YamlMap file_;
+  YamlMap section_;
+  bool has_section_ = false;
+};
+
+/// Writes every option.
+class OptionWriter {
+ public:
+  void section(const std::string& name) { text_ += name + ":\n"; }
+  void option(const std::string& key, double value, const ValueRange& /*range*/) {
+    add(key, yamlNumber(value));
+  }
+  void option(const std::string& key, int value, std::int64_t /*minimum*/) {
+    add(key, std::to_string(value));
+  }
+  void option(const std::string& key, const std::string& value) { add(key, yamlText(value)); }
+  void option(const std::string& key, bool value) { add(key, value ? "true" : "false"); }
+  void option(const std::string& key, BiasRemoval value) {
+    add(key, value == BiasRemoval::kNone ? "none" : "zero_current");
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void add(const std::string& key, const std::string& value) {
+    text_ += "  " + key + ": " + value + "\n";
+  }
+
+  std::string text_;
+};
+
+CalibrationConfig readWholeConfig(const YamlMap& file, const std::string& name) {
+  CalibrationConfig config = readCalibrationConfig(file, name);
+  file.finish();
+  return config;
+}
+
+}  // namespace
+
+void validate(const CalibrationConfig& config) {
+  validate(config.samples);
+  validate(config.estimation);
+  validate(config.tolerance);
+  requireInRange("hold_out_every",
+                 config.hold_out_every,
+                 ValueRange::closed(0.0, static_cast<double>(kLargestCount)));
+  if (config.hold_out_every == 1) {
+    throw ConfigError("hold_out_every: 1 would hold out every sample; give 2 or more, or 0.");
+  }
+  if (config.estimation.current_threshold != config.samples.current_threshold) {
+    throw ConfigError("current_threshold: samples and estimation must have the same one.");
+  }
+}
+
+CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& name) {
+  CalibrationConfig config;
+  OptionReader reader(file);
+  visitOptions(config, reader);
+  config.estimation.current_threshold = config.samples.current_threshold;
+  try {
+    validate(config);
+  } catch (const ConfigError& error) {
+    throw ConfigError(name + ": " + error.what());
+  }
+  return config;
+}
+
+CalibrationConfig loadCalibrationConfig(const std::string& path) {
+  return readWholeConfig(YamlMap::load(path), path);
+}
+
+CalibrationConfig parseCalibrationConfig(const std::string& text, const std::string& name) {
+  return readWholeConfig(YamlMap::parse(text, name), name);
+}
+
+std::string renderCalibrationConfig(const CalibrationConfig& config) {
+  OptionWriter writer;
+  visitOptions(config, writer);
+  return writer.text();
+}
+
+}  // namespace sac

@@ -1,0 +1,328 @@
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+
+namespace sac {
+namespace {
+
+const CalibrationConfig& validated(const CalibrationConfig& config) {
+  validate(config);
+  return config;
+}
+
+/// Whether the sample with this index, from 0, is held out by its turn.
+bool isHeldOut(std::size_t index, const CalibrationConfig& config) {
+  const auto every = static_cast<std::size_t>(config.hold_out_every);
+  return every > 0 && index % every == every - 1;
+}
+
+std::vector<Sample> prepared(std::vector<Sample> samples,
+                             const Actuator& actuator,
+                             const CalibrationConfig& config) {
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    validate(samples[n], actuator.coils.size());
+    samples[n].validation = samples[n].validation || isHeldOut(n, config);
+  }
+  return samples;
+}
+
+/// Enters what a calibrated description states into a state.
+class StatedUncertainty {
+ public:
+  StatedUncertainty(const ParameterSpace& space, CalibrationState& state)
+      : space_(space), state_(state) {}
+
+  void enter(const ParameterStddevs& stddevs) const {
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      enter(space_.joint(k), stddevs.joints[k].offset, 1.0);
+      enter(space_.joint(k) + 1, stddevs.joints[k].axis_u, 1.0);
+      enter(space_.joint(k) + 2, stddevs.joints[k].axis_v, 1.0);
+    }
+    for (std::size_t i = 0; i < stddevs.poles.size(); ++i) {
+      enterAngles(space_.pole(i), stddevs.poles[i], space_.nominal().poles[i].polar);
+    }
+    for (std::size_t j = 0; j < stddevs.coils.size(); ++j) {
+      enterAngles(space_.coil(j), stddevs.coils[j], space_.nominal().coils[j].polar);
+    }
+  }
+
+ private:
+  // Coordinate v of an axis is cos(polar) times the azimuth (AxisChart::aroundAngles).
+  void enterAngles(Eigen::Index at, const AngleStddev& stddev, double polar) const {
+    enter(at, stddev.polar, 1.0);
+    enter(at + 1, stddev.azimuth, std::cos(polar));
+  }
+
+  void enter(Eigen::Index at, const std::optional<double>& stddev, double scale) const {
+    if (stddev) {
+      state_.belief.covariance(at, at) = std::pow(scale * *stddev, 2);
+      state_.identified[static_cast<std::size_t>(at)] = true;
+    }
+  }
+
+  const ParameterSpace& space_;
+  CalibrationState& state_;
+};
+
+CalibrationState startState(const ParameterSpace& space,
+                            const CalibratedDescription& start,
+                            const ManufacturingTolerance& tolerance) {
+  CalibrationState state = nominalState(space, tolerance);
+  StatedUncertainty(space, state).enter(start.stddevs);
+  if (start.calibration) {
+    const std::vector<std::string>& open = start.calibration->unidentified;
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      if (std::find(open.begin(), open.end(), space.name(p)) != open.end()) {
+        state.identified[static_cast<std::size_t>(p)] = false;
+      }
+    }
+  }
+  return state;
+}
+
+CycleRecord cycleRecord(const CycleReport& report) {
+  CycleRecord record;
+  record.cycle = cycleName(report.cycle);
+  record.coil = static_cast<std::uint32_t>(report.coil);
+  record.samples_used = report.samples_used;
+  record.samples_rejected = report.samples_rejected;
+  record.error_before = report.error_history.front();
+  record.error_after = report.error_history.back();
+  record.unit = unitOf(report.error_measure);
+  record.reduced_chi_square = report.reduced_chi_square;
+  return record;
+}
+
+ValidationRecord validationRecord(const HeldOutValidation& validation) {
+  ValidationRecord record;
+  record.samples = static_cast<std::uint32_t>(validation.samples);
+  if (validation.orientations > 0) {
+    record.orientation_rms = validation.orientation_rms;
+  }
+  if (validation.torques > 0) {
+    record.torque_rms = validation.torque_rms;
+  }
+  return record;
+}
+
+}  // namespace
+
+CalibrationSession::CalibrationSession(CalibratedDescription start,
+                                       std::vector<Sample> samples,
+                                       CalibrationConfig config)
+    : start_(std::move(start)),
+      samples_(sac::prepared(std::move(samples), start_.actuator, validated(config))),
+      config_(std::move(config)),
+      model_(ParameterSpace(start_.actuator, config_.effects)),
+      state_(sac::startState(model_.space(), start_, config_.tolerance)) {}
+
+CalibrationSession::CalibrationSession(CalibratedDescription start,
+                                       std::vector<Sample> samples,
+                                       CalibrationConfig config,
+                                       CalibrationState state,
+                                       std::vector<CycleReport> reports)
+    : CalibrationSession(std::move(start), {}, std::move(config)) {
+  for (const Sample& sample : samples) {
+    validate(sample, start_.actuator.coils.size());
+  }
+  samples_ = std::move(samples);
+  resume(std::move(state), std::move(reports));
+}
+
+Sample CalibrationSession::prepared(Sample sample) const {
+  validate(sample, start_.actuator.coils.size());
+  sample.validation = sample.validation || isHeldOut(samples_.size(), config_);
+  return sample;
+}
+
+bool CalibrationSession::remove(std::uint32_t id) {
+  const auto place = std::find_if(
+      samples_.begin(), samples_.end(), [id](const Sample& sample) { return sample.id == id; });
+  if (place == samples_.end()) {
+    return false;
+  }
+  samples_.erase(place);
+  return true;
+}
+
+CalibrationState CalibrationSession::startState() const {
+  return sac::startState(model_.space(), start_, config_.tolerance);
+}
+
+void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport> reports) {
+  const Eigen::Index size = model_.space().size();
+  if (state.belief.x.size() != size || state.belief.covariance.rows() != size ||
+      state.belief.covariance.cols() != size ||
+      state.identified.size() != static_cast<std::size_t>(size)) {
+    throw DataError(
+        "The stored parameters are of an actuator with other poles or coils, or of other effects.");
+  }
+  state_ = std::move(state);
+  reports_ = std::move(reports);
+}
+
+const CycleReport& CalibrationSession::run(const CycleRequest& request) {
+  CycleOutcome outcome = runCycle(model_, samples_, state_, request, config_.estimation);
+  state_ = std::move(outcome.state);
+  reports_.push_back(std::move(outcome.report));
+  return reports_.back();
+}
+
+bool CalibrationSession::isComplete() const {
+  return std::all_of(reports_.begin(),
+                     reports_.end(),
+                     [](const CycleReport& report) { return report.success; }) &&
+         openParameters().empty();
+}
+
+std::vector<std::string> CalibrationSession::openParameters() const {
+  std::set<std::string> asked;
+  for (const CycleReport& report : reports_) {
+    for (const ParameterEstimate& estimate : report.estimates) {
+      asked.insert(estimate.name);
+    }
+  }
+  std::vector<std::string> open;
+  for (const ParameterEstimate& parameter : parameters()) {
+    if (!parameter.observable && asked.count(parameter.name) > 0) {
+      open.push_back(parameter.name);
+    }
+  }
+  return open;
+}
+
+std::vector<ParameterEstimate> CalibrationSession::parameters() const {
+  const ParameterSpace& space = model_.space();
+  const Eigen::VectorXd nominal = space.reportedValues(Eigen::VectorXd::Zero(space.size()));
+  const Eigen::VectorXd values = space.reportedValues(state_.belief.x);
+  const Eigen::VectorXd stddevs = space.reportedStddevs(state_.belief.x, state_.belief.covariance);
+  std::vector<ParameterEstimate> parameters;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    parameters.push_back({space.name(p),
+                          nominal[p],
+                          nominal[p],
+                          values[p],
+                          stddevs[p],
+                          state_.identified[static_cast<std::size_t>(p)]});
+  }
+  return parameters;
+}
+
+std::optional<HeldOutValidation> CalibrationSession::validation() const {
+  const HeldOutValidation result = validateHeldOut(model_, samples_, state_, config_.estimation);
+  return result.samples == 0 ? std::nullopt : std::optional(result);
+}
+
+CalibratedDescription CalibrationSession::description(const CalibrationOrigin& origin) const {
+  const ParameterSpace& space = model_.space();
+  const Actuator calibrated = space.actuatorAt(state_.belief.x);
+  const std::vector<ParameterEstimate> values = parameters();
+  const auto moved = [this](Eigen::Index first, Eigen::Index count) {
+    return !state_.belief.x.segment(first, count).isZero(0.0);
+  };
+  // A value that moved has its uncertainty beside it, be it identified or only within an open
+  // direction.
+  const auto stddev = [&](Eigen::Index at) {
+    const ParameterEstimate& estimate = values[static_cast<std::size_t>(at)];
+    return estimate.observable || moved(at, 1) ? std::optional(estimate.stddev) : std::nullopt;
+  };
+
+  CalibratedDescription result = start_;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const Eigen::Index at = space.joint(k);
+    result.actuator.joints[k].offset = calibrated.joints[k].offset;
+    if (moved(at + 1, 2)) {
+      result.actuator.joints[k].axis = calibrated.joints[k].axis;
+    }
+    result.stddevs.joints[k] = {stddev(at), stddev(at + 1), stddev(at + 2)};
+  }
+  result.stddevs.poles.resize(space.poles());
+  for (std::size_t i = 0; i < space.poles(); ++i) {
+    const Eigen::Index at = space.pole(i);
+    if (moved(at, 2)) {
+      result.actuator.poles[i] = calibrated.poles[i];
+    }
+    result.actuator.poles[i].gain = calibrated.poles[i].gain;
+    result.stddevs.poles[i] = {stddev(at), stddev(at + 1)};
+  }
+  result.stddevs.coils.resize(space.coils());
+  for (std::size_t j = 0; j < space.coils(); ++j) {
+    const Eigen::Index at = space.coil(j);
+    if (moved(at, 2)) {
+      result.actuator.coils[j] = calibrated.coils[j];
+    }
+    result.actuator.coils[j].gain = calibrated.coils[j].gain;
+    result.stddevs.coils[j] = {stddev(at), stddev(at + 1)};
+  }
+  result.actuator.torque_curve = calibrated.torque_curve;
+  result.calibration = record(origin);
+  return result;
+}
+
+CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) const {
+  CalibrationRecord record;
+  record.date = origin.date;
+  record.revision =
+      origin.revision.value_or(start_.calibration ? start_.calibration->revision + 1 : 1);
+  record.source = origin.recordings;
+  record.software = origin.software;
+  for (const CycleReport& report : reports_) {
+    if (!report.success) {
+      continue;
+    }
+    record.cycles.push_back(cycleRecord(report));
+    record.orientation_uncertainty = report.orientation_uncertainty;
+    if (model_.hasTorqueModel()) {
+      record.torque_uncertainty = report.torque_uncertainty;
+    }
+  }
+  const std::vector<ParameterEstimate> estimates = parameters();
+  for (const ParameterEstimate& parameter : estimates) {
+    if (!parameter.observable) {
+      record.unidentified.push_back(parameter.name);
+    }
+  }
+  const ParameterSpace& space = model_.space();
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    if (state_.identified[static_cast<std::size_t>(p)]) {
+      const ParameterEstimate& effect = estimates[static_cast<std::size_t>(p)];
+      record.effects.push_back({effect.name, effect.value, effect.stddev});
+    }
+  }
+  if (const auto validation = this->validation()) {
+    record.validation = validationRecord(*validation);
+  }
+  return record;
+}
+
+std::string unitOf(ErrorMeasure measure) {
+  switch (measure) {
+    case ErrorMeasure::kOrientation:
+      return "rad";
+    case ErrorMeasure::kTorque:
+      return "N·m";
+    case ErrorMeasure::kStandardized:
+      break;
+  }
+  return "1";
+}
+
+std::optional<double> residualRms(const CycleReport& report, Quantity quantity) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const SampleResidual& residual : report.residuals) {
+    if (residual.quantity == quantity && !residual.rejected) {
+      sum += residual.residual * residual.residual;
+      ++count;
+    }
+  }
+  return count == 0 ? std::nullopt : std::optional(std::sqrt(sum / static_cast<double>(count)));
+}
+
+}  // namespace sac

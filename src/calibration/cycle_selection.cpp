@@ -1,0 +1,136 @@
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <iterator>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+
+namespace sac {
+namespace {
+
+[[noreturn]] void throwUnknown(const std::string& word) {
+  throw ConfigError("The cycle \"" + word +
+                    "\" is unknown: give joint, poles:J, coil:J (J counts coils from 1), coils or "
+                    "refine, separated by commas.");
+}
+
+/// Number of a coil: digits only, from 1.
+std::size_t parseCoil(const std::string& digits, const std::string& word) {
+  std::size_t coil = 0;
+  const char* end = digits.data() + digits.size();
+  const std::from_chars_result result = std::from_chars(digits.data(), end, coil);
+  if (result.ec != std::errc{} || result.ptr != end || coil == 0) {
+    throwUnknown(word);
+  }
+  return coil;
+}
+
+CycleRequest parseCycle(const std::string& word) {
+  if (word == "joint") {
+    return {Cycle::kJoint, 0};
+  }
+  if (word == "coils") {
+    return {Cycle::kCoil, 0};
+  }
+  if (word == "refine") {
+    return {Cycle::kRefine, 0};
+  }
+  const std::size_t colon = word.find(':');
+  const std::string name = word.substr(0, colon);
+  if (colon == std::string::npos || (name != "poles" && name != "coil")) {
+    throwUnknown(word);
+  }
+  return {name == "poles" ? Cycle::kPoles : Cycle::kCoil, parseCoil(word.substr(colon + 1), word)};
+}
+
+/// Samples that identify each coil: those with a torque and no other coil excited.
+std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
+                                        const std::vector<Sample>& samples,
+                                        const EstimationOptions& options) {
+  std::vector<std::size_t> counts(model.hasTorqueModel() ? model.space().coils() : 0, 0);
+  if (counts.empty()) {
+    return counts;
+  }
+  for (const Sample& sample : samples) {
+    if (sample.validation || !sample.has_torque) {
+      continue;
+    }
+    const std::vector<Excitation> excited = excitedCoils(sample, options.current_threshold);
+    if (excited.size() == 1) {
+      ++counts.at(excited.front().coil);
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<CycleRequest> parseCycles(const std::string& text) {
+  std::vector<CycleRequest> requests;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    requests.push_back(parseCycle(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return requests;
+}
+
+std::vector<CycleRequest> expandCoils(const std::vector<CycleRequest>& requests,
+                                      const CalibrationModel& model,
+                                      const std::vector<Sample>& samples,
+                                      const EstimationOptions& options) {
+  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
+  std::vector<CycleRequest> expanded;
+  const auto is_covered = [&](std::size_t coil) {
+    return std::any_of(expanded.begin(), expanded.end(), [&](const CycleRequest& request) {
+      return request.coil == coil;
+    });
+  };
+  for (const CycleRequest& request : requests) {
+    if (request.cycle != Cycle::kCoil || request.coil != 0) {
+      expanded.push_back(request);
+      continue;
+    }
+    for (std::size_t coil = 1; coil <= counts.size(); ++coil) {
+      if (counts[coil - 1] > 0 && !is_covered(coil)) {
+        expanded.push_back({Cycle::kCoil, coil});
+      }
+    }
+  }
+  return expanded;
+}
+
+std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
+                                         const std::vector<Sample>& samples,
+                                         const EstimationOptions& options) {
+  std::vector<CycleRequest> requests;
+  const bool has_orientations =
+      std::any_of(samples.begin(), samples.end(), [](const Sample& sample) {
+        return sample.has_orientation && !sample.validation;
+      });
+  if (has_orientations) {
+    requests.push_back({Cycle::kJoint, 0});
+  }
+  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
+  const auto most = std::max_element(counts.begin(), counts.end());
+  const bool has_torques = most != counts.end() && *most > 0;
+  if (has_torques) {
+    const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most)) + 1;
+    requests.push_back({Cycle::kPoles, coil});
+    requests.push_back({Cycle::kCoil, 0});
+  }
+  const bool models_effects = model.space().effects().size() > 0;
+  if (has_torques || (has_orientations && models_effects)) {
+    requests.push_back({Cycle::kRefine, 0});
+  }
+  return expandCoils(requests, model, samples, options);
+}
+
+std::string cycleText(const CycleRequest& request) {
+  const bool has_coil = request.cycle == Cycle::kPoles || request.cycle == Cycle::kCoil;
+  return cycleName(request.cycle) + (has_coil ? ":" + std::to_string(request.coil) : "");
+}
+
+}  // namespace sac

@@ -1,0 +1,169 @@
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+
+namespace sac {
+namespace {
+
+// With fewer samples a cycle may run, but its result would be poor (paper, sections 4.1 and 4.2).
+constexpr std::size_t kAdvisedPoses = 10;
+constexpr std::size_t kAdvisedTorquesPerPole = 3;
+constexpr std::size_t kAdvisedTorquesPerCoil = 4;
+
+bool anyIdentified(const CalibrationState& state, Eigen::Index first, Eigen::Index last) {
+  const auto begin = state.identified.begin();
+  return std::find(begin + first, begin + last, true) != begin + last;
+}
+
+std::string number(std::size_t value) {
+  return std::to_string(value);
+}
+
+std::string missing(std::size_t held, std::size_t advised) {
+  return number(held) + " of " + number(advised) + " are held";
+}
+
+/// Finds the next step, in the order of the paper: joint, poles with one coil, the other coils;
+/// then refinement, validation, file.
+class Guide {
+ public:
+  Guide(const CalibrationModel& model,
+        const std::vector<Sample>& samples,
+        const SessionProgress& progress,
+        const EstimationOptions& options)
+      : model_(model), samples_(samples), progress_(progress), options_(options) {}
+
+  std::string step() const {
+    if (!progress_.joint_done) {
+      return jointStep();
+    }
+    if (model_.hasTorqueModel()) {
+      if (!progress_.poles_done) {
+        return polesStep();
+      }
+      if (const auto coil = firstOpenCoil()) {
+        return coilStep(*coil);
+      }
+      if (!progress_.refined) {
+        return "Call refine: it identifies all parameters at once, to the best accuracy.";
+      }
+    }
+    return closingStep();
+  }
+
+ private:
+  std::size_t serving(const CycleRequest& request) const {
+    return selectObservations(samples_, request, options_).size();
+  }
+
+  std::string jointStep() const {
+    const std::size_t held = serving({Cycle::kJoint, 0});
+    if (held >= kAdvisedPoses) {
+      return "Call calibrate_joint: " + number(held) + " samples have an orientation.";
+    }
+    return "Move the rotor to a new pose with each joint turned, let it rest, and call capture: " +
+           missing(held, kAdvisedPoses) + " with an orientation.";
+  }
+
+  /// Coil that was excited alone most often, from 1; the first when none was.
+  std::size_t referenceCoil() const {
+    std::size_t best = 1;
+    std::size_t most = 0;
+    for (std::size_t coil = 1; coil <= model_.space().coils(); ++coil) {
+      const std::size_t held = serving({Cycle::kPoles, coil});
+      if (held > most) {
+        best = coil;
+        most = held;
+      }
+    }
+    return best;
+  }
+
+  std::string polesStep() const {
+    const std::size_t coil = referenceCoil();
+    const std::size_t held = serving({Cycle::kPoles, coil});
+    const std::size_t advised = kAdvisedTorquesPerPole * model_.space().poles();
+    if (held >= advised) {
+      return "Call calibrate_poles with coil " + number(coil) + ": " + number(held) +
+             " samples have a torque of this coil alone.";
+    }
+    return "Excite coil " + number(coil) +
+           " alone and capture at poses that bring each pole near it: " + missing(held, advised) +
+           ".";
+  }
+
+  std::optional<std::size_t> firstOpenCoil() const {
+    for (std::size_t j = 0; j < progress_.coil_done.size(); ++j) {
+      if (!progress_.coil_done[j]) {
+        return j + 1;
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::string coilStep(std::size_t coil) const {
+    const std::size_t held = serving({Cycle::kCoil, coil});
+    if (held >= kAdvisedTorquesPerCoil) {
+      return "Call calibrate_coil with coil " + number(coil) + ": " + number(held) +
+             " samples have a torque of this coil alone.";
+    }
+    return "Excite coil " + number(coil) +
+           " alone and capture at poses that bring poles near it: " +
+           missing(held, kAdvisedTorquesPerCoil) + ".";
+  }
+
+  std::string closingStep() const {
+    if (progress_.saved) {
+      return "Nothing is left to do: the calibration is complete and saved.";
+    }
+    if (progress_.validation_samples == 0) {
+      return "Capture a few poses with validation set and call validate, or call save.";
+    }
+    return "Call validate, and save when it agrees.";
+  }
+
+  const CalibrationModel& model_;
+  const std::vector<Sample>& samples_;
+  const SessionProgress& progress_;
+  const EstimationOptions& options_;
+};
+
+}  // namespace
+
+SessionProgress progressOf(const CalibrationModel& model,
+                           const std::vector<Sample>& samples,
+                           const CalibrationState& state,
+                           const EstimationOptions& options) {
+  const ParameterSpace& space = model.space();
+  SessionProgress progress;
+  progress.torque_samples.resize(space.coils(), 0);
+  for (const Sample& sample : samples) {
+    progress.orientation_samples += sample.has_orientation ? 1U : 0U;
+    progress.validation_samples += sample.validation ? 1U : 0U;
+    if (!sample.has_torque) {
+      continue;
+    }
+    for (const Excitation& excitation : excitedCoils(sample, options.current_threshold)) {
+      ++progress.torque_samples[excitation.coil];
+    }
+  }
+  progress.joint_done = anyIdentified(state, space.joint(0), space.pole(0));
+  progress.poles_done = anyIdentified(state, space.pole(0), space.coil(0));
+  for (std::size_t j = 0; j < space.coils(); ++j) {
+    progress.coil_done.push_back(anyIdentified(state, space.coil(j), space.coil(j + 1)));
+  }
+  return progress;
+}
+
+std::string nextStep(const CalibrationModel& model,
+                     const std::vector<Sample>& samples,
+                     const SessionProgress& progress,
+                     const EstimationOptions& options) {
+  return Guide(model, samples, progress, options).step();
+}
+
+}  // namespace sac

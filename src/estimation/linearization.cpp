@@ -1,0 +1,144 @@
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+
+#include <boost/container/small_vector.hpp>
+
+namespace sac {
+namespace {
+
+/// Where the columns of the effects are in a whole Jacobian; nowhere when none is modelled.
+template <typename Jacobian>
+JacobianBlock effectBlock(const ParameterSpace& space, Jacobian& jacobian) {
+  return {space.effects().size() > 0 ? jacobian.data() + space.effect() : nullptr, space.size()};
+}
+
+}  // namespace
+
+ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
+                                           const EstimationOptions& options)
+    : problem_(problem),
+      options_(options),
+      excitations_(problem.observations.size()),
+      uncertain_(static_cast<std::size_t>(problem.prior.covariance.rows())) {
+  for (std::size_t p = 0; p < uncertain_.size(); ++p) {
+    const auto diagonal = static_cast<Eigen::Index>(p);
+    uncertain_[p] = problem.prior.covariance(diagonal, diagonal) > 0.0;
+  }
+  for (std::size_t n = 0; n < problem.observations.size(); ++n) {
+    if (problem.observations[n].quantity == Quantity::kTorque) {
+      excitations_[n] = excitedCoils((*problem.samples)[problem.observations[n].sample],
+                                     options.current_threshold);
+    }
+  }
+}
+
+Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
+                                               const Eigen::VectorXd& x) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  if (what.quantity == Quantity::kOrientation) {
+    return problem_.model->orientationResidual(sample,
+                                               {x.data(), x.data() + space.effect(), {}, {}});
+  }
+  boost::container::small_vector<const double*, 8> coils;
+  for (const Excitation& excitation : excitations_[observation]) {
+    coils.push_back(x.data() + space.coil(excitation.coil));
+  }
+  CalibrationModel::TorqueBlocks blocks;
+  blocks.joints = x.data();
+  blocks.poles = x.data() + space.pole(0);
+  blocks.coils = coils.data();
+  blocks.effects = x.data() + space.effect();
+  return problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+}
+
+void ObservationEvaluator::linearize(std::size_t observation,
+                                     const Eigen::VectorXd& x,
+                                     LinearizedObservation& out) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  const Eigen::Index size = space.size();
+  out.jacobian.setZero(3, size);
+  const auto block = [&](Eigen::Index first) {
+    return JacobianBlock{out.jacobian.data() + first, size};
+  };
+  const auto take = [&out](Eigen::Index first, Eigen::Index last) {
+    for (Eigen::Index p = first; p < last; ++p) {
+      out.columns.push_back(p);
+    }
+  };
+  out.columns.clear();
+  if (what.quantity == Quantity::kOrientation) {
+    take(0, space.pole(0));
+    take(space.effect(), size);
+    out.residual = problem_.model->orientationResidual(
+        sample, {x.data(), x.data() + space.effect(), block(0), effectBlock(space, out.jacobian)});
+    return;
+  }
+  take(0, space.coil(0));
+  boost::container::small_vector<const double*, 8> coils;
+  boost::container::small_vector<JacobianBlock, 8> d_coils;
+  for (const Excitation& excitation : excitations_[observation]) {
+    const Eigen::Index first = space.coil(excitation.coil);
+    coils.push_back(x.data() + first);
+    d_coils.push_back(block(first));
+    out.columns.push_back(first);
+    out.columns.push_back(first + 1);
+  }
+  CalibrationModel::TorqueBlocks blocks;
+  blocks.joints = x.data();
+  blocks.poles = x.data() + space.pole(0);
+  blocks.coils = coils.data();
+  blocks.d_joints = block(0);
+  blocks.d_poles = block(space.pole(0));
+  blocks.d_coils = d_coils.data();
+  blocks.effects = x.data() + space.effect();
+  blocks.d_effects = effectBlock(space, out.jacobian);
+  take(space.effect(), size);
+  out.residual = problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+}
+
+Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
+                                            const LinearizedObservation& linear) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const ParameterSpace& space = problem_.model->space();
+  const bool is_orientation = what.quantity == Quantity::kOrientation;
+  const double stated = is_orientation ? sample.orientation_stddev : sample.torque_stddev;
+  const double fallback =
+      is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
+  const double stddev = stated > 0.0 ? stated : fallback;
+  Eigen::Matrix3d noise = stddev * stddev * Eigen::Matrix3d::Identity();
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    // A joint sensor's error acts as an offset of that joint does.
+    const double joint_stddev = sample.joint_stddev[static_cast<Eigen::Index>(k)];
+    const Eigen::Vector3d effect = joint_stddev * linear.jacobian.col(space.joint(k));
+    noise += effect * effect.transpose();
+  }
+  return noise;
+}
+
+Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
+                                                 const LinearizedObservation& linear,
+                                                 const std::vector<bool>& held) const {
+  // Most poles are out of reach of a coil: their columns are zero.
+  boost::container::small_vector<Eigen::Index, 32> columns;
+  for (const Eigen::Index a : linear.columns) {
+    const auto place = static_cast<std::size_t>(a);
+    if (held[place] && uncertain_[place] && !linear.jacobian.col(a).isZero(0.0)) {
+      columns.push_back(a);
+    }
+  }
+  Eigen::Matrix3d covariance = noise(observation, linear);
+  for (const Eigen::Index a : columns) {
+    Eigen::Vector3d effect = Eigen::Vector3d::Zero();
+    for (const Eigen::Index b : columns) {
+      effect += linear.jacobian.col(b) * problem_.prior.covariance(b, a);
+    }
+    covariance += linear.jacobian.col(a) * effect.transpose();
+  }
+  return covariance;
+}
+
+}  // namespace sac

@@ -1,0 +1,112 @@
+#include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
+
+#include <algorithm>
+
+#include "observability.hpp"
+
+namespace sac {
+namespace {
+
+/// Open directions in more coordinates each than an axis has are held as directions.
+constexpr std::size_t kFewCoordinates = 2;
+/// A coordinate whose square lies in open directions to this share is held whole.
+constexpr double kWholly = 0.9;
+
+/// The free coordinates that are not held yet, and their information.
+class OpenCoordinates {
+ public:
+  OpenCoordinates(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& free)
+      : information_(information), free_(free), places_(free.size()) {
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      places_[k] = static_cast<Eigen::Index>(k);
+    }
+  }
+
+  Observability judged(double limit) const {
+    return judgeInformation(information_(places_, places_), limit);
+  }
+
+  Eigen::Index coordinate(Eigen::Index k) const {
+    return free_[static_cast<std::size_t>(places_[static_cast<std::size_t>(k)])];
+  }
+
+  /// Takes the chosen ones of `candidates` (positions, ascending) out. Returns their coordinates.
+  template <typename Choice>
+  std::vector<Eigen::Index> hold(const std::vector<Eigen::Index>& candidates,
+                                 const Choice& choose) {
+    std::vector<Eigen::Index> held;
+    std::vector<Eigen::Index> remaining;
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(places_.size()); ++k) {
+      if (std::binary_search(candidates.begin(), candidates.end(), k) && choose(k)) {
+        held.push_back(coordinate(k));
+      } else {
+        remaining.push_back(places_[static_cast<std::size_t>(k)]);
+      }
+    }
+    places_ = std::move(remaining);
+    return held;
+  }
+
+ private:
+  const Eigen::MatrixXd& information_;
+  const std::vector<Eigen::Index>& free_;
+  std::vector<Eigen::Index> places_;  ///< in free_
+};
+
+/// Whether open directions are shared by so many coordinates that no few of them are to blame.
+bool isSpread(const Observability& observability) {
+  const auto directions = static_cast<std::size_t>(observability.open_directions.cols());
+  return observability.weak.size() > kFewCoordinates * directions;
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions) {
+  constexpr double kParticipation = 0.01;
+  std::vector<Eigen::Index> result;
+  for (Eigen::Index p = 0; p < directions.rows(); ++p) {
+    if (directions.row(p).squaredNorm() > kParticipation) {
+      result.push_back(p);
+    }
+  }
+  return result;
+}
+
+UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
+                                  const std::vector<Eigen::Index>& free,
+                                  const ParameterSpace& space,
+                                  double limit) {
+  UnidentifiedPart part;
+  part.directions.resize(space.size(), 0);
+  OpenCoordinates open(information, free);
+  while (true) {
+    const Observability observability = open.judged(limit);
+    const std::vector<Eigen::Index>& weak = observability.weak;
+    if (weak.empty()) {
+      break;
+    }
+    std::vector<Eigen::Index> held =
+        open.hold(weak, [&](Eigen::Index k) { return open.coordinate(k) >= space.effect(); });
+    const bool spread = isSpread(observability);
+    if (held.empty() && spread) {
+      held = open.hold(weak, [&](Eigen::Index k) {
+        return observability.open_directions.row(k).squaredNorm() > kWholly;
+      });
+    }
+    if (held.empty() && spread) {
+      part.directions.setZero(space.size(), observability.open_directions.cols());
+      for (Eigen::Index k = 0; k < observability.open_directions.rows(); ++k) {
+        part.directions.row(open.coordinate(k)) = observability.open_directions.row(k);
+      }
+      break;
+    }
+    if (held.empty()) {
+      held = open.hold(weak, [](Eigen::Index) { return true; });
+    }
+    part.coordinates.insert(part.coordinates.end(), held.begin(), held.end());
+  }
+  std::sort(part.coordinates.begin(), part.coordinates.end());
+  return part;
+}
+
+}  // namespace sac

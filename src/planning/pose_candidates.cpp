@@ -1,0 +1,220 @@
+#include "pose_candidates.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::uint32_t kPurpose = 300;
+/// Poses drawn for each candidate wanted, before the search for useful ones ends.
+constexpr std::size_t kMostDraws = 30;
+
+/// Observations of samples in the coordinates to estimate. What is not estimated adds the
+/// uncertainty of the state to an observation's noise, as in the cycle.
+class Linearizer {
+ public:
+  Linearizer(const PlanningProblem& problem,
+             const std::vector<Sample>& samples,
+             const std::vector<Eigen::Index>& coordinates)
+      : held_(static_cast<std::size_t>(problem.model->space().size()), true),
+        place_(held_.size(), -1),
+        estimation_(estimationProblem(problem, samples)),
+        evaluator_(estimation_, problem.estimation) {
+    for (std::size_t k = 0; k < coordinates.size(); ++k) {
+      held_[static_cast<std::size_t>(coordinates[k])] = false;
+      place_[static_cast<std::size_t>(coordinates[k])] = static_cast<Eigen::Index>(k);
+    }
+  }
+
+  const std::vector<Observation>& observations() const { return estimation_.observations; }
+
+  CandidateObservation linearize(std::size_t observation) {
+    evaluator_.linearize(observation, estimation_.prior.x, linear_);
+    const Eigen::LLT<Eigen::Matrix3d> factor(evaluator_.covariance(observation, linear_, held_));
+    CandidateObservation result;
+    for (const Eigen::Index column : linear_.columns) {
+      const Eigen::Index place = place_[static_cast<std::size_t>(column)];
+      if (place >= 0 && !linear_.jacobian.col(column).isZero(0.0)) {
+        result.columns.push_back(place);
+      }
+    }
+    result.jacobian.resize(3, static_cast<Eigen::Index>(result.columns.size()));
+    Eigen::Index next = 0;
+    for (const Eigen::Index column : linear_.columns) {
+      const Eigen::Index place = place_[static_cast<std::size_t>(column)];
+      if (place >= 0 && !linear_.jacobian.col(column).isZero(0.0)) {
+        result.jacobian.col(next++) = factor.matrixL().solve(linear_.jacobian.col(column));
+      }
+    }
+    return result;
+  }
+
+ private:
+  static EstimationProblem estimationProblem(const PlanningProblem& problem,
+                                             const std::vector<Sample>& samples) {
+    EstimationProblem result;
+    result.model = problem.model;
+    result.samples = &samples;
+    result.observations = selectObservations(samples, problem.request, problem.estimation);
+    result.prior = problem.state.belief;
+    return result;
+  }
+
+  std::vector<bool> held_;           ///< per coordinate: not estimated
+  std::vector<Eigen::Index> place_;  ///< among the coordinates to estimate, or −1
+  EstimationProblem estimation_;
+  ObservationEvaluator evaluator_;
+  LinearizedObservation linear_;
+};
+
+/// Coils that may serve the cycle at all.
+std::vector<std::size_t> usableCoils(const PlanningProblem& problem) {
+  if (problem.request.cycle == Cycle::kJoint || !problem.model->hasTorqueModel()) {
+    return {};
+  }
+  if (problem.request.cycle != Cycle::kRefine) {
+    return {problem.request.coil - 1};
+  }
+  std::vector<std::size_t> coils(problem.model->space().coils());
+  std::iota(coils.begin(), coils.end(), 0);
+  return coils;
+}
+
+bool measuresOrientation(const PlanningProblem& problem, const PosePlanOptions& options) {
+  return problem.request.cycle == Cycle::kJoint ||
+         (problem.request.cycle == Cycle::kRefine && options.tracker_on);
+}
+
+/// Poses with the coils that may be excited there, not linearised yet.
+std::vector<PoseCandidate> drawPoses(const PlanningProblem& problem,
+                                     const PosePlanOptions& options) {
+  const Actuator actuator = problem.model->space().actuatorAt(problem.state.belief.x);
+  const double tilt = options.tilt_limit.value_or(actuator.workspace.tilt_limit);
+  const JointGeometry joints = jointGeometry(actuator.joints);
+  const std::vector<std::size_t> coils = usableCoils(problem);
+  std::optional<TorquePoseSampler> sampler;
+  if (!coils.empty()) {
+    sampler.emplace(actuator, tilt);
+  }
+  NoiseSource noise(options.seed, kPurpose);
+  std::vector<PoseCandidate> candidates;
+  for (std::size_t n = 0;
+       n < kMostDraws * options.candidates && candidates.size() < options.candidates;
+       ++n) {
+    PoseCandidate candidate;
+    candidate.joint_position[0] = noise.uniform(tilt);
+    candidate.joint_position[1] = noise.uniform(tilt);
+    candidate.joint_position[2] =
+        options.spin_minimum + noise.share() * (options.spin_maximum - options.spin_minimum);
+    for (const std::size_t coil : coils) {
+      if (sampler->grade(candidate.joint_position, coil, std::nullopt) == PoseGrade::kClear) {
+        candidate.coils.push_back(coil);
+      }
+    }
+    if (!candidate.coils.empty() || measuresOrientation(problem, options)) {
+      candidate.R_stator_rotor = rotorOrientation(joints, candidate.joint_position);
+      candidates.push_back(candidate);
+    }
+  }
+  return candidates;
+}
+
+}  // namespace
+
+void addInformation(const CandidateObservation& observation, Eigen::MatrixXd& information) {
+  const Eigen::MatrixXd product = observation.jacobian.transpose() * observation.jacobian;
+  for (Eigen::Index a = 0; a < product.rows(); ++a) {
+    for (Eigen::Index b = 0; b < product.cols(); ++b) {
+      information(observation.columns[static_cast<std::size_t>(a)],
+                  observation.columns[static_cast<std::size_t>(b)]) += product(a, b);
+    }
+  }
+}
+
+std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem) {
+  const ParameterSpace& space = problem.model->space();
+  if (problem.request.cycle != Cycle::kRefine) {
+    return selectCoordinates(space, {}, problem.request, problem.estimation);
+  }
+  std::vector<Eigen::Index> coordinates(static_cast<std::size_t>(space.size()));
+  std::iota(coordinates.begin(), coordinates.end(), 0);
+  if (!problem.model->hasTorqueModel()) {
+    // Poles and coils without a curve cannot be told by anything.
+    coordinates.erase(coordinates.begin() + space.pole(0), coordinates.begin() + space.effect());
+  }
+  return coordinates;
+}
+
+Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
+                                const std::vector<Eigen::Index>& coordinates) {
+  const auto count = static_cast<Eigen::Index>(coordinates.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  Linearizer linearizer(problem, *problem.held, coordinates);
+  for (std::size_t n = 0; n < linearizer.observations().size(); ++n) {
+    addInformation(linearizer.linearize(n), information);
+  }
+  return information;
+}
+
+std::vector<Sample> visitSamples(const PlanningProblem& problem,
+                                 const PosePlanOptions& options,
+                                 const Eigen::Vector3d& joint_position,
+                                 const std::vector<std::size_t>& coils) {
+  Sample sample;
+  sample.joint_position = joint_position;
+  sample.joint_stddev = options.joint_stddev;
+  sample.orientation_stddev = options.orientation_stddev;
+  sample.torque_stddev = options.torque_stddev;
+  const auto all_coils = static_cast<Eigen::Index>(problem.model->space().coils());
+  sample.current = Eigen::VectorXd::Zero(all_coils);
+  std::vector<Sample> samples;
+  if (measuresOrientation(problem, options)) {
+    samples.push_back(sample);
+    samples.back().has_orientation = true;
+  }
+  sample.has_torque = true;
+  for (const std::size_t coil : coils) {
+    sample.current =
+        options.current * Eigen::VectorXd::Unit(all_coils, static_cast<Eigen::Index>(coil));
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
+                                          const PosePlanOptions& options,
+                                          const std::vector<Eigen::Index>& coordinates) {
+  std::vector<PoseCandidate> candidates = drawPoses(problem, options);
+  std::vector<Sample> samples;
+  std::vector<std::size_t> candidate_of_sample;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (Sample& sample :
+         visitSamples(problem, options, candidates[c].joint_position, candidates[c].coils)) {
+      predictMeasurements(*problem.model, problem.state.belief.x, sample);
+      samples.push_back(std::move(sample));
+      candidate_of_sample.push_back(c);
+    }
+  }
+  Linearizer linearizer(problem, samples, coordinates);
+  for (std::size_t n = 0; n < linearizer.observations().size(); ++n) {
+    const Observation& observation = linearizer.observations()[n];
+    PoseCandidate& candidate = candidates[candidate_of_sample[observation.sample]];
+    if (observation.quantity == Quantity::kOrientation) {
+      candidate.orientation = linearizer.linearize(n);
+    } else {
+      candidate.torques.push_back(linearizer.linearize(n));
+    }
+  }
+  return candidates;
+}
+
+}  // namespace sac

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
+
+namespace sac {
+
+/// One observation that could be made, linearised in the F coordinates to estimate.
+struct CandidateObservation {
+  std::vector<Eigen::Index> columns;  ///< coordinates it depends on, 0…F−1, ascending
+  Eigen::Matrix3Xd jacobian;          ///< of these columns, in units of the observation's noise
+};
+
+/// One pose that could be visited, and what could be observed there.
+struct PoseCandidate {
+  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();      ///< [rad]
+  Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();  ///< at the belief
+  std::optional<CandidateObservation> orientation;
+  std::vector<std::size_t> coils;             ///< that may be excited here, counted from 0
+  std::vector<CandidateObservation> torques;  ///< along with `coils`
+};
+
+/// Information matrix JᵀS⁻¹J of one observation is added to `information` (F×F).
+void addInformation(const CandidateObservation& observation, Eigen::MatrixXd& information);
+
+/// Coordinates that a plan is to determine: all for kRefine (without poles and coils where there is
+/// no torque model), else those of the cycle.
+std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem);
+
+/// Information matrix of these coordinates in the samples that are held already, F×F.
+Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
+                                const std::vector<Eigen::Index>& coordinates);
+
+/// The samples that one visit gives, without values: one with the orientation where that is
+/// measured, and one with a torque for each coil.
+std::vector<Sample> visitSamples(const PlanningProblem& problem,
+                                 const PosePlanOptions& options,
+                                 const Eigen::Vector3d& joint_position,
+                                 const std::vector<std::size_t>& coils);
+
+/// Draws poses inside the limits at which something useful can be observed. A coil may be excited
+/// where a pole lies on the steep part of the curve and none where the curve is uncertain.
+std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
+                                          const PosePlanOptions& options,
+                                          const std::vector<Eigen::Index>& coordinates);
+
+}  // namespace sac

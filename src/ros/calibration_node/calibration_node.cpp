@@ -1,0 +1,458 @@
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
+#include "spherical_actuator_calibration/ros/recording/report_page.hpp"
+
+namespace sac {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSamplePeriod = 0.05;      // how often finished dwells are looked for [s]
+constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
+constexpr double kCapturePoll = 0.01;       // [s]
+
+/// Nothing came for so long, by this machine's clock: the streams have ended [s].
+constexpr double kStreamsEnded = 2.0;
+
+std::string contentOf(const std::string& path) {
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+/// Writes a file, or finds it there with this content already.
+void writeOnce(const std::string& path, const std::string& content) {
+  if (!fs::exists(path) || contentOf(path) != content) {
+    writeFileAtomically(path, content, OverwritePolicy::kRefuse);
+  }
+}
+
+/// The cycle that a plan is asked for; the refinement where none is named.
+CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
+  for (const Cycle cycle : {Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine}) {
+    const bool needs_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
+    if (request.cycle == cycleName(cycle) || (request.cycle.empty() && cycle == Cycle::kRefine)) {
+      return {cycle, needs_coil ? request.coil : 0U};
+    }
+  }
+  throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
+}
+
+bool anyIdentified(const CalibrationState& state) {
+  return std::find(state.identified.begin(), state.identified.end(), true) !=
+         state.identified.end();
+}
+
+}  // namespace
+
+CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
+                                 const ros::NodeHandle& private_node,
+                                 const CalibratedDescription& start,
+                                 const CalibrationNodeOptions& options)
+    : node_(node),
+      private_node_(private_node),
+      options_(options),
+      directory_(options.directory, start.actuator),
+      session_(start, options.calibration, directory_.database(), PACKAGE_VERSION),
+      topics_(node, options.calibration.frames.stator),
+      auto_capture_(options.auto_capture),
+      intake_(node, start.actuator, options.calibration),
+      last_received_(ros::WallTime::now()),
+      diagnostics_(node, private_node) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  topics_.publishParameters(session_);
+  if (const auto report = session_.lastReport()) {
+    topics_.publishReport(topics_.stamped(reportToRos(*report)));
+  }
+  publishStatus();
+
+  diagnostics_.setHardwareID(start.actuator.serial.empty() ? start.actuator.name
+                                                           : start.actuator.serial);
+  diagnostics_.add("session", this, &CalibrationNode::diagnose);
+  intake_.addDiagnostics(diagnostics_);
+  advertiseServices();
+  sample_timer_ = node_.createWallTimer(
+      ros::WallDuration(kSamplePeriod),
+      [this](const ros::WallTimerEvent& /*event*/) { takeAutomaticSamples(); });
+  diagnostics_timer_ = node_.createWallTimer(
+      ros::WallDuration(kDiagnosticsPeriod),
+      [this](const ros::WallTimerEvent& /*event*/) { diagnostics_.update(); });
+}
+
+void CalibrationNode::advertiseServices() {
+  const auto advertise = [this](const char* name, auto callback) {
+    services_.push_back(private_node_.advertiseService(name, callback, this));
+  };
+  advertise("capture", &CalibrationNode::capture);
+  advertise("list_samples", &CalibrationNode::listSamples);
+  advertise("remove_sample", &CalibrationNode::removeSample);
+  advertise("set_auto_capture", &CalibrationNode::setAutoCapture);
+  advertise("clear_samples", &CalibrationNode::clearSamples);
+  advertise("calibrate_joint", &CalibrationNode::calibrateJoint);
+  advertise("calibrate_poles", &CalibrationNode::calibratePoles);
+  advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
+  advertise("refine", &CalibrationNode::refine);
+  advertise("validate", &CalibrationNode::validate);
+  advertise("plan_poses", &CalibrationNode::planPoses);
+  advertise("reset", &CalibrationNode::reset);
+  advertise("restore", &CalibrationNode::restore);
+  advertise("save", &CalibrationNode::save);
+}
+
+template <typename Response, typename Action>
+void CalibrationNode::answer(Response& response, Action action) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  try {
+    response.message = action();
+    response.success = 1;
+  } catch (const Error& error) {
+    response.success = 0;
+    response.message = error.what();
+    last_error_ = error.what();
+    ROS_ERROR_STREAM(error.what());
+  }
+}
+
+bool CalibrationNode::capture(msg::Capture::Request& request, msg::Capture::Response& response) {
+  const CaptureProgress progress =
+      waitForCapture(request.duration == 0.0 ? options_.capture_duration : request.duration);
+  if (!progress.sample) {
+    response.message = "No sample: " + progress.message;
+    return true;
+  }
+  answer(response, [&] {
+    Sample sample = *progress.sample;
+    sample.validation = request.validation != 0;
+    sample = store(sample);
+    response.sample = topics_.sampleMessage(sample);
+    return "Sample " + std::to_string(sample.id) + " is stored." +
+           (progress.message.empty() ? "" : " " + progress.message);
+  });
+  return true;
+}
+
+CaptureProgress CalibrationNode::waitForCapture(double duration) const {
+  const Stamp from = intake_.newest().value_or(0);
+  std::uint64_t received = intake_.received();
+  ros::WallTime last_received = ros::WallTime::now();
+  for (;;) {
+    CaptureProgress progress = intake_.capture(from, duration);
+    if (progress.state != CaptureProgress::State::kWaiting) {
+      return progress;
+    }
+    if (!ros::ok() || terminationRequested()) {
+      return {CaptureProgress::State::kRefused, std::nullopt, "The node is being shut down."};
+    }
+    if (intake_.received() != received) {
+      received = intake_.received();
+      last_received = ros::WallTime::now();
+    } else if ((ros::WallTime::now() - last_received).toSec() > kStreamsEnded) {
+      return {CaptureProgress::State::kRefused,
+              std::nullopt,
+              "No measurement arrives any more: check the sensor nodes."};
+    }
+    ros::WallDuration(kCapturePoll).sleep();
+  }
+}
+
+bool CalibrationNode::listSamples(msg::ListSamples::Request& /*request*/,
+                                  msg::ListSamples::Response& response) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  for (const Sample& sample : session_.calibration().samples()) {
+    response.samples.push_back(topics_.sampleMessage(sample));
+  }
+  return true;
+}
+
+bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
+                                   msg::RemoveSample::Response& response) {
+  answer(response, [&] {
+    if (!session_.removeSample(request.id, utcDate())) {
+      throw DataError("Sample " + std::to_string(request.id) +
+                      " is not in use: list_samples shows those that are.");
+    }
+    publishStatus();
+    return "Sample " + std::to_string(request.id) +
+           " is out of use; run the cycles again to be rid of its effect.";
+  });
+  return true;
+}
+
+bool CalibrationNode::setAutoCapture(std_srvs::SetBool::Request& request,
+                                     std_srvs::SetBool::Response& response) {
+  auto_capture_ = request.data != 0;
+  response.success = 1;
+  response.message = auto_capture_ ? "Every dwell is captured by itself from now on."
+                                   : "Dwells are captured on request only.";
+  return true;
+}
+
+bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
+                                   std_srvs::Trigger::Response& response) {
+  answer(response, [&] {
+    const std::size_t count = session_.clearSamples(utcDate());
+    publishStatus();
+    return std::to_string(count) + " samples are out of use; they stay in the session database.";
+  });
+  return true;
+}
+
+bool CalibrationNode::calibrateJoint(msg::Calibrate::Request& /*request*/,
+                                     msg::Calibrate::Response& response) {
+  run({Cycle::kJoint, 0}, response);
+  return true;
+}
+
+bool CalibrationNode::calibratePoles(msg::Calibrate::Request& request,
+                                     msg::Calibrate::Response& response) {
+  run({Cycle::kPoles, request.coil}, response);
+  return true;
+}
+
+bool CalibrationNode::calibrateCoil(msg::Calibrate::Request& request,
+                                    msg::Calibrate::Response& response) {
+  run({Cycle::kCoil, request.coil}, response);
+  return true;
+}
+
+bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
+                             msg::Calibrate::Response& response) {
+  run({Cycle::kRefine, 0}, response);
+  return true;
+}
+
+void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response& response) {
+  answer(response, [&] {
+    storeWaitingSamples();
+    const CycleReport report = session_.run(request, utcDate());
+    response.report = topics_.stamped(reportToRos(report));
+    topics_.publishReport(response.report);
+    if (!report.success) {
+      throw DataError(report.message);
+    }
+    topics_.publishParameters(session_);
+    publishStatus();
+    return report.message;
+  });
+}
+
+bool CalibrationNode::validate(msg::Calibrate::Request& /*request*/,
+                               msg::Calibrate::Response& response) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  const CalibrationSession& calibration = session_.calibration();
+  const HeldOutValidation validation = calibration.validation().value_or(HeldOutValidation{});
+  response.report = topics_.stamped(validationToRos(validation));
+  response.success = response.report.success;
+  response.message = response.report.message;
+  return true;
+}
+
+// Planning takes seconds: it works on a copy, so that nothing waits for it.
+bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
+                                msg::PlanPoses::Response& response) {
+  try {
+    PosePlanOptions plan_options;
+    plan_options.max_poses = request.max_poses;
+    plan_options.wanted_stddev = request.wanted_stddev;
+    PlanningProblem problem;
+    problem.request = plannedCycle(request);
+    std::vector<Sample> held;
+    {
+      const std::lock_guard<std::mutex> lock(session_mutex_);
+      const CalibrationSession& calibration = session_.calibration();
+      // The model never changes while the node runs.
+      problem.model = &calibration.model();
+      problem.state = calibration.state();
+      problem.estimation = calibration.config().estimation;
+      held = calibration.samples();
+      plan_options.start =
+          held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
+    }
+    problem.held = &held;
+    response = planToRos(sac::planPoses(problem, plan_options));
+  } catch (const Error& error) {
+    response.success = 0;
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool CalibrationNode::reset(std_srvs::Trigger::Request& /*request*/,
+                            std_srvs::Trigger::Response& response) {
+  answer(response, [&] {
+    session_.reset(utcDate());
+    topics_.publishParameters(session_);
+    publishStatus();
+    return "The nominal parameters are in force, as revision " +
+           std::to_string(session_.revision().number) + ".";
+  });
+  return true;
+}
+
+bool CalibrationNode::restore(msg::Restore::Request& request, msg::Restore::Response& response) {
+  answer(response, [&] {
+    session_.restore(request.revision, utcDate());
+    topics_.publishParameters(session_);
+    publishStatus();
+    return "The parameters of revision " + std::to_string(request.revision) +
+           " are in force again, as revision " + std::to_string(session_.revision().number) + ".";
+  });
+  return true;
+}
+
+bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
+                           std_srvs::Trigger::Response& response) {
+  std::string report_folder;
+  answer(response, [&] {
+    std::string message = saveFiles();
+    report_folder = saveReport();
+    publishStatus();
+    return message;
+  });
+  // Nothing waits for the page: the session is free again.
+  if (response.success != 0 && options_.report_page) {
+    const std::string page = (fs::path(report_folder) / "report.html").string();
+    const std::string failure =
+        writeReportPage((fs::path(report_folder) / "report.yaml").string(), page);
+    response.message += failure.empty() ? " Report: " + page + "." : " " + failure;
+  }
+  return true;
+}
+
+std::string CalibrationNode::saveFiles() {
+  const Revision& revision = session_.revision();
+  if (!anyIdentified(revision.state)) {
+    throw DataError("Nothing is calibrated yet: run calibrate_joint first.");
+  }
+  const CalibratedDescription description = session_.description(revision.date);
+  const std::string yaml_path = directory_.description(revision.number);
+  const std::string yaml = renderDescription(description, yaml_path);
+  std::string robot;
+  if (!node_.getParam("robot_description", robot)) {
+    writeOnce(yaml_path, yaml);
+    return "Saved " + yaml_path + "; no URDF, since the parameter " +
+           node_.resolveName("robot_description") + " is missing.";
+  }
+  const std::string urdf_path = directory_.urdf(revision.number);
+  const std::string urdf = renderCalibratedUrdf(robot,
+                                                node_.resolveName("robot_description"),
+                                                session_.calibration().start().actuator,
+                                                description.actuator);
+  writeOnce(yaml_path, yaml);
+  writeOnce(urdf_path, urdf);
+  return "Saved " + yaml_path + " and " + urdf_path + ".";
+}
+
+std::string CalibrationNode::saveReport() const {
+  const Revision& revision = session_.revision();
+  std::string folder = directory_.report(revision.number);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) {
+    throw DataError(folder + ": the folder cannot be made: " + error.message() + ".");
+  }
+  // Samples may have come and gone since the last time.
+  writeFileAtomically((fs::path(folder) / "report.yaml").string(),
+                      renderReport(session_.calibration(), session_.origin(revision.date), {}),
+                      OverwritePolicy::kReplace);
+  return folder;
+}
+
+void CalibrationNode::takeAutomaticSamples() {
+  const ros::WallTime now = ros::WallTime::now();
+  if (intake_.received() != received_before_) {
+    received_before_ = intake_.received();
+    last_received_ = now;
+    finished_ = false;
+  } else if (!finished_ && (now - last_received_).toSec() > kStreamsEnded) {
+    intake_.finish();
+    finished_ = true;
+  }
+  const std::vector<Sample> samples = intake_.takeSamples();
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (auto_capture_) {
+    keep(samples);
+  }
+  try {
+    storeWaitingSamples();
+  } catch (const Error& error) {
+    last_error_ = error.what();
+    constexpr double kSilence = 10.0;  // [s]
+    ROS_ERROR_STREAM_THROTTLE(kSilence,
+                              waiting_.size() << " samples wait to be stored: " << error.what());
+  }
+}
+
+void CalibrationNode::keep(const std::vector<Sample>& samples) {
+  for (const Sample& sample : samples) {
+    try {
+      session_.calibration().prepared(sample);
+      waiting_.push_back(sample);
+    } catch (const Error& error) {
+      last_error_ = error.what();
+      ROS_ERROR_STREAM("A dwell gave no sample: " << error.what());
+    }
+  }
+}
+
+// In the order of their capture; one that cannot be stored stays, and so do those behind it.
+void CalibrationNode::storeWaitingSamples() {
+  while (!waiting_.empty()) {
+    store(waiting_.front());
+    waiting_.pop_front();
+  }
+}
+
+Sample CalibrationNode::store(const Sample& sample) {
+  Sample stored = session_.addSample(sample, utcDate());
+  topics_.publishSample(topics_.sampleMessage(stored));
+  publishStatus();
+  return stored;
+}
+
+void CalibrationNode::publishStatus() {
+  const CalibrationSession& calibration = session_.calibration();
+  SessionProgress progress = session_.progress();
+  progress.saved = fs::exists(directory_.description(session_.revision().number));
+  topics_.publishStatus(
+      session_,
+      progress,
+      nextStep(
+          calibration.model(), calibration.samples(), progress, calibration.config().estimation));
+}
+
+void CalibrationNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (waiting_.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "good");
+  } else {
+    status.summaryf(diagnostic_msgs::DiagnosticStatus::ERROR,
+                    "%zu samples wait to be stored: %s",
+                    waiting_.size(),
+                    last_error_.c_str());
+  }
+  status.add("revision", session_.revision().number);
+  status.add("samples in use", session_.calibration().samples().size());
+  status.add("automatic capture", auto_capture_ ? "on" : "off");
+  status.add("directory", directory_.path());
+  status.add("last error", last_error_.empty() ? "none" : last_error_);
+}
+
+}  // namespace sac

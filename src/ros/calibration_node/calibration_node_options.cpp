@@ -1,0 +1,22 @@
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
+
+#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+
+namespace sac {
+
+CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
+  const YamlMap map = privateParameters(private_node);
+  CalibrationNodeOptions options;
+  options.calibration = readCalibrationConfig(map, private_node.getNamespace());
+  options.directory = map.text("directory", options.directory);
+  options.auto_capture = map.boolean("auto_capture", options.auto_capture);
+  options.capture_duration =
+      map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
+  options.report_page = map.boolean("report_page", options.report_page);
+  // Read by diagnostic_updater itself.
+  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  map.finish();
+  return options;
+}
+
+}  // namespace sac

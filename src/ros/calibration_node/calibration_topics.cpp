@@ -1,0 +1,78 @@
+#include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
+
+#include <utility>
+
+#include <spherical_actuator_calibration/CalibrationStatus.h>
+
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+
+namespace sac {
+namespace {
+
+constexpr bool kLatched = true;
+constexpr std::uint32_t kQueueLength = 1000;
+
+}  // namespace
+
+CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
+    : frame_(std::move(frame)),
+      parameters_(node.advertise<msg::ActuatorParameters>("parameters", 1, kLatched)),
+      report_(node.advertise<msg::CalibrationReport>("report", 1, kLatched)),
+      status_(node.advertise<msg::CalibrationStatus>("status", 1, kLatched)),
+      samples_(node.advertise<msg::CalibrationSample>("samples", kQueueLength)) {}
+
+void CalibrationTopics::publishParameters(const LiveSession& session) {
+  msg::ActuatorParameters message = parametersToRos(session.actuator());
+  message.header = header();
+  message.revision = session.revision().number;
+  message.source = session.revision().source;
+  parameters_.publish(message);
+}
+
+void CalibrationTopics::publishReport(const msg::CalibrationReport& report) {
+  report_.publish(report);
+}
+
+void CalibrationTopics::publishStatus(const LiveSession& session,
+                                      const SessionProgress& progress,
+                                      const std::string& next_step) {
+  const Actuator& nominal = session.calibration().model().space().nominal();
+  msg::CalibrationStatus message;
+  message.header = header();
+  message.actuator = nominal.name;
+  message.serial = nominal.serial;
+  message.revision = session.revision().number;
+  message.orientation_samples = progress.orientation_samples;
+  message.torque_samples = progress.torque_samples;
+  message.joint_done = static_cast<std::uint8_t>(progress.joint_done);
+  message.poles_done = static_cast<std::uint8_t>(progress.poles_done);
+  message.coil_done.assign(progress.coil_done.begin(), progress.coil_done.end());
+  message.refined = static_cast<std::uint8_t>(progress.refined);
+  message.next_step = next_step;
+  status_.publish(message);
+}
+
+void CalibrationTopics::publishSample(const msg::CalibrationSample& sample) {
+  samples_.publish(sample);
+}
+
+msg::CalibrationReport CalibrationTopics::stamped(msg::CalibrationReport report) const {
+  report.header = header();
+  return report;
+}
+
+msg::CalibrationSample CalibrationTopics::sampleMessage(const Sample& sample) const {
+  msg::CalibrationSample message = sampleToRos(sample);
+  message.header.frame_id = frame_;
+  return message;
+}
+
+std_msgs::Header CalibrationTopics::header() const {
+  std_msgs::Header header;
+  header.stamp = ros::Time::now();
+  header.frame_id = frame_;
+  return header;
+}
+
+}  // namespace sac

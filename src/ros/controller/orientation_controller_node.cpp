@@ -1,0 +1,232 @@
+#include "spherical_actuator_calibration/ros/controller/orientation_controller_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
+constexpr double kWarningPeriod = 2.0;      // [s]
+constexpr std::uint32_t kQueueLength = 100;
+constexpr double kMicro = 1e6;
+
+}  // namespace
+
+void CycleStatistics::add(double begin, double end) {
+  constexpr double kMissedPeriods = 1.5;
+  ++cycles_;
+  total_ += end - begin;
+  longest_ = std::max(longest_, end - begin);
+  if (last_begin_ > 0.0) {
+    const double interval = begin - last_begin_;
+    largest_jitter_ = std::max(largest_jitter_, std::abs(interval - period_));
+    if (interval > kMissedPeriods * period_) {
+      missed_ += static_cast<std::size_t>(std::lround(interval / period_)) - 1;
+    }
+  }
+  last_begin_ = begin;
+}
+
+void CycleStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const double mean = cycles_ == 0 ? 0.0 : total_ / static_cast<double>(cycles_);
+  status.add("cycles", cycles_);
+  status.add("mean computation [us]", kMicro * mean);
+  status.add("longest computation [us]", kMicro * longest_);
+  status.add("largest jitter [us]", kMicro * largest_jitter_);
+  status.add("missed cycles since start", missed_);
+  cycles_ = 0;
+  total_ = 0.0;
+  longest_ = 0.0;
+  largest_jitter_ = 0.0;
+}
+
+OrientationControllerNode::OrientationControllerNode(
+    const ros::NodeHandle& node,
+    const ros::NodeHandle& private_node,
+    const Actuator& design,
+    const OrientationControllerNodeOptions& options)
+    : design_(design),
+      options_(options),
+      joint_reader_(jointNames(design)),
+      controller_(design, options.controller),
+      statistics_(1.0 / options.rate),
+      diagnostics_(node, private_node) {
+  ros::NodeHandle handle = node;
+  ros::NodeHandle private_handle = private_node;
+  publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
+  const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
+  subscribers_.push_back(
+      handle.subscribe("parameters", 1, &OrientationControllerNode::receiveParameters, this));
+  subscribers_.push_back(handle.subscribe(
+      "joint_states", kQueueLength, &OrientationControllerNode::receiveJoints, this, at_once));
+  subscribers_.push_back(handle.subscribe("orientation_target",
+                                          kQueueLength,
+                                          &OrientationControllerNode::receiveTarget,
+                                          this,
+                                          at_once));
+  service_ = private_handle.advertiseService("enable", &OrientationControllerNode::enable, this);
+  diagnostics_.setHardwareID(design.serial.empty() ? design.name : design.serial);
+  diagnostics_.add("control", this, &OrientationControllerNode::diagnose);
+  diagnostics_timer_ = handle.createWallTimer(
+      ros::WallDuration(kDiagnosticsPeriod),
+      [this](const ros::WallTimerEvent& /*event*/) { diagnostics_.update(); });
+  thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
+}
+
+OrientationControllerNode::~OrientationControllerNode() {
+  thread_->stop();
+  if (was_active_) {
+    controller_.disable();
+    publish(controller_.update(0), ros::Time::now());
+  }
+}
+
+void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::optional<Actuator> parameters = actuatorFromRos(message, design_);
+  if (!parameters) {
+    ROS_ERROR_STREAM("The parameters of " << message.actuator << " do not fit the description of "
+                                          << design_.name << "; those before stay in force.");
+    return;
+  }
+  try {
+    controller_.setParameters(*parameters);
+    ROS_INFO_STREAM("Revision " << message.revision << " of the parameters (" << message.source
+                                << ") is in force.");
+  } catch (const Error& error) {
+    ROS_ERROR_STREAM("The parameters are refused: " << error.what());
+  }
+}
+
+void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::optional<JointMeasurement> joints = joint_reader_.read(message);
+  try {
+    if (!joints) {
+      throw DataError("a joint is missing.");
+    }
+    if (controller_.receive(*joints)) {
+      last_reading_ = steadySeconds();
+    }
+  } catch (const Error& error) {
+    last_refusal_ = std::string("joint_states: ") + error.what();
+    ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
+  }
+}
+
+void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionStamped& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    if (message.header.frame_id != options_.stator_frame) {
+      throw DataError("it is in the frame \"" + message.header.frame_id + "\", not in \"" +
+                      options_.stator_frame + "\".");
+    }
+    const OrientationMeasurement target = orientationFromRos(message);
+    constexpr double kUnitTolerance = 1e-3;
+    if (!(std::abs(target.q_stator_rotor.norm() - 1.0) < kUnitTolerance)) {
+      throw DataError("its quaternion is not of unit length.");
+    }
+    const Stamp stamp =
+        message.header.stamp.isZero() ? stampFromRos(ros::Time::now()) : target.stamp;
+    controller_.setTarget(stamp, target.q_stator_rotor.normalized().toRotationMatrix());
+  } catch (const Error& error) {
+    last_refusal_ = std::string("orientation_target: ") + error.what();
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
+  }
+}
+
+bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
+                                       std_srvs::SetBool::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    if (request.data != 0) {
+      controller_.enable(stampFromRos(ros::Time::now()));
+      // So that a stop in the very first cycle is told as well.
+      was_active_ = true;
+      response.message = "The coils hold the rotor, and turn it to orientation_target.";
+    } else {
+      controller_.disable();
+      response.message = "The coils have no current.";
+    }
+    response.success = 1;
+  } catch (const Error& error) {
+    response.success = 0;
+    response.message = std::string("Not enabled: ") + error.what() + ".";
+  }
+  return true;
+}
+
+void OrientationControllerNode::beat() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    cycle();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM("The control failed; the node ends: " << error.what());
+    controller_.disable();
+    publish(controller_.update(0), ros::Time::now());
+    was_active_ = false;
+    ros::requestShutdown();
+  }
+}
+
+void OrientationControllerNode::cycle() {
+  const double begin = steadySeconds();
+  const ros::Time now = ros::Time::now();
+  // The clock of ROS may stand still: a paused replay must not keep the currents on.
+  if (begin - last_reading_ > options_.controller.largest_age) {
+    controller_.stop("no joint angles arrive");
+  }
+  const Eigen::VectorXd& currents = controller_.update(stampFromRos(now));
+  const bool is_active = controller_.state() == ControlState::kActive;
+  // The end of control is a command as well: zero, once.
+  if (is_active || was_active_) {
+    statistics_.add(begin, steadySeconds());
+    publish(currents, now);
+  } else {
+    statistics_.interrupt();
+  }
+  if (was_active_ && controller_.state() == ControlState::kStopped) {
+    ROS_ERROR_STREAM("The control has stopped, the currents are zero: "
+                     << controller_.stopReason() << ". Call enable to go on.");
+  }
+  was_active_ = is_active;
+}
+
+void OrientationControllerNode::publish(const Eigen::VectorXd& currents, const ros::Time& stamp) {
+  message_.header.stamp = stamp;
+  message_.current.assign(currents.begin(), currents.end());
+  publisher_.publish(message_);
+}
+
+void OrientationControllerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  switch (controller_.state()) {
+    case ControlState::kIdle:
+      status.summary(DiagnosticStatus::OK, "not enabled");
+      break;
+    case ControlState::kActive:
+      status.summary(DiagnosticStatus::OK, "follows its targets");
+      if (controller_.torqueShare() < 1.0) {
+        status.summary(DiagnosticStatus::WARN, "the currents are at their limit");
+      }
+      break;
+    case ControlState::kStopped:
+      status.summary(DiagnosticStatus::ERROR, "stopped: " + controller_.stopReason());
+      break;
+  }
+  statistics_.report(status);
+  status.add("tracking error [mrad]", 1e3 * controller_.trackingError());
+  status.add("last refusal", last_refusal_.empty() ? "none" : last_refusal_);
+}
+
+}  // namespace sac

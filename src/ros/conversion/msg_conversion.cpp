@@ -1,0 +1,265 @@
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+
+namespace sac {
+namespace {
+
+/// Quaternions whose norm is further from 1 are wrong, not just rounded.
+constexpr double kUnitTolerance = 1e-3;
+
+Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::uint32_t id) {
+  const Eigen::Quaterniond q = quaternionFromRos(message);
+  // The negated comparison also catches NaN.
+  if (!(std::abs(q.norm() - 1.0) <= kUnitTolerance)) {
+    throw DataError("Sample " + std::to_string(id) + ": orientation is not a unit quaternion.");
+  }
+  return q.normalized().toRotationMatrix();
+}
+
+msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
+  msg::ParameterEstimate message;
+  message.name = estimate.name;
+  message.nominal = estimate.nominal;
+  message.initial = estimate.initial;
+  message.value = estimate.value;
+  message.stddev = estimate.observable ? estimate.stddev : std::numeric_limits<double>::infinity();
+  message.observable = static_cast<std::uint8_t>(estimate.observable);
+  return message;
+}
+
+msg::SampleResidual residualToRos(const SampleResidual& residual) {
+  msg::SampleResidual message;
+  message.id = residual.id;
+  message.residual = residual.residual;
+  message.standardized = residual.standardized;
+  message.rejected = static_cast<std::uint8_t>(residual.rejected);
+  message.reason = residual.reason;
+  return message;
+}
+
+}  // namespace
+
+Eigen::Vector3d vectorFromRos(const geometry_msgs::Vector3& message) {
+  return {message.x, message.y, message.z};
+}
+
+geometry_msgs::Vector3 vectorToRos(const Eigen::Vector3d& vector) {
+  geometry_msgs::Vector3 message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
+Eigen::Quaterniond quaternionFromRos(const geometry_msgs::Quaternion& message) {
+  return {message.w, message.x, message.y, message.z};
+}
+
+geometry_msgs::Quaternion quaternionToRos(const Eigen::Quaterniond& quaternion) {
+  geometry_msgs::Quaternion message;
+  message.x = quaternion.x();
+  message.y = quaternion.y();
+  message.z = quaternion.z();
+  message.w = quaternion.w();
+  return message;
+}
+
+OrientationMeasurement orientationFromRos(const geometry_msgs::QuaternionStamped& message) {
+  return {stampFromRos(message.header.stamp), quaternionFromRos(message.quaternion)};
+}
+
+TorqueMeasurement torqueFromRos(const geometry_msgs::Vector3Stamped& message) {
+  return {stampFromRos(message.header.stamp), vectorFromRos(message.vector)};
+}
+
+void currentFromRos(const msg::CoilCurrents& message, CurrentMeasurement& measurement) {
+  measurement.stamp = stampFromRos(message.header.stamp);
+  measurement.current = Eigen::Map<const Eigen::VectorXd>(
+      message.current.data(), static_cast<Eigen::Index>(message.current.size()));
+}
+
+std::optional<JointMeasurement> JointStateReader::read(const sensor_msgs::JointState& message) {
+  if (!locate(message)) {
+    return std::nullopt;
+  }
+  JointMeasurement measurement;
+  measurement.stamp = stampFromRos(message.header.stamp);
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    if (places_[k] >= message.position.size()) {
+      return std::nullopt;
+    }
+    measurement.position[static_cast<Eigen::Index>(k)] = message.position[places_[k]];
+  }
+  return measurement;
+}
+
+bool JointStateReader::locate(const sensor_msgs::JointState& message) {
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    if (places_[k] < message.name.size() && message.name[places_[k]] == names_[k]) {
+      continue;
+    }
+    const auto found = std::find(message.name.begin(), message.name.end(), names_[k]);
+    if (found == message.name.end()) {
+      return false;
+    }
+    places_[k] = static_cast<std::size_t>(found - message.name.begin());
+  }
+  return true;
+}
+
+Sample sampleFromRos(const msg::CalibrationSample& message) {
+  Sample sample;
+  sample.id = message.id;
+  sample.stamp = stampFromRos(message.header.stamp);
+  sample.validation = message.validation != 0;
+  sample.joint_position = Eigen::Map<const Eigen::Vector3d>(message.joint_position.data());
+  sample.joint_stddev = Eigen::Map<const Eigen::Vector3d>(message.joint_stddev.data());
+  sample.has_orientation = message.has_orientation != 0;
+  if (sample.has_orientation) {
+    sample.R_stator_rotor = rotationFromRos(message.orientation, message.id);
+  }
+  sample.orientation_stddev = message.orientation_stddev;
+  sample.has_torque = message.has_torque != 0;
+  sample.torque = vectorFromRos(message.torque);
+  sample.torque_stddev = message.torque_stddev;
+  sample.current = Eigen::Map<const Eigen::VectorXd>(
+      message.current.data(), static_cast<Eigen::Index>(message.current.size()));
+  sample.duration = message.duration;
+  sample.measurements = message.measurements;
+  return sample;
+}
+
+msg::CalibrationSample sampleToRos(const Sample& sample) {
+  msg::CalibrationSample message;
+  message.header.stamp = stampToRos(sample.stamp);
+  message.id = sample.id;
+  message.validation = static_cast<std::uint8_t>(sample.validation);
+  std::copy_n(sample.joint_position.data(), kJoints, message.joint_position.begin());
+  std::copy_n(sample.joint_stddev.data(), kJoints, message.joint_stddev.begin());
+  message.has_orientation = static_cast<std::uint8_t>(sample.has_orientation);
+  message.orientation = quaternionToRos(Eigen::Quaterniond(sample.R_stator_rotor));
+  message.orientation_stddev = sample.orientation_stddev;
+  message.has_torque = static_cast<std::uint8_t>(sample.has_torque);
+  message.torque = vectorToRos(sample.torque);
+  message.torque_stddev = sample.torque_stddev;
+  message.current.assign(sample.current.begin(), sample.current.end());
+  message.duration = sample.duration;
+  message.measurements = sample.measurements;
+  return message;
+}
+
+msg::ActuatorParameters parametersToRos(const Actuator& actuator) {
+  msg::ActuatorParameters message;
+  message.actuator = actuator.name;
+  message.serial = actuator.serial;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    message.joints[k].axis = vectorToRos(actuator.joints[k].axis);
+    message.joints[k].offset = actuator.joints[k].offset;
+  }
+  for (const PoleAxis& pole : actuator.poles) {
+    msg::PoleAxis& item = message.poles.emplace_back();
+    item.polar = pole.polar;
+    item.azimuth = pole.azimuth;
+    item.polarity = static_cast<std::int8_t>(pole.polarity);
+    item.gain = pole.gain;
+  }
+  for (const CoilAxis& coil : actuator.coils) {
+    msg::CoilAxis& item = message.coils.emplace_back();
+    item.polar = coil.polar;
+    item.azimuth = coil.azimuth;
+    item.gain = coil.gain;
+  }
+  return message;
+}
+
+std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
+                                        const Actuator& design) {
+  if (message.poles.size() != design.poles.size() || message.coils.size() != design.coils.size()) {
+    return std::nullopt;
+  }
+  Actuator actuator = design;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
+    actuator.joints[k].offset = message.joints[k].offset;
+  }
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    actuator.poles[i].polar = message.poles[i].polar;
+    actuator.poles[i].azimuth = message.poles[i].azimuth;
+    actuator.poles[i].gain = message.poles[i].gain;
+  }
+  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
+    actuator.coils[j].polar = message.coils[j].polar;
+    actuator.coils[j].azimuth = message.coils[j].azimuth;
+    actuator.coils[j].gain = message.coils[j].gain;
+  }
+  return actuator;
+}
+
+msg::CalibrationReport reportToRos(const CycleReport& report) {
+  msg::CalibrationReport message;
+  message.cycle = cycleName(report.cycle);
+  message.coil = static_cast<std::uint32_t>(report.coil);
+  message.success = static_cast<std::uint8_t>(report.success);
+  message.message = report.message;
+  message.samples_used = report.samples_used;
+  message.samples_rejected = report.samples_rejected;
+  message.iterations = report.iterations;
+  message.error_history = report.error_history;
+  message.reduced_chi_square = report.reduced_chi_square;
+  message.condition_number = report.condition_number;
+  message.solve_time = report.solve_time;
+  std::transform(report.estimates.begin(),
+                 report.estimates.end(),
+                 std::back_inserter(message.estimates),
+                 estimateToRos);
+  std::transform(report.residuals.begin(),
+                 report.residuals.end(),
+                 std::back_inserter(message.residuals),
+                 residualToRos);
+  message.orientation_uncertainty = report.orientation_uncertainty;
+  message.torque_uncertainty = report.torque_uncertainty;
+  return message;
+}
+
+msg::CalibrationReport validationToRos(const HeldOutValidation& validation) {
+  msg::CalibrationReport message;
+  message.cycle = "validate";
+  message.success = static_cast<std::uint8_t>(validation.hasVerdict() &&
+                                              validation.probability >= kLeastProbability);
+  message.message = verdict(validation);
+  message.samples_used = static_cast<std::uint32_t>(validation.samples);
+  message.reduced_chi_square = validation.reduced_chi_square;
+  std::transform(validation.residuals.begin(),
+                 validation.residuals.end(),
+                 std::back_inserter(message.residuals),
+                 residualToRos);
+  return message;
+}
+
+msg::PlanPoses::Response planToRos(const PosePlan& plan) {
+  msg::PlanPoses::Response message;
+  message.success = static_cast<std::uint8_t>(plan.success);
+  message.message = plan.message;
+  for (const PlannedPose& pose : plan.poses) {
+    msg::PlannedPose& item = message.poses.emplace_back();
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      item.joint_position[k] = pose.joint_position[static_cast<Eigen::Index>(k)];
+    }
+    item.coils.assign(pose.coils.begin(), pose.coils.end());
+  }
+  std::transform(plan.expected.begin(),
+                 plan.expected.end(),
+                 std::back_inserter(message.expected),
+                 estimateToRos);
+  return message;
+}
+
+}  // namespace sac

@@ -1,0 +1,29 @@
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+
+namespace sac {
+namespace {
+
+constexpr Stamp kTicksPerSecond = 1'000'000'000;
+
+}  // namespace
+
+Stamp stampFromRos(const ros::Time& time) {
+  return static_cast<Stamp>(time.sec) * kTicksPerSecond + static_cast<Stamp>(time.nsec);
+}
+
+ros::Time stampToRos(Stamp stamp) {
+  const Stamp seconds = stamp / kTicksPerSecond;
+  if (stamp < 0 || seconds > std::numeric_limits<std::uint32_t>::max()) {
+    throw DataError("The stamp " + std::to_string(stamp) +
+                    " ns cannot be written as ROS time: check the clock that made it.");
+  }
+  return {static_cast<std::uint32_t>(seconds), static_cast<std::uint32_t>(stamp % kTicksPerSecond)};
+}
+
+}  // namespace sac

@@ -1,0 +1,69 @@
+#include "spherical_actuator_calibration/ros/conversion/transform_lookup.hpp"
+
+#include <geometry_msgs/TransformStamped.h>
+#include <tf2/exceptions.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+
+namespace sac {
+namespace {
+
+Eigen::Isometry3d transformFromRos(const geometry_msgs::Transform& message) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.linear() = quaternionFromRos(message.rotation).normalized().toRotationMatrix();
+  X.translation() = vectorFromRos(message.translation);
+  return X;
+}
+
+}  // namespace
+
+TransformLookup::TransformLookup(double wait) : wait_(wait), listener_(buffer_) {}
+
+Eigen::Isometry3d TransformLookup::at(const std::string& parent,
+                                      const std::string& child,
+                                      const ros::Time& time) {
+  wait(parent, child, time);
+  try {
+    return transformFromRos(buffer_.lookupTransform(parent, child, time).transform);
+  } catch (const tf2::TransformException& error) {
+    if (!has(parent, child)) {
+      throw DataError(missingTransform(parent, child));
+    }
+    throw DataError("the transform from \"" + parent + "\" to \"" + child +
+                    "\" is not known at the stamp of the measurement: " + error.what());
+  }
+}
+
+bool TransformLookup::has(const std::string& parent, const std::string& child) const {
+  return buffer_.canTransform(parent, child, ros::Time());
+}
+
+// tf2's own wait counts by the ROS clock, which may stand still.
+void TransformLookup::wait(const std::string& parent,
+                           const std::string& child,
+                           const ros::Time& time) {
+  const auto is_there = [&] { return buffer_.canTransform(parent, child, time); };
+  const ros::WallTime begin = ros::WallTime::now();
+  if (is_there() || begin < impatient_until_) {
+    return;
+  }
+  const ros::WallDuration pause(0.001);
+  while (ros::WallTime::now() < begin + wait_) {
+    pause.sleep();
+    if (is_there()) {
+      return;
+    }
+  }
+  const ros::WallDuration impatience(1.0);
+  impatient_until_ = ros::WallTime::now() + impatience;
+}
+
+std::string missingTransform(const std::string& parent, const std::string& child) {
+  return "there is no transform from \"" + parent + "\" to \"" + child +
+         "\": publish the registration, by \"rosrun tf2_ros static_transform_publisher x y z qx qy "
+         "qz qw " +
+         parent + " " + child + "\" or an argument of lab.launch";
+}
+
+}  // namespace sac

@@ -1,0 +1,108 @@
+#include "spherical_actuator_calibration/ros/devices/joint_sensor_node.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <ros/console.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/drivers/transport_error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
+constexpr double kWarningPeriod = 5.0;      // [s]
+
+/// A stream slower than half of what is asked for is a warning.
+StreamLimits limitsFor(double rate) {
+  constexpr double kLargestAge = 0.5;
+  return {0.5 * rate, std::max(kLargestAge, 3.0 / rate)};
+}
+
+}  // namespace
+
+JointSensorOptions loadJointSensorOptions(const ros::NodeHandle& private_node) {
+  const YamlMap map = privateParameters(private_node);
+  JointSensorOptions options = readJointSensorOptions(map);
+  // Read by diagnostic_updater itself.
+  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  map.finish();
+  return options;
+}
+
+JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
+                                 const ros::NodeHandle& private_node,
+                                 const Actuator& actuator,
+                                 const JointSensorOptions& options,
+                                 std::unique_ptr<ModbusTransport> transport)
+    : transport_(std::move(transport)),
+      sensor_(options, *transport_),
+      stream_("joint_states", limitsFor(options.rate)),
+      link_diagnostics_(describe(options.link)),
+      diagnostics_(node, private_node) {
+  for (const JointAxis& joint : actuator.joints) {
+    message_.name.push_back(joint.name);
+  }
+  message_.position.resize(kJoints);
+  ros::NodeHandle handle = node;
+  constexpr std::uint32_t kQueueLength = 1000;
+  publisher_ = handle.advertise<sensor_msgs::JointState>("joint_states", kQueueLength);
+  diagnostics_.setHardwareID(actuator.serial.empty() ? actuator.name : actuator.serial);
+  diagnostics_.add(link_diagnostics_);
+  diagnostics_.add(stream_);
+  diagnostics_timer_ =
+      handle.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
+                             [this](const ros::WallTimerEvent& /*event*/) { updateDiagnostics(); });
+  thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { poll(); });
+}
+
+void JointSensorNode::poll() {
+  const double now = steadySeconds();
+  if (!link_.mayTry(now)) {
+    return;
+  }
+  const bool was_up = link_.isUp();
+  try {
+    transport_->open();
+    publishReading();
+    link_.success();
+  } catch (const TransportError& error) {
+    link_.failure(now, error.what());
+    ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, error.what());
+  } catch (const Error& error) {
+    // The device answers; what it says is of no use.
+    link_.success();
+    stream_.refuse(error.what());
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, error.what());
+  }
+  link_diagnostics_.update(link_);
+  if (was_up != link_.isUp()) {
+    link_changed_ = true;
+  }
+}
+
+// A link that is lost, or back, is told at once.
+void JointSensorNode::updateDiagnostics() {
+  if (link_changed_.exchange(false)) {
+    diagnostics_.force_update();
+  } else {
+    diagnostics_.update();
+  }
+}
+
+void JointSensorNode::publishReading() {
+  const ros::Time before = ros::Time::now();
+  const Eigen::Vector3d q = sensor_.read();
+  const ros::Time after = ros::Time::now();
+  message_.header.stamp = before + (after - before) * 0.5;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    message_.position[k] = q[static_cast<Eigen::Index>(k)];
+  }
+  publisher_.publish(message_);
+  stream_.accept(message_.header.stamp);
+}
+
+}  // namespace sac

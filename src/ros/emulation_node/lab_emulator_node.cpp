@@ -1,0 +1,247 @@
+#include "spherical_actuator_calibration/ros/emulation_node/lab_emulator_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <ros/console.h>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::uint32_t kQueueLength = 100;
+/// A computer that was busy must not make the fixture jump [s].
+constexpr double kLongestBeat = 0.05;
+constexpr double kWarningPeriod = 2.0;  // [s]
+
+ScheduledMeasurement scheduled(bool glitch) {
+  ScheduledMeasurement measurement;
+  measurement.glitch = glitch;
+  return measurement;
+}
+
+void setVector(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
+  to.x = from.x();
+  to.y = from.y();
+  to.z = from.z();
+}
+
+}  // namespace
+
+LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
+                                 const ros::NodeHandle& private_node,
+                                 const Actuator& nominal,
+                                 const LabEmulatorOptions& options)
+    : options_(options),
+      truth_(manufacturedActuator(nominal, options.errors, options.seed)),
+      actuator_(truth_, options.load),
+      joint_server_(options.joint_sensor.link.host, options.joint_sensor.link.port),
+      amplifier_server_(options.coil_driver.link.host, options.coil_driver.link.port),
+      fixture_(options.fixture, Eigen::Vector3d::Zero()),
+      amplifier_(options.coil_driver, options.amplifier, truth_.coils.size(), amplifier_server_),
+      joints_(options.joints, options.seed),
+      tracker_(options.tracker, options.registration, 0, options.seed),
+      ft_sensor_(options.ft_sensor, options.registration, options.seed),
+      current_sensor_(options.currents, options.seed),
+      last_beat_(steadySeconds()),
+      pose_due_(last_beat_),
+      node_(node),
+      private_node_(private_node) {
+  if (!options_.truth.empty()) {
+    saveDescription(options_.truth, {truth_}, OverwritePolicy::kReplace);
+  }
+  pose_message_.header.frame_id = options_.tracker_frame;
+  wrench_message_.header.frame_id = options_.ft_sensor_frame;
+  pose_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("tracker/pose", kQueueLength);
+  true_message_.header.frame_id = options_.stator_frame;
+  true_publisher_ =
+      private_node_.advertise<geometry_msgs::QuaternionStamped>("true_orientation", kQueueLength);
+  if (actuator_.hasTorque()) {
+    wrench_publisher_ =
+        node_.advertise<geometry_msgs::WrenchStamped>("ft_sensor/wrench", kQueueLength);
+    free_rotor_.emplace(
+        truth_, RigidRotor{options_.inertia, options_.load.unbalance}, options_.mechanical_stop);
+    services_.push_back(
+        private_node_.advertiseService("release_fixture", &LabEmulatorNode::releaseFixture, this));
+  }
+  for (const RegisterContent& content : encodeJoints(options_.joint_sensor, fixture_.position())) {
+    joint_server_.addUnit(content.unit);
+  }
+  showJoints();
+  target_subscriber_ =
+      node_.subscribe("fixture/target", kQueueLength, &LabEmulatorNode::receiveTarget, this);
+  advertiseFaults();
+  thread_ = std::make_unique<PeriodicThread>(options_.ft_sensor.stream.rate, [this] { beat(); });
+}
+
+void LabEmulatorNode::advertiseFaults() {
+  advertiseFault("lose_tracker", tracker_lost_, "The tracker has lost its marker.");
+  advertiseFault("freeze_sensor", sensor_frozen_, "The joint sensors' registers stand still.");
+  advertiseFault("trip_amplifier", amplifier_tripped_, "The amplifier has tripped.");
+  services_.push_back(private_node_.advertiseService<Trigger::Request, Trigger::Response>(
+      "inject_outlier", [this](Trigger::Request& /*request*/, Trigger::Response& response) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        outlier_pose_ = true;
+        outlier_wrench_ = true;
+        response.success = 1;
+        response.message = "The next tracker pose and the next wrench are far off.";
+        return true;
+      }));
+}
+
+void LabEmulatorNode::advertiseFault(const char* name, bool& flag, const char* what) {
+  services_.push_back(private_node_.advertiseService<SetBool::Request, SetBool::Response>(
+      name, [this, &flag, what](SetBool::Request& request, SetBool::Response& response) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        flag = request.data != 0;
+        response.success = 1;
+        response.message = flag ? what : "It works again.";
+        return true;
+      }));
+}
+
+void LabEmulatorNode::receiveTarget(const sensor_msgs::JointState& message) {
+  try {
+    const Eigen::Vector3d target = targetOf(message);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    fixture_.setTarget(target);
+  } catch (const DataError& error) {
+    ROS_WARN_STREAM("fixture/target: " << error.what());
+  }
+}
+
+Eigen::Vector3d LabEmulatorNode::targetOf(const sensor_msgs::JointState& message) const {
+  if (message.name.size() != kJoints || message.position.size() != kJoints) {
+    throw DataError("a target has a name and a position for each of the three joints.");
+  }
+  Eigen::Vector3d target;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const std::string& name = truth_.joints[k].name;
+    const auto place = std::find(message.name.begin(), message.name.end(), name);
+    if (place == message.name.end()) {
+      throw DataError("the joint " + name + " is missing.");
+    }
+    target[static_cast<Eigen::Index>(k)] =
+        message.position[static_cast<std::size_t>(place - message.name.begin())];
+  }
+  const double limit = truth_.workspace.tilt_limit;
+  constexpr double kRounding = 1e-6;
+  if (!target.allFinite() || target.head<2>().cwiseAbs().maxCoeff() > limit + kRounding) {
+    throw DataError("the target lies outside of the workspace, ±" + std::to_string(limit) +
+                    " rad of tilt.");
+  }
+  return target;
+}
+
+bool LabEmulatorNode::releaseFixture(SetBool::Request& request, SetBool::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool release = request.data != 0;
+  if (release && !released_) {
+    free_rotor_->release(fixture_.position());
+  } else if (!release && released_) {
+    fixture_.hold(free_rotor_->position());
+  }
+  released_ = release;
+  response.success = 1;
+  response.message = release ? "The rotor is free: coils and gravity move it."
+                             : "The fixture holds the rotor where it was.";
+  return true;
+}
+
+void LabEmulatorNode::moveRotor(double step) {
+  if (!released_) {
+    fixture_.advance(step);
+    return;
+  }
+  // A late beat is taken in steps that the integrator is good for.
+  constexpr double kLongestStep = 2e-3;
+  const auto steps = static_cast<int>(std::ceil(step / kLongestStep));
+  for (int n = 0; n < steps; ++n) {
+    free_rotor_->advance(step / steps, amplifier_.currents());
+  }
+  if (free_rotor_->isAtStop()) {
+    ROS_WARN_THROTTLE(kWarningPeriod, "The rotor is at its mechanical stop.");
+  }
+}
+
+const Eigen::Vector3d& LabEmulatorNode::position() const {
+  return released_ ? free_rotor_->position() : fixture_.position();
+}
+
+void LabEmulatorNode::beat() {
+  const double now = steadySeconds();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double step = std::min(now - last_beat_, kLongestBeat);
+  last_beat_ = now;
+  amplifier_.setTripped(amplifier_tripped_);
+  amplifier_.advance(step);
+  moveRotor(step);
+  showJoints();
+  showCurrents();
+  const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(position());
+  if (actuator_.hasTorque() && !released_) {
+    publishWrench(R_stator_rotor);
+  }
+  if (now >= pose_due_) {
+    pose_due_ = std::max(pose_due_ + 1.0 / options_.tracker.stream.rate, now - kLongestBeat);
+    publishPose(R_stator_rotor);
+    publishTruth(R_stator_rotor);
+  }
+}
+
+void LabEmulatorNode::showJoints() {
+  if (sensor_frozen_) {
+    return;
+  }
+  const JointMeasurement reading = joints_.measure(0, position(), {});
+  for (const RegisterContent& content : encodeJoints(options_.joint_sensor, reading.position)) {
+    joint_server_.setWords(content.unit, content.table, content.address, content.words);
+  }
+}
+
+void LabEmulatorNode::showCurrents() {
+  amplifier_.show(current_sensor_.measure(0, amplifier_.currents(), {}).current);
+}
+
+void LabEmulatorNode::publishPose(const Eigen::Matrix3d& R_stator_rotor) {
+  if (tracker_lost_) {
+    return;
+  }
+  const MarkerPoseMeasurement pose =
+      tracker_.measure(0, R_stator_rotor, std::nullopt, scheduled(outlier_pose_));
+  outlier_pose_ = false;
+  pose_message_.header.stamp = ros::Time::now();
+  pose_message_.pose.position.x = pose.position.x();
+  pose_message_.pose.position.y = pose.position.y();
+  pose_message_.pose.position.z = pose.position.z();
+  pose_message_.pose.orientation.x = pose.q_tracker_marker.x();
+  pose_message_.pose.orientation.y = pose.q_tracker_marker.y();
+  pose_message_.pose.orientation.z = pose.q_tracker_marker.z();
+  pose_message_.pose.orientation.w = pose.q_tracker_marker.w();
+  pose_publisher_.publish(pose_message_);
+}
+
+void LabEmulatorNode::publishTruth(const Eigen::Matrix3d& R_stator_rotor) {
+  true_message_.header.stamp = ros::Time::now();
+  true_message_.quaternion = quaternionToRos(Eigen::Quaterniond(R_stator_rotor));
+  true_publisher_.publish(true_message_);
+}
+
+void LabEmulatorNode::publishWrench(const Eigen::Matrix3d& R_stator_rotor) {
+  const WrenchMeasurement wrench =
+      ft_sensor_.measure(0,
+                         actuator_.torque(R_stator_rotor, amplifier_.currents()),
+                         actuator_.weight(R_stator_rotor),
+                         scheduled(outlier_wrench_));
+  outlier_wrench_ = false;
+  wrench_message_.header.stamp = ros::Time::now();
+  setVector(wrench.force, wrench_message_.wrench.force);
+  setVector(wrench.torque, wrench_message_.wrench.torque);
+  wrench_publisher_.publish(wrench_message_);
+}
+
+}  // namespace sac

@@ -1,0 +1,126 @@
+#include "spherical_actuator_calibration/ros/emulation_node/lab_emulator_options.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kGimbalLock = 1.5;  // [rad] short of it
+
+Eigen::Vector3d readVector(const YamlMap& map, const char* key, const char* unit) {
+  return Eigen::Vector3d(map.numbers(key, ValueRange::finite(unit), 3).data());
+}
+
+/// "x y z qx qy qz qw" of a frame in another one, as static_transform_publisher takes it.
+Eigen::Isometry3d readTransform(const YamlMap& map, const char* key) {
+  std::istringstream text(map.nonEmptyText(key));
+  Eigen::Vector3d position;
+  Eigen::Vector4d quaternion;
+  text >> position[0] >> position[1] >> position[2];
+  text >> quaternion[0] >> quaternion[1] >> quaternion[2] >> quaternion[3];
+  constexpr double kUnitTolerance = 1e-3;
+  if (text.fail() || !(text >> std::ws).eof() || !position.allFinite() ||
+      !(std::abs(quaternion.norm() - 1.0) < kUnitTolerance)) {
+    map.fail(key, "is no transform \"x y z qx qy qz qw\" with a unit quaternion.");
+  }
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.translation() = position;
+  X.linear() = Eigen::Quaterniond(quaternion).normalized().toRotationMatrix();
+  return X;
+}
+
+Registration readRegistration(const YamlMap& map) {
+  Registration registration;
+  registration.X_stator_tracker = readTransform(map, "stator_tracker");
+  registration.X_rotor_marker = readTransform(map, "rotor_marker");
+  registration.X_rotor_sensor = readTransform(map, "rotor_ft_sensor");
+  return registration;
+}
+
+ManufacturingErrors readErrors(const YamlMap& map) {
+  const ValueRange angle = ValueRange::nonNegative("rad");
+  ManufacturingErrors errors;
+  errors.joint_offset = map.number("joint_offset", angle);
+  errors.joint_axis = map.number("joint_axis", angle);
+  errors.pole_angle = map.number("pole_angle", angle);
+  errors.coil_angle = map.number("coil_angle", angle);
+  errors.strength = map.number("strength", ValueRange::nonNegative());
+  return errors;
+}
+
+TrackerOptions readTracker(const YamlMap& map) {
+  TrackerOptions tracker;
+  tracker.stream.rate = map.number("rate", ValueRange::closed(1.0, 2000.0, "Hz"));
+  tracker.orientation_noise = map.number("orientation_noise", ValueRange::nonNegative("rad"));
+  tracker.position_noise = map.number("position_noise", ValueRange::nonNegative("m"));
+  tracker.glitch = map.number("outlier", ValueRange::nonNegative("rad"));
+  return tracker;
+}
+
+WrenchSensorOptions readForceTorqueSensor(const YamlMap& map) {
+  WrenchSensorOptions sensor;
+  sensor.stream.rate = map.number("rate", ValueRange::closed(1.0, 2000.0, "Hz"));
+  sensor.force_noise = map.number("force_noise", ValueRange::nonNegative("N"));
+  sensor.torque_noise = map.number("torque_noise", ValueRange::nonNegative("N m"));
+  sensor.force_bias = readVector(map, "force_bias", "N");
+  sensor.torque_bias = readVector(map, "torque_bias", "N m");
+  sensor.glitch = map.number("outlier", ValueRange::nonNegative("N m"));
+  return sensor;
+}
+
+void readAmplifier(const YamlMap& map, LabEmulatorOptions& options) {
+  options.amplifier.time_constant = map.number("time_constant", ValueRange::nonNegative("s"));
+  options.amplifier.watchdog = map.number("watchdog", ValueRange::positive("s"));
+  options.currents.noise = map.number("noise", ValueRange::nonNegative("A"));
+  options.currents.quantisation = 0.0;  // the registers'
+}
+
+}  // namespace
+
+LabEmulatorOptions loadLabEmulatorOptions(const ros::NodeHandle& private_node) {
+  const YamlMap map = privateParameters(private_node);
+  LabEmulatorOptions options;
+  options.seed =
+      static_cast<std::uint64_t>(map.integer("seed", 0, std::numeric_limits<std::int32_t>::max()));
+  options.truth = map.text("truth", options.truth);
+  options.errors = readErrors(map.map("errors"));
+  const YamlMap load = map.map("load");
+  options.load.weight = load.number("weight", ValueRange::nonNegative("N"));
+  options.load.unbalance = readVector(load, "unbalance", "N m");
+  options.inertia = readVector(load, "inertia", "kg m²").asDiagonal();
+  const YamlMap fixture = map.map("fixture");
+  options.fixture.speed = fixture.number("speed", ValueRange::positive("rad/s"));
+  options.fixture.acceleration = fixture.number("acceleration", ValueRange::positive("rad/s²"));
+  options.mechanical_stop =
+      fixture.number("mechanical_stop", ValueRange::open(0.0, kGimbalLock, "rad"));
+  const YamlMap frames = map.map("frames");
+  options.stator_frame = frames.nonEmptyText("stator");
+  options.tracker_frame = frames.nonEmptyText("tracker");
+  options.ft_sensor_frame = frames.nonEmptyText("ft_sensor");
+  options.registration = readRegistration(map.map("registration"));
+  const YamlMap joints = map.map("joints");
+  options.joints.noise = joints.number("noise", ValueRange::nonNegative("rad"));
+  options.joints.quantisation = 0.0;  // the registers'
+  options.tracker = readTracker(map.map("tracker"));
+  options.ft_sensor = readForceTorqueSensor(map.map("ft_sensor"));
+  readAmplifier(map.map("amplifier"), options);
+  options.joint_sensor = readJointSensorOptions(map.map("joint_sensor"));
+  options.coil_driver = readCurrentAmplifierOptions(map.map("coil_driver"));
+  for (const ModbusLinkOptions& link : {options.joint_sensor.link, options.coil_driver.link}) {
+    if (link.type != ModbusLinkOptions::Type::kTcp) {
+      map.fail("joint_sensor", "only links of type tcp can be emulated.");
+    }
+  }
+  map.finish();
+  return options;
+}
+
+}  // namespace sac

@@ -1,0 +1,31 @@
+#include "spherical_actuator_calibration/ros/node/node_main.hpp"
+
+#include <exception>
+
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
+
+namespace sac {
+
+int runNode(int argc,
+            char** argv,
+            const char* name,
+            const std::function<void(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node)>& body) {
+  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  handleTerminationSignals();
+  // The last handle to go ends ROS, and with it the console that errors are told on.
+  const ros::NodeHandle node;
+  const ros::NodeHandle private_node("~");
+  try {
+    body(node, private_node);
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace sac

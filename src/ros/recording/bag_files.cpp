@@ -1,0 +1,133 @@
+#include "bag_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include <rosbag/exceptions.h>
+#include <rosbag/query.h>
+#include <rosbag/view.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+
+namespace sac {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Parts of a recording may overlap by what waited in the recorder's queue.
+constexpr double kSplitOverlap = 0.5;  // [s]
+
+void requireReadableFile(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    throw DataError(path + ": there is no such file.");
+  }
+  if (!fs::is_regular_file(status)) {
+    throw DataError(path + ": is not a file; give a recording (.bag).");
+  }
+  if (fs::file_size(path, error) == 0) {
+    throw DataError(path + ": the file is empty; record again.");
+  }
+}
+
+void readTopics(BagFile& file) {
+  rosbag::View all(file.bag);
+  file.begin = all.getBeginTime();
+  file.end = all.getEndTime();
+  std::set<std::string> seen;
+  for (const rosbag::ConnectionInfo* connection : all.getConnections()) {
+    if (!seen.insert(connection->topic).second) {
+      continue;
+    }
+    rosbag::View topic(file.bag, rosbag::TopicQuery(connection->topic));
+    if (topic.begin() == topic.end()) {
+      continue;
+    }
+    file.topics.push_back({connection->topic,
+                           connection->datatype,
+                           connection->md5sum,
+                           topic.getBeginTime(),
+                           topic.getEndTime()});
+  }
+}
+
+std::unique_ptr<BagFile> openBag(const std::string& path) {
+  requireReadableFile(path);
+  auto file = std::make_unique<BagFile>();
+  file->path = path;
+  try {
+    file->bag.open(path, rosbag::bagmode::Read);
+    readTopics(*file);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw DataError(path + ": the recording was not closed and has no index; run `rosbag reindex " +
+                    path + "` and try again.");
+  } catch (const std::exception& error) {
+    // rosbag reports damage by several exceptions, some of them of the standard library.
+    throw DataError(path + ": cannot be read as a bag (" + error.what() +
+                    "); copy it again, or rescue what is in it by `rosbag reindex " + path + "`.");
+  }
+  if (file->topics.empty()) {
+    throw DataError(path + ": the bag holds no messages; record again.");
+  }
+  return file;
+}
+
+bool isSideBySide(const BagFile& file, const BagFile& other, const std::string& prefix) {
+  const ros::Duration overlap(kSplitOverlap);
+  for (const BagTopic& topic : file.topics) {
+    if (topic.name.compare(0, prefix.size(), prefix) != 0) {
+      continue;
+    }
+    for (const BagTopic& same : other.topics) {
+      if (same.name == topic.name && topic.begin + overlap < same.end &&
+          same.begin + overlap < topic.end) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<BagFile>> openBags(const std::vector<std::string>& paths) {
+  std::vector<std::unique_ptr<BagFile>> bags;
+  std::set<std::string> known;
+  for (const std::string& path : paths) {
+    bags.push_back(openBag(path));
+    if (!known.insert(fs::canonical(path).string()).second) {
+      throw DataError(path + ": is given twice.");
+    }
+  }
+  return bags;
+}
+
+std::vector<BagGroup> groupBags(const std::vector<std::unique_ptr<BagFile>>& bags,
+                                const std::string& prefix) {
+  std::vector<BagFile*> sorted;
+  sorted.reserve(bags.size());
+  for (const auto& bag : bags) {
+    sorted.push_back(bag.get());
+  }
+  std::stable_sort(sorted.begin(), sorted.end(), [](const BagFile* a, const BagFile* b) {
+    return a->begin < b->begin;
+  });
+  std::vector<BagGroup> groups;
+  for (BagFile* file : sorted) {
+    const bool fits =
+        !groups.empty() &&
+        std::all_of(groups.back().begin(), groups.back().end(), [&](const BagFile* other) {
+          return isSideBySide(*file, *other, prefix);
+        });
+    if (!fits) {
+      groups.emplace_back();
+    }
+    groups.back().push_back(file);
+  }
+  return groups;
+}
+
+}  // namespace sac

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <rosbag/message_instance.h>
+
+#include "bag_files.hpp"
+
+namespace sac {
+
+/// What a topic of a recording is read for.
+enum class TopicRole { kJointStates, kOrientation, kTorque, kCurrents, kSamples, kParameters };
+inline constexpr std::size_t kTopicRoles = 6;
+
+/// The topics of one actuator in recordings.
+class RecordedTopics {
+ public:
+  /// `ns`: the actuator's namespace, with or without slashes around it.
+  explicit RecordedTopics(const std::string& ns);
+
+  /// "/actuator/": what the names of all topics begin with.
+  const std::string& prefix() const { return prefix_; }
+  const std::string& name(TopicRole role) const { return names_[static_cast<std::size_t>(role)]; }
+  std::vector<std::string> names(const std::vector<TopicRole>& roles) const;
+
+  bool isRecorded(const BagGroup& group, TopicRole role) const;
+
+  /// Throws DataError, naming file, topic and type, when a topic has another type than it must.
+  void requireTypes(const BagFile& file) const;
+
+  /// Throws DataError, saying what is missing and where else it is recorded, unless the group has
+  /// joint angles and orientations or torques.
+  void requireStreams(const BagGroup& group) const;
+
+ private:
+  std::string prefix_;
+  std::array<std::string, kTopicRoles> names_;
+};
+
+/// Finds the role of messages without comparing names: messages of one connection share the string
+/// with the name of their topic. Valid as long as the bags are open.
+class TopicLookup {
+ public:
+  explicit TopicLookup(const RecordedTopics& topics) : topics_(topics) {}
+
+  /// Throws DataError when the topic has no role.
+  TopicRole role(const rosbag::MessageInstance& message);
+
+ private:
+  const RecordedTopics& topics_;
+  std::vector<std::pair<const std::string*, TopicRole>> known_;
+};
+
+/// "a.bag, b.bag"
+std::string pathsOf(const BagGroup& group);
+
+}  // namespace sac

@@ -1,0 +1,237 @@
+#include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <iterator>
+#include <memory>
+
+#include <rosbag/query.h>
+#include <rosbag/view.h>
+
+#include "bag_files.hpp"
+#include "recorded_samples.hpp"
+#include "recorded_topics.hpp"
+#include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "spherical_actuator_calibration/Calibrate.h"
+#include "spherical_actuator_calibration/CalibrationReport.h"
+#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/message_decoder.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/recording/recorded_streams.hpp"
+
+namespace sac {
+namespace {
+
+/// Messages between two calls of the progress function.
+constexpr std::uint64_t kProgressStep = 4096;
+
+/// Reads all groups of bags, one after the other, into one list of samples.
+class Reader {
+ public:
+  Reader(const Actuator& nominal, const RecordingOptions& options)
+      : nominal_(nominal),
+        options_(options),
+        topics_(options.ns),
+        streams_(nominal, options.frames, options.samples),
+        recorded_samples_(nominal, options.frames) {}
+
+  Recording read(const std::vector<std::string>& paths) {
+    const std::vector<std::unique_ptr<BagFile>> bags = openBags(paths);
+    BagGroup all;
+    for (const auto& bag : bags) {
+      topics_.requireTypes(*bag);
+      all.push_back(bag.get());
+    }
+    checkIdentity(all);
+    const std::vector<BagGroup> groups = groupBags(bags, topics_.prefix());
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      readGroup(groups[k], {k, groups.size()});
+    }
+    complete(pathsOf(all));
+    return std::move(recording_);
+  }
+
+ private:
+  /// Which of how many groups of bags.
+  struct Step {
+    std::size_t index;
+    std::size_t count;
+  };
+
+  void readGroup(const BagGroup& group, const Step& step) {
+    const bool from_samples = topics_.isRecorded(group, TopicRole::kSamples);
+    if (!from_samples) {
+      topics_.requireStreams(group);
+    }
+    guarded(group, [&] { readMessages(group, rolesToRead(from_samples), step); });
+    streams_.finish();
+    append(streams_.takeSamples());
+    append(recorded_samples_.takeSamples());
+  }
+
+  // rosbag and the message classes report damage by several exceptions, some of them of the
+  // standard library.
+  template <typename Action>
+  static void guarded(const BagGroup& group, const Action& action) {
+    try {
+      action();
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw DataError(pathsOf(group) + ": the recording is damaged (" + error.what() +
+                      "); copy it again, or rescue what is in it by `rosbag reindex`.");
+    }
+  }
+
+  std::vector<TopicRole> rolesToRead(bool from_samples) const {
+    if (from_samples) {
+      return {TopicRole::kSamples};
+    }
+    if (modelledCoils(nominal_) == 0) {
+      return {TopicRole::kJointStates, TopicRole::kOrientation};
+    }
+    return {
+        TopicRole::kJointStates, TopicRole::kOrientation, TopicRole::kTorque, TopicRole::kCurrents};
+  }
+
+  void readMessages(const BagGroup& group, const std::vector<TopicRole>& roles, const Step& step) {
+    rosbag::View view;
+    for (const BagFile* file : group) {
+      view.addQuery(file->bag, rosbag::TopicQuery(topics_.names(roles)));
+    }
+    const ros::Time begin = view.getBeginTime();
+    const double duration = (view.getEndTime() - begin).toSec();
+    TopicLookup lookup(topics_);
+    std::uint64_t count = 0;
+    for (const rosbag::MessageInstance& message : view) {
+      readMessage(lookup.role(message), message);
+      if (++count % kProgressStep == 0) {
+        tellProgress(step, (message.getTime() - begin).toSec() / duration);
+      }
+    }
+    tellProgress(step, 1.0);
+  }
+
+  void tellProgress(const Step& step, double share) const {
+    if (options_.progress) {
+      options_.progress((static_cast<double>(step.index) + std::min(share, 1.0)) /
+                        static_cast<double>(step.count));
+    }
+  }
+
+  void readMessage(TopicRole role, const rosbag::MessageInstance& message) {
+    switch (role) {
+      case TopicRole::kJointStates:
+        return streams_.add(decoder_.decode(message, joint_state_));
+      case TopicRole::kOrientation:
+        return streams_.add(decoder_.decode(message, orientation_));
+      case TopicRole::kTorque:
+        return streams_.add(decoder_.decode(message, torque_));
+      case TopicRole::kCurrents:
+        return streams_.add(decoder_.decode(message, currents_));
+      case TopicRole::kSamples:
+        return recorded_samples_.add(decoder_.decode(message, sample_));
+      case TopicRole::kParameters:
+        return requireSameUnit(decoder_.decode(message, parameters_));
+    }
+  }
+
+  void append(std::vector<Sample> samples) {
+    std::move(samples.begin(), samples.end(), std::back_inserter(recording_.samples));
+  }
+
+  /// Before anything else: a recording of another unit must not be told to lack coils.
+  void checkIdentity(const BagGroup& bags) {
+    for (BagFile* file : bags) {
+      guarded({file}, [&] {
+        rosbag::View view(file->bag, rosbag::TopicQuery(topics_.name(TopicRole::kParameters)));
+        for (const rosbag::MessageInstance& message : view) {
+          reading_ = file->path;
+          readMessage(TopicRole::kParameters, message);
+        }
+      });
+    }
+  }
+
+  void requireSameUnit(const msg::ActuatorParameters& parameters) {
+    if (!parameters.actuator.empty() && parameters.actuator != nominal_.name) {
+      throw DataError(reading_ + ": was recorded with the actuator " + parameters.actuator +
+                      ", but the description is of " + nominal_.name + ".");
+    }
+    if (parameters.serial.empty()) {
+      return;
+    }
+    recorded_serial_ = parameters.serial;
+    if (!nominal_.serial.empty() && parameters.serial != nominal_.serial) {
+      throw DataError(reading_ + ": was recorded with the unit " + parameters.serial +
+                      ", but the description is of " + nominal_.serial + ".");
+    }
+  }
+
+  void complete(const std::string& files) {
+    RecordingReport& report = recording_.report;
+    report.has_streams = streams_.any();
+    report.has_samples = recorded_samples_.report().received > 0;
+    report.streams = streams_.report();
+    report.samples = recorded_samples_.report();
+    noteIdentity();
+    if (report.has_streams) {
+      streams_.requireUsable(files);
+      report.notes = concatenated(std::move(report.notes), streams_.notes());
+    }
+    recorded_samples_.requireUsable(files);
+    const std::size_t renumbered = makeIdsUnique(recording_.samples);
+    if (renumbered > 0) {
+      report.notes.push_back(std::to_string(renumbered) +
+                             " samples have the number of another one and got a new one.");
+    }
+  }
+
+  void noteIdentity() {
+    std::vector<std::string>& notes = recording_.report.notes;
+    if (recorded_serial_.empty() && !nominal_.serial.empty()) {
+      notes.push_back("The recording does not say which unit it is of; it is taken as one of " +
+                      nominal_.serial + ".");
+    } else if (!recorded_serial_.empty() && nominal_.serial.empty()) {
+      notes.push_back("The recording is of unit " + recorded_serial_ +
+                      "; the description names none.");
+    }
+  }
+
+  static std::vector<std::string> concatenated(std::vector<std::string> first,
+                                               const std::vector<std::string>& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+  }
+
+  const Actuator& nominal_;
+  const RecordingOptions& options_;
+  RecordedTopics topics_;
+  RecordedStreams streams_;
+  RecordedSamples recorded_samples_;
+  Recording recording_;
+  std::string recorded_serial_;
+  std::string reading_;  ///< path of the bag whose identity is being checked
+
+  // Storage that is reused from message to message.
+  MessageDecoder decoder_;
+  sensor_msgs::JointState joint_state_;
+  geometry_msgs::QuaternionStamped orientation_;
+  geometry_msgs::Vector3Stamped torque_;
+  msg::CoilCurrents currents_;
+  msg::CalibrationSample sample_;
+  msg::ActuatorParameters parameters_;
+};
+
+}  // namespace
+
+Recording readRecordings(const std::vector<std::string>& paths,
+                         const Actuator& nominal,
+                         const RecordingOptions& options) {
+  return Reader(nominal, options).read(paths);
+}
+
+}  // namespace sac

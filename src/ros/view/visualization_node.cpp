@@ -1,0 +1,140 @@
+#include "spherical_actuator_calibration/ros/view/visualization_node.hpp"
+
+#include <Eigen/Geometry>
+
+#include <geometry_msgs/TransformStamped.h>
+
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kFramePeriod = 0.02;  // [s]
+constexpr double kMarkerPeriod = 0.1;  // [s]
+constexpr double kLargestMagnification = 1000.0;
+
+geometry_msgs::TransformStamped rotationTransform(const ros::Time& stamp,
+                                                  const std::string& parent,
+                                                  const std::string& child,
+                                                  const Eigen::Matrix3d& R_parent_child) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp = stamp;
+  transform.header.frame_id = parent;
+  transform.child_frame_id = child;
+  transform.transform.rotation = quaternionToRos(Eigen::Quaterniond(R_parent_child));
+  return transform;
+}
+
+SceneFrames prefixed(const std::string& prefix) {
+  SceneFrames frames;
+  frames.stator = prefix + frames.stator;
+  frames.rotor = prefix + frames.rotor;
+  frames.nominal_rotor = prefix + frames.nominal_rotor;
+  return frames;
+}
+
+CalibrationScene startOf(const Actuator& nominal, const VisualizationOptions& options) {
+  CalibrationScene scene;
+  scene.nominal = nominal;
+  scene.dimensions = options.dimensions;
+  scene.magnification = options.error_magnification;
+  scene.frames = prefixed(options.frame_prefix);
+  return scene;
+}
+
+}  // namespace
+
+VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_node) {
+  const YamlMap map = privateParameters(private_node);
+  VisualizationOptions options;
+  options.error_magnification = map.number("error_magnification",
+                                           ValueRange::closed(1.0, kLargestMagnification),
+                                           options.error_magnification);
+  options.frame_prefix = map.text("frame_prefix", options.frame_prefix);
+  options.dimensions = readDimensions(map);
+  // Made by an earlier run of this node.
+  map.text("robot_description", "");
+  map.finish();
+  return options;
+}
+
+VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
+                                     const ros::NodeHandle& private_node,
+                                     const Actuator& nominal,
+                                     const VisualizationOptions& options)
+    : options_(options),
+      frames_(prefixed(options.frame_prefix)),
+      nominal_(nominal),
+      scene_(startOf(nominal, options)),
+      joint_reader_(jointNames(nominal)),
+      node_(node),
+      listing_(node.resolveName("calibration/list_samples")) {
+  private_node.setParam("robot_description",
+                        renderUrdf(nominal, options.dimensions, options.frame_prefix));
+  constexpr bool kLatched = true;
+  publisher_ = node_.advertise<visualization_msgs::MarkerArray>("calibration_markers", 1, kLatched);
+  constexpr std::uint32_t kQueueLength = 1000;
+  subscribers_.push_back(
+      node_.subscribe("joint_states", kQueueLength, &VisualizationNode::receiveJoints, this));
+  feed<msg::ActuatorParameters>("parameters", 1);
+  feed<msg::CalibrationReport>("report", kQueueLength);
+  feed<msg::CalibrationStatus>("status", 1);
+  feed<msg::CoilCurrents>("coil_currents", 1);
+  feed<msg::CalibrationSample>("samples", kQueueLength);
+  timer_ = node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
+                                 [this](const ros::WallTimerEvent& /*event*/) {
+                                   listing_.update(scene_.samples());
+                                   publishMarkers();
+                                 });
+}
+
+template <typename Message>
+void VisualizationNode::feed(const std::string& topic, std::uint32_t queue_length) {
+  subscribers_.push_back(node_.subscribe<Message>(
+      topic, queue_length, [this](const typename Message::ConstPtr& message) {
+        scene_.receive(*message);
+      }));
+}
+
+void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
+  const double age = (message.header.stamp - last_broadcast_).toSec();
+  if (age >= 0.0 && age < kFramePeriod) {
+    return;
+  }
+  const std::optional<JointMeasurement> joints = joint_reader_.read(message);
+  if (joints && joints->position.allFinite()) {
+    broadcast(message.header.stamp, joints->position);
+    last_broadcast_ = message.header.stamp;
+  }
+}
+
+void VisualizationNode::broadcast(const ros::Time& stamp, const Eigen::Vector3d& q) {
+  const auto& joints = scene_.joints();
+  const auto turned = [&](std::size_t k) {
+    return rotationExp(joints[k].axis.normalized() *
+                       (q[static_cast<Eigen::Index>(k)] + joints[k].offset));
+  };
+  const std::string joint_1 = options_.frame_prefix + "joint_1";
+  const std::string joint_2 = options_.frame_prefix + "joint_2";
+  broadcaster_.sendTransform(std::vector<geometry_msgs::TransformStamped>{
+      rotationTransform(stamp, frames_.stator, joint_1, turned(0)),
+      rotationTransform(stamp, joint_1, joint_2, turned(1)),
+      rotationTransform(stamp, joint_2, frames_.rotor, turned(2)),
+      rotationTransform(stamp,
+                        frames_.stator,
+                        frames_.nominal_rotor,
+                        rotorOrientation(jointGeometry(nominal_.joints), q))});
+}
+
+void VisualizationNode::publishMarkers() {
+  if (scene_.takeChange()) {
+    publisher_.publish(calibrationMarkers(scene_.scene()));
+  }
+}
+
+}  // namespace sac

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <QCheckBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QTableWidget>
+#include <QTimer>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <rviz/panel.h>
+
+#include "convergence_chart.hpp"
+#include "coverage_bars.hpp"
+#include "panel_model.hpp"
+#include "service_caller.hpp"
+#include "spherical_actuator_calibration/ros/view/sample_listing.hpp"
+
+namespace sac {
+
+/// Panel of rviz for a calibration in the namespace that rviz runs in: streams and their health,
+/// what is sampled and what is missing, buttons for the services of the calibration node, the
+/// result with its uncertainty, and the convergence of the last cycle. It talks through topics and
+/// services only; the actuator's description comes from the parameter `actuator`.
+class CalibrationPanel : public rviz::Panel {
+  Q_OBJECT
+
+ public:
+  explicit CalibrationPanel(QWidget* parent = nullptr);
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private:
+  void build();
+  QLayout* makeStreams();
+  QLayout* makeCaptureRow();
+  QLayout* makeCycleRow();
+  QLayout* makeFileRow();
+  QWidget* makeResults();
+  QPushButton* addButton(QLayout* row, const QString& text, const QString& help);
+
+  /// Waits for the description of the actuator, then listens.
+  void start();
+  template <typename Message>
+  void feed(const std::string& topic);
+
+  void refresh();
+  void showHealth();
+  void showCalibration();
+  void showAnswer();
+
+  void setCallsEnabled(bool enabled);
+  void capture();
+  void calibrate(const std::string& service, std::uint32_t coil);
+  void trigger(const std::string& service);
+  void forgetSamples();
+  void restore();
+  void setAutoCapture(bool on);
+  template <typename Service>
+  void call(const std::string& service, const typename Service::Request& request);
+
+  ros::NodeHandle node_;
+  std::unique_ptr<PanelModel> model_;  ///< none before the actuator's description is known
+  SampleListing listing_;
+  ServiceCaller caller_;
+  std::vector<ros::Subscriber> subscribers_;
+  bool changed_ = true;
+  int ticks_ = 0;
+  QTimer timer_;
+
+  QLabel* next_step_ = nullptr;
+  std::vector<QLabel*> streams_;
+  QLabel* trouble_ = nullptr;
+  CoverageBars* bars_ = nullptr;
+  std::vector<QPushButton*> buttons_;
+  QDoubleSpinBox* duration_ = nullptr;
+  QCheckBox* validation_ = nullptr;
+  QCheckBox* auto_capture_ = nullptr;
+  std::optional<bool> auto_capture_asked_;  ///< what the running call asks for
+  QSpinBox* coil_ = nullptr;
+  QSpinBox* revision_ = nullptr;
+  QLabel* answer_ = nullptr;
+  QLabel* verdict_ = nullptr;
+  QTableWidget* table_ = nullptr;
+  ConvergenceChart* chart_ = nullptr;
+};
+
+}  // namespace sac

@@ -1,0 +1,147 @@
+#include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+/// The paper's session; every tenth sample is held out.
+std::vector<Sample> sessionSamples() {
+  scenarios::Generator generator(4);
+  std::vector<Sample> samples =
+      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
+  for (std::size_t n = 9; n < samples.size(); n += 10) {
+    samples[n].validation = true;
+  }
+  return samples;
+}
+
+CalibrationSession sessionWith(const std::vector<Sample>& samples,
+                               const std::vector<CycleRequest>& requests) {
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  for (const CycleRequest& request : requests) {
+    session.run(request);
+  }
+  return session;
+}
+
+std::string stepsOf(const CalibrationVerdict& verdict) {
+  std::string text;
+  for (const std::string& step : verdict.next_steps) {
+    text += step;
+    text += "\n";
+  }
+  return text;
+}
+
+CalibrationVerdict verdictOf(const CalibrationSession& session) {
+  return judgeCalibration(session, {}, {});
+}
+
+TEST(CalibrationVerdict, NothingWorksWithoutASuccessfulCycle) {
+  EXPECT_EQ(verdictOf(sessionWith({}, {})).grade, CalibrationGrade::kFailed);
+  const CalibrationVerdict verdict = verdictOf(sessionWith({}, {{Cycle::kJoint, 0}}));
+  EXPECT_EQ(verdict.grade, CalibrationGrade::kFailed);
+  EXPECT_NE(stepsOf(verdict).find("capture at least 3 poses"), std::string::npos)
+      << stepsOf(verdict);
+}
+
+TEST(CalibrationVerdict, CompleteWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
+  const std::vector<Sample> samples = sessionSamples();
+  const CalibrationVerdict verdict =
+      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}}));
+  EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
+  EXPECT_NE(verdict.sentence.find("held-out samples agree"), std::string::npos) << verdict.sentence;
+  EXPECT_NE(verdict.sentence.find("orientation 0."), std::string::npos) << verdict.sentence;
+  ASSERT_EQ(verdict.next_steps.size(), 1U) << stepsOf(verdict);
+  EXPECT_EQ(verdict.next_steps[0].find("Nothing needs to be done."), 0U);
+}
+
+TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
+  std::vector<Sample> samples = sessionSamples();
+  for (Sample& sample : samples) {
+    if (sample.validation) {
+      sample.R_stator_rotor = rotationExp({0.01, 0.0, 0.0}) * sample.R_stator_rotor;
+    }
+  }
+  const CalibrationVerdict verdict =
+      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}}));
+  EXPECT_EQ(verdict.grade, CalibrationGrade::kContradicted);
+  EXPECT_EQ(verdict.sentence.find("Do not use this calibration yet"), 0U);
+  EXPECT_EQ(verdict.next_steps[0].find("Find out why the held-out samples differ"), 0U);
+}
+
+TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {
+  scenarios::Generator generator(2);
+  std::vector<Sample> samples = sessionSamples();
+  std::vector<Eigen::Vector3d> poses;
+  for (int n = 0; n < 40; ++n) {
+    const Eigen::Vector3d pose = scenarios::randomPose(0.2, generator);
+    if (scenarios::polesSeen(scenarios::paperTruth(), 0, {pose})[4] == false) {
+      poses.push_back(pose);
+    }
+  }
+  samples.resize(10);
+  for (Sample sample :
+       scenarios::torqueSamples(scenarios::paperTruth(), poses, 0, 2.0, 5e-4, 3e-4, generator)) {
+    sample.id = static_cast<std::uint32_t>(samples.size() + 1);
+    samples.push_back(sample);
+  }
+  const CalibrationVerdict verdict =
+      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kPoles, 1}}));
+  EXPECT_EQ(verdict.grade, CalibrationGrade::kIncomplete);
+  EXPECT_NE(verdict.sentence.find("2 that were asked for are not"), std::string::npos)
+      << verdict.sentence;
+  EXPECT_NE(stepsOf(verdict).find("Pole 5 is seen by no sample: excite coil 1"), std::string::npos)
+      << stepsOf(verdict);
+}
+
+TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
+  std::vector<Sample> samples = sessionSamples();
+  for (Sample& sample : samples) {
+    sample.validation = false;
+  }
+  const CalibrationVerdict verdict = verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}}));
+  EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
+  EXPECT_NE(verdict.sentence.find("9 of 73 parameters"), std::string::npos) << verdict.sentence;
+  EXPECT_NE(stepsOf(verdict).find("Call calibrate_poles with coil 1"), std::string::npos)
+      << stepsOf(verdict);
+}
+
+TEST(CalibrationVerdict, NamesRejectedAndIrreplaceableSamples) {
+  std::vector<Sample> samples = sessionSamples();
+  samples[20].R_stator_rotor = rotationExp({0.1, 0.0, 0.0}) * samples[20].R_stator_rotor;
+  const CalibrationSession session =
+      sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}});
+  SampleInfluence influence;
+  influence.id = 12;
+  influence.irreplaceable = true;
+  const std::string steps = stepsOf(judgeCalibration(session, {influence}, {}));
+  EXPECT_NE(steps.find("rejected samples (21)"), std::string::npos) << steps;
+  EXPECT_NE(steps.find("Add poses near those of samples 12:"), std::string::npos) << steps;
+}
+
+TEST(CalibrationVerdict, PrefersTheEffectsThatExplainBest) {
+  ModelFit all;
+  all.effects = "all";
+  all.converged = true;
+  all.bic = 110.0;
+  ModelFit fewer = all;
+  fewer.effects = "without torque_bias";
+  fewer.bic = 100.0;
+  const CalibrationSession session = sessionWith(sessionSamples(), {{Cycle::kJoint, 0}});
+  EXPECT_NE(stepsOf(judgeCalibration(session, {}, {all, fewer})).find("\"without torque_bias\""),
+            std::string::npos);
+  EXPECT_EQ(stepsOf(judgeCalibration(session, {}, {all})).find("effects"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sac

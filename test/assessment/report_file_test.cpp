@@ -1,0 +1,109 @@
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+CalibrationSession calibratedSession(int hold_out_every) {
+  scenarios::Generator generator(6);
+  CalibrationConfig config;
+  config.hold_out_every = hold_out_every;
+  CalibrationSession session(
+      {scenarios::paperNominal()},
+      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator),
+      config);
+  for (const CycleRequest& request :
+       {CycleRequest{Cycle::kJoint, 0}, CycleRequest{Cycle::kRefine, 0}}) {
+    session.run(request);
+  }
+  return session;
+}
+
+std::string reportOf(const CalibrationSession& session) {
+  return renderReport(session, {"2024-05-31T12:00:00Z", {}, "0.1.0", 7U}, {});
+}
+
+/// Lines of the block that a key of the report opens.
+std::vector<std::string> blockOf(const std::string& report, const std::string& key) {
+  std::istringstream stream(report);
+  std::vector<std::string> lines;
+  bool is_inside = false;
+  for (std::string line; std::getline(stream, line);) {
+    const auto depth = line.find_first_not_of(' ');
+    if (depth == 2) {
+      is_inside = line == "  " + key + ":";
+    } else if (is_inside) {
+      lines.push_back(line.substr(depth));
+    }
+  }
+  return lines;
+}
+
+bool anyHolds(const std::vector<std::string>& lines, const std::string& part) {
+  return std::any_of(lines.begin(), lines.end(), [&part](const std::string& line) {
+    return line.find(part) != std::string::npos;
+  });
+}
+
+TEST(ReportFile, TellsVerdictRevisionAndNextSteps) {
+  const std::string report = reportOf(calibratedSession(0));
+  EXPECT_NE(report.find("  revision: 7\n"), std::string::npos);
+  EXPECT_NE(report.find("  verdict: {grade: complete, sentence: "), std::string::npos);
+  EXPECT_TRUE(anyHolds(blockOf(report, "next_steps"), "Hold out samples"));
+  EXPECT_TRUE(blockOf(report, "validation").empty());
+}
+
+TEST(ReportFile, NamesEverySampleWithItsPoseAndCoils) {
+  const CalibrationSession session = calibratedSession(0);
+  const std::vector<std::string> lines = blockOf(reportOf(session), "samples");
+  ASSERT_EQ(lines.size(), session.samples().size());
+  EXPECT_EQ(lines[0].find("- {id: 1, joint_position: ["), 0U) << lines[0];
+  EXPECT_NE(lines[0].find("torque: false, coils: [], validation: false}"), std::string::npos);
+  EXPECT_NE(lines[10].find("orientation: true, torque: true, coils: [1]"), std::string::npos)
+      << lines[10];
+}
+
+TEST(ReportFile, ShowsTheResidualsOfHeldOutSamples) {
+  const CalibrationSession session = calibratedSession(6);
+  const std::vector<std::string> lines = blockOf(reportOf(session), "validation");
+  ASSERT_TRUE(session.validation());
+  EXPECT_TRUE(anyHolds(lines, "they agree with the parameters"));
+  const auto residuals = std::find(lines.begin(), lines.end(), "residuals:");
+  EXPECT_EQ(static_cast<std::size_t>(lines.end() - residuals),
+            session.validation()->residuals.size() + 1);
+}
+
+TEST(ReportFile, MapsUncertaintyOverTheWorkspaceAndCountsCoverage) {
+  const CalibrationSession session = calibratedSession(0);
+  const std::string report = reportOf(session);
+  const std::vector<std::string> workspace = blockOf(report, "workspace");
+  ASSERT_EQ(workspace.size(), 1U + 2U * (1U + 13U));
+  EXPECT_EQ(workspace[0].find("tilt: [-0.6"), 0U) << workspace[0];
+  const std::vector<std::string> coverage = blockOf(report, "coverage");
+  EXPECT_TRUE(anyHolds(coverage, "- {name: joint_3, lowest: -"));
+  EXPECT_TRUE(anyHolds(coverage, "coils: [30, 4, 4"));
+}
+
+TEST(ReportFile, HasNoTorqueFiguresWithoutTorqueModel) {
+  Actuator joint_only = scenarios::paperNominal();
+  joint_only.poles.clear();
+  joint_only.coils.clear();
+  joint_only.torque_curve.reset();
+  const CalibrationSession session({joint_only}, {}, {});
+  const std::string report = reportOf(session);
+  EXPECT_NE(report.find("    torque: []\n"), std::string::npos);
+  EXPECT_NE(report.find("    poles: []\n"), std::string::npos);
+  EXPECT_NE(report.find("{grade: failed, "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sac

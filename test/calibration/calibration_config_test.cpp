@@ -1,0 +1,129 @@
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "support/error_message.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sac {
+namespace {
+
+constexpr char kShippedFile[] = SOURCE_DIR "/config/calibration.yaml";
+
+std::string parseError(const std::string& text) {
+  return errorMessage<ConfigError>([&] { parseCalibrationConfig(text, "c.yaml"); });
+}
+
+TEST(CalibrationConfig, ShippedFileHoldsTheDefaults) {
+  EXPECT_EQ(renderCalibrationConfig(loadCalibrationConfig(kShippedFile)),
+            renderCalibrationConfig(CalibrationConfig{}));
+}
+
+TEST(CalibrationConfig, ShippedFileNamesEveryKeyInItsSection) {
+  const std::string shipped = contentOf(kShippedFile);
+  std::istringstream options(renderCalibrationConfig(CalibrationConfig{}));
+  std::size_t place = 0;
+  for (std::string line; std::getline(options, line);) {
+    const std::string key = "\n" + line.substr(0, line.find(':') + 1);
+    place = shipped.find(key, place);
+    ASSERT_NE(place, std::string::npos) << key;
+  }
+}
+
+TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
+  // All values changed, so that an option that one side forgets comes back as its default.
+  CalibrationConfig config;
+  config.frames = {"base", "ball"};
+  SampleBuilderOptions& samples = config.samples;
+  for (double* value : {&samples.rest_window,
+                        &samples.largest_joint_spread,
+                        &samples.largest_joint_drift,
+                        &samples.largest_orientation_motion,
+                        &samples.settle_after_motion,
+                        &samples.guard_before_motion,
+                        &samples.largest_dwell,
+                        &samples.current_threshold,
+                        &samples.current_tolerance,
+                        &samples.settle_after_current_change,
+                        &samples.guard_before_current_change,
+                        &samples.smallest_duration,
+                        &samples.outlier_factor,
+                        &samples.joint_stddev_floor,
+                        &samples.orientation_stddev_floor,
+                        &samples.torque_stddev_floor,
+                        &samples.largest_gap,
+                        &samples.stream_timeout,
+                        &samples.clock_reset,
+                        &samples.largest_jump}) {
+    *value *= 1.25;
+  }
+  samples.smallest_count = 17;
+  samples.bias_removal = BiasRemoval::kNone;
+  EstimationOptions& estimation = config.estimation;
+  for (double* value : {&estimation.unobservable_stddev,
+                        &estimation.false_alarm_probability,
+                        &estimation.max_rejected_fraction,
+                        &estimation.max_reduced_chi_square,
+                        &estimation.current_threshold,
+                        &estimation.min_joint_motion,
+                        &estimation.default_orientation_stddev,
+                        &estimation.default_torque_stddev}) {
+    *value *= 1.25;
+  }
+  estimation.max_iterations = 7;
+  config.tolerance = {0.01, 0.02, 0.04, 0.05, 0.06};
+  config.effects.modelled.fill(true);
+  config.hold_out_every = 5;
+
+  const std::string text = renderCalibrationConfig(config);
+  const CalibrationConfig back = parseCalibrationConfig(text, "c.yaml");
+  EXPECT_EQ(renderCalibrationConfig(back), text);
+  EXPECT_EQ(back.estimation.current_threshold, config.samples.current_threshold);
+  std::istringstream changed(text);
+  std::istringstream defaults(renderCalibrationConfig(CalibrationConfig{}));
+  for (std::string line, other; std::getline(changed, line) && std::getline(defaults, other);) {
+    const bool is_section = line.front() != ' ';
+    EXPECT_EQ(line == other, is_section) << line;
+  }
+}
+
+TEST(CalibrationConfig, AbsentKeysHaveTheirDefaults) {
+  const CalibrationConfig config = parseCalibrationConfig("tolerance: {pole: 0.25}", "c.yaml");
+  EXPECT_EQ(config.tolerance.pole, 0.25);
+  EXPECT_EQ(config.tolerance.coil, ManufacturingTolerance{}.coil);
+  EXPECT_EQ(config.samples.rest_window, SampleBuilderOptions{}.rest_window);
+}
+
+TEST(CalibrationConfig, ErrorsNameFileLineAndKey) {
+  EXPECT_NE(parseError("frames: {stator: base}\nspeed: 3\n").find("c.yaml:2: speed"),
+            std::string::npos);
+  EXPECT_NE(parseError("dwell:\n  rest_windw: 0.3\n").find("c.yaml:2: dwell.rest_windw"),
+            std::string::npos);
+  EXPECT_NE(parseError("dwell:\n  rest_window: -0.3\n").find("c.yaml:2: dwell.rest_window: -0.3"),
+            std::string::npos);
+  EXPECT_NE(parseError("means: {smallest_count: 2}").find("c.yaml:1: means.smallest_count"),
+            std::string::npos);
+  EXPECT_NE(parseError("currents: {bias_removal: maybe}").find("currents.bias_removal"),
+            std::string::npos);
+  EXPECT_NE(parseError("frames: {rotor: \"\"}").find("frames.rotor"), std::string::npos);
+  EXPECT_NE(parseError("estimation: {max_iterations: .nan}").find("estimation.max_iterations"),
+            std::string::npos);
+}
+
+TEST(CalibrationConfig, RefusesOptionsThatContradictEachOther) {
+  const std::string message = parseError("dwell: {largest_dwell: 0.5}");
+  EXPECT_EQ(message.find("c.yaml: largest_dwell: 0.5"), 0U) << message;
+}
+
+TEST(CalibrationConfig, RefusesToHoldOutEverySample) {
+  EXPECT_NE(parseError("validation: {hold_out_every: 1}").find("hold_out_every"),
+            std::string::npos);
+  EXPECT_EQ(parseError("validation: {hold_out_every: 2}"), "no exception");
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,109 @@
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+SessionProgress progressOf(const CalibrationSession& session) {
+  return progressOf(
+      session.model(), session.samples(), session.state(), session.config().estimation);
+}
+
+std::string nextStep(const CalibrationSession& session, const SessionProgress& progress) {
+  return nextStep(session.model(), session.samples(), progress, session.config().estimation);
+}
+
+std::string nextStep(const CalibrationSession& session) {
+  return nextStep(session, progressOf(session));
+}
+
+CalibrationSession paperSession() {
+  scenarios::Generator generator(1);
+  const Actuator truth = scenarios::paperTruth();
+  return {{scenarios::paperNominal()},
+          scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator),
+          {}};
+}
+
+TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
+  CalibrationSession session = paperSession();
+  EXPECT_EQ(nextStep(session), "Call calibrate_joint: 10 samples have an orientation.");
+  ASSERT_TRUE(session.run({Cycle::kJoint, 0}).success);
+  EXPECT_EQ(nextStep(session),
+            "Call calibrate_poles with coil 1: 30 samples have a torque of this coil alone.");
+  ASSERT_TRUE(session.run({Cycle::kPoles, 1}).success);
+  for (std::size_t coil = 2; coil <= 24; ++coil) {
+    EXPECT_EQ(nextStep(session),
+              "Call calibrate_coil with coil " + std::to_string(coil) +
+                  ": 4 samples have a torque of this coil alone.");
+    ASSERT_TRUE(session.run({Cycle::kCoil, coil}).success);
+  }
+  EXPECT_EQ(nextStep(session).substr(0, 12), "Call refine:");
+  SessionProgress progress = progressOf(session);
+  progress.refined = true;
+  EXPECT_NE(nextStep(session, progress).find("validation"), std::string::npos);
+  progress.validation_samples = 3;
+  EXPECT_EQ(nextStep(session, progress), "Call validate, and save when it agrees.");
+  progress.saved = true;
+  EXPECT_NE(nextStep(session, progress).find("Nothing is left to do"), std::string::npos);
+}
+
+TEST(SessionGuidance, CountsWhatIsMissing) {
+  CalibrationSession session({scenarios::paperNominal()}, {}, {});
+  EXPECT_NE(nextStep(session).find("0 of 10 are held"), std::string::npos);
+  scenarios::Generator generator(1);
+  const Actuator truth = scenarios::paperTruth();
+  std::vector<Sample> samples =
+      scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
+  samples.resize(22);
+  session = CalibrationSession({scenarios::paperNominal()}, samples, {});
+  session.run({Cycle::kJoint, 0});
+  EXPECT_NE(nextStep(session).find("Excite coil 1 alone"), std::string::npos);
+  EXPECT_NE(nextStep(session).find("12 of 24 are held"), std::string::npos);
+}
+
+TEST(SessionGuidance, HeldOutSamplesDoNotServeACycle) {
+  scenarios::Generator generator(1);
+  const Actuator truth = scenarios::paperTruth();
+  std::vector<Sample> samples =
+      scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
+  samples[0].validation = true;
+  const CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  EXPECT_NE(nextStep(session).find("9 of 10 are held"), std::string::npos);
+  EXPECT_EQ(progressOf(session).validation_samples, 1U);
+  EXPECT_EQ(progressOf(session).orientation_samples, 10U);
+}
+
+TEST(SessionGuidance, CountsTorquesPerCoil) {
+  const SessionProgress progress = progressOf(paperSession());
+  ASSERT_EQ(progress.torque_samples.size(), 24U);
+  EXPECT_EQ(progress.torque_samples[0], 30U);
+  EXPECT_EQ(progress.torque_samples[23], 4U);
+  EXPECT_FALSE(progress.joint_done);
+  EXPECT_FALSE(progress.poles_done);
+  EXPECT_FALSE(progress.coil_done[0]);
+}
+
+TEST(SessionGuidance, AJointAloneIsDoneAfterItsCycle) {
+  Actuator joint_only = scenarios::paperNominal();
+  joint_only.poles.clear();
+  joint_only.coils.clear();
+  joint_only.torque_curve.reset();
+  scenarios::Generator generator(2);
+  const std::vector<Sample> samples = scenarios::orientationSamples(
+      joint_only, scenarios::randomPoses(12, 0.3, generator), 1e-3, 1e-3, generator);
+  CalibrationSession session({joint_only}, samples, {});
+  EXPECT_EQ(nextStep(session), "Call calibrate_joint: 12 samples have an orientation.");
+  ASSERT_TRUE(session.run({Cycle::kJoint, 0}).success);
+  EXPECT_NE(nextStep(session).find("validate"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sac

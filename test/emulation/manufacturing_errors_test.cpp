@@ -1,0 +1,95 @@
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/actuator/actuator_design.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+
+TEST(ManufacturingErrors, StayWithinTheirBoundsAndUseThem) {
+  const Actuator nominal = scenarios::paperNominal();
+  ManufacturingErrors errors;
+  errors.strength = 0.02;
+  const Actuator made = manufacturedActuator(nominal, errors, kSeed);
+  EXPECT_NO_THROW(validate(made));
+  double largest_angle = 0.0;
+  double largest_gain = 0.0;
+  for (std::size_t j = 0; j < nominal.coils.size(); ++j) {
+    largest_angle = std::max(largest_angle, std::abs(made.coils[j].polar - nominal.coils[j].polar));
+    largest_gain = std::max(largest_gain, std::abs(made.coils[j].gain - 1.0));
+    EXPECT_LE(std::abs(made.coils[j].azimuth - nominal.coils[j].azimuth), 0.02 + 1e-12);
+  }
+  EXPECT_LE(largest_angle, 0.02 + 1e-12);
+  EXPECT_GT(largest_angle, 0.015);
+  EXPECT_LE(largest_gain, 0.02);
+  EXPECT_GT(largest_gain, 0.015);
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    EXPECT_NE(made.joints[k].offset, 0.0);
+    EXPECT_LE(std::abs(made.joints[k].offset), 0.03);
+    EXPECT_LE((made.joints[k].axis - nominal.joints[k].axis).norm(), 0.03 * std::sqrt(2.0));
+    // Nominal axes are those of the coordinates: two components lie across.
+    for (std::size_t across = 1; across < kJoints; ++across) {
+      const auto component = static_cast<Eigen::Index>((k + across) % kJoints);
+      EXPECT_GT(std::abs(made.joints[k].axis[component]), 1e-5);
+    }
+  }
+}
+
+TEST(ManufacturingErrors, OfZeroLeaveTheNominalActuator) {
+  const Actuator nominal = scenarios::paperNominal();
+  const Actuator made = manufacturedActuator(nominal, {0.0, 0.0, 0.0, 0.0, 0.0}, kSeed);
+  for (std::size_t i = 0; i < nominal.poles.size(); ++i) {
+    EXPECT_NEAR(made.poles[i].azimuth, nominal.poles[i].azimuth, 1e-15);
+    EXPECT_EQ(made.poles[i].gain, 1.0);
+  }
+  EXPECT_EQ(made.joints[2].axis, nominal.joints[2].axis);
+}
+
+TEST(ManufacturingErrors, LeadOverThePoleOfTheCoordinates) {
+  Actuator nominal = scenarios::paperNominal();
+  nominal.coils = {{M_PI_2, 0.0, 1.0}};
+  ManufacturingErrors errors;
+  errors.coil_angle = 0.5;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    EXPECT_NO_THROW(validate(manufacturedActuator(nominal, errors, seed)));
+  }
+}
+
+TEST(ManufacturingErrors, DependOnTheSeed) {
+  const Actuator nominal = scenarios::paperNominal();
+  const Actuator made = manufacturedActuator(nominal, {}, kSeed);
+  EXPECT_EQ(made.coils[7].polar, manufacturedActuator(nominal, {}, kSeed).coils[7].polar);
+  EXPECT_NE(made.coils[7].polar, manufacturedActuator(nominal, {}, kSeed + 1).coils[7].polar);
+}
+
+TEST(ManufacturingErrors, RefuseBoundsThatCannotBe) {
+  EXPECT_THROW(validate(ManufacturingErrors{-0.01}), ConfigError);
+  EXPECT_THROW(validate(ManufacturingErrors{0.03, 0.03, 0.02, 0.6}), ConfigError);
+}
+
+TEST(ManufacturingErrors, TruthMustBeOfTheSameDesign) {
+  const Actuator nominal = scenarios::paperNominal();
+  Actuator truth = nominal;
+  EXPECT_NO_THROW(requireSameDesign(nominal, truth));
+  truth.joints[1].name = "elbow";
+  EXPECT_THROW(requireSameDesign(nominal, truth), ConfigError);
+  truth = nominal;
+  truth.poles.pop_back();
+  EXPECT_THROW(requireSameDesign(nominal, truth), ConfigError);
+  truth = nominal;
+  truth.coils.pop_back();
+  EXPECT_THROW(requireSameDesign(nominal, truth), ConfigError);
+  truth = nominal;
+  truth.torque_curve.reset();
+  EXPECT_THROW(requireSameDesign(nominal, truth), ConfigError);
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,184 @@
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "support/error_message.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Sample exampleSample() {
+  Sample sample;
+  sample.id = 7;
+  sample.stamp = 1'700'000'000'123'456'789;
+  sample.validation = true;
+  sample.joint_position = {0.1, -0.2, 0.3};
+  sample.joint_stddev = {1e-5, 2e-5, 3e-5};
+  sample.has_orientation = true;
+  sample.R_stator_rotor = rotationExp({0.4, -0.5, 2.6});
+  sample.orientation_stddev = 4e-5;
+  sample.has_torque = true;
+  sample.torque = {0.5, -0.6, 0.7};
+  sample.torque_stddev = 5e-5;
+  sample.current = Eigen::Vector3d(1.5, 0.0, -2.0);
+  sample.duration = 0.6;
+  sample.measurements = 120;
+  return sample;
+}
+
+sensor_msgs::JointState jointState(const std::vector<std::string>& names,
+                                   const std::vector<double>& positions) {
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time(12, 345);
+  message.name = names;
+  message.position = positions;
+  return message;
+}
+
+TEST(MsgConversion, SamplesComeBackAsTheyWere) {
+  const Sample sample = exampleSample();
+  const Sample back = sampleFromRos(sampleToRos(sample));
+  EXPECT_EQ(back.id, sample.id);
+  EXPECT_EQ(back.stamp, sample.stamp);
+  EXPECT_EQ(back.validation, sample.validation);
+  EXPECT_EQ(back.joint_position, sample.joint_position);
+  EXPECT_EQ(back.joint_stddev, sample.joint_stddev);
+  EXPECT_EQ(back.has_orientation, sample.has_orientation);
+  EXPECT_LT((back.R_stator_rotor - sample.R_stator_rotor).norm(), 1e-14);
+  EXPECT_EQ(back.orientation_stddev, sample.orientation_stddev);
+  EXPECT_EQ(back.has_torque, sample.has_torque);
+  EXPECT_EQ(back.torque, sample.torque);
+  EXPECT_EQ(back.torque_stddev, sample.torque_stddev);
+  EXPECT_EQ(back.current, sample.current);
+  EXPECT_EQ(back.duration, sample.duration);
+  EXPECT_EQ(back.measurements, sample.measurements);
+}
+
+TEST(MsgConversion, RefusesSamplesWhoseOrientationIsNoUnitQuaternion) {
+  for (const double w : {0.0, 2.0, kNaN, std::numeric_limits<double>::infinity()}) {
+    msg::CalibrationSample message = sampleToRos(exampleSample());
+    message.orientation.w = w;
+    EXPECT_EQ(errorMessage<DataError>([&] { sampleFromRos(message); }),
+              "Sample 7: orientation is not a unit quaternion.");
+  }
+}
+
+TEST(MsgConversion, NormalisesRoundedQuaternions) {
+  msg::CalibrationSample message = sampleToRos(exampleSample());
+  message.orientation.x *= 1.0 + 1e-6;
+  EXPECT_NO_THROW(validate(sampleFromRos(message), 3));
+}
+
+TEST(MsgConversion, IgnoresTheOrientationOfSamplesThatHaveNone) {
+  Sample sample = exampleSample();
+  sample.has_orientation = false;
+  msg::CalibrationSample message = sampleToRos(sample);
+  message.orientation.w = kNaN;
+  EXPECT_EQ(sampleFromRos(message).R_stator_rotor, Eigen::Matrix3d::Identity());
+}
+
+TEST(MsgConversion, QuaternionsKeepTheOrderOfTheirComponents) {
+  geometry_msgs::QuaternionStamped message;
+  message.header.stamp = ros::Time(3, 4);
+  message.quaternion.x = 0.1;
+  message.quaternion.y = 0.2;
+  message.quaternion.z = 0.3;
+  message.quaternion.w = 0.4;
+  const OrientationMeasurement measurement = orientationFromRos(message);
+  EXPECT_EQ(measurement.stamp, 3'000'000'004);
+  EXPECT_EQ(measurement.q_stator_rotor.coeffs(), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
+  EXPECT_EQ(quaternionToRos(measurement.q_stator_rotor).w, 0.4);
+  EXPECT_EQ(quaternionToRos(measurement.q_stator_rotor).y, 0.2);
+}
+
+TEST(MsgConversion, TorquesAndCurrentsKeepStampAndOrder) {
+  geometry_msgs::Vector3Stamped torque;
+  torque.header.stamp = ros::Time(5, 6);
+  torque.vector = vectorToRos({1.0, 2.0, 3.0});
+  EXPECT_EQ(torqueFromRos(torque).stamp, 5'000'000'006);
+  EXPECT_EQ(torqueFromRos(torque).torque, Eigen::Vector3d(1.0, 2.0, 3.0));
+
+  msg::CoilCurrents currents;
+  currents.header.stamp = ros::Time(7, 8);
+  currents.current = {0.1, 0.2};
+  CurrentMeasurement measurement;
+  currentFromRos(currents, measurement);
+  EXPECT_EQ(measurement.stamp, 7'000'000'008);
+  EXPECT_EQ(measurement.current, Eigen::Vector2d(0.1, 0.2));
+}
+
+TEST(JointStateReader, FindsJointsByNameWhateverTheirOrder) {
+  JointStateReader reader({"a", "b", "c"});
+  const auto first = reader.read(jointState({"c", "x", "a", "b"}, {3.0, 9.0, 1.0, 2.0}));
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->stamp, 12'000'000'345);
+  EXPECT_EQ(first->position, Eigen::Vector3d(1.0, 2.0, 3.0));
+  const auto second = reader.read(jointState({"a", "b", "c"}, {1.0, 2.0, 3.0}));
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->position, Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+TEST(JointStateReader, ReadsNothingWhenAJointOrItsPositionIsMissing) {
+  JointStateReader reader({"a", "b", "c"});
+  EXPECT_FALSE(reader.read(jointState({"a", "b"}, {1.0, 2.0})));
+  EXPECT_FALSE(reader.read(jointState({"a", "b", "c"}, {1.0, 2.0})));
+  EXPECT_FALSE(reader.read(jointState({}, {})));
+  EXPECT_TRUE(reader.read(jointState({"a", "b", "c"}, {1.0, 2.0, 3.0})));
+}
+
+TEST(MsgConversion, ParametersTellTheActuator) {
+  Actuator actuator = scenarios::paperNominal();
+  actuator.serial = "unit-042";
+  actuator.joints[1].offset = 0.25;
+  actuator.poles[1].gain = 1.5;
+  const msg::ActuatorParameters message = parametersToRos(actuator);
+  EXPECT_EQ(message.actuator, actuator.name);
+  EXPECT_EQ(message.serial, "unit-042");
+  EXPECT_EQ(vectorFromRos(message.joints[1].axis), actuator.joints[1].axis);
+  EXPECT_EQ(message.joints[1].offset, 0.25);
+  ASSERT_EQ(message.poles.size(), actuator.poles.size());
+  EXPECT_EQ(message.poles[1].azimuth, actuator.poles[1].azimuth);
+  EXPECT_EQ(message.poles[1].polarity, -1);
+  EXPECT_EQ(message.poles[1].gain, 1.5);
+  ASSERT_EQ(message.coils.size(), actuator.coils.size());
+  EXPECT_EQ(message.coils[13].polar, actuator.coils[13].polar);
+}
+
+TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
+  CycleReport report;
+  report.cycle = Cycle::kPoles;
+  report.coil = 3;
+  report.success = true;
+  report.message = "Done.";
+  report.error_history = {2.0, 1.0};
+  report.estimates = {{"pole_1/polar", 0.1, 0.2, 0.3, 1e-4, true},
+                      {"pole_2/polar", 0.1, 0.1, 0.1, 0.03, false}};
+  report.residuals = {{9, Quantity::kTorque, 0.5, 6.0, true, "misfit"}};
+  const msg::CalibrationReport message = reportToRos(report);
+  EXPECT_EQ(message.cycle, msg::CalibrationReport::POLES);
+  EXPECT_EQ(message.coil, 3U);
+  EXPECT_TRUE(message.success);
+  EXPECT_EQ(message.error_history, report.error_history);
+  ASSERT_EQ(message.estimates.size(), 2U);
+  EXPECT_EQ(message.estimates[0].value, 0.3);
+  EXPECT_EQ(message.estimates[0].stddev, 1e-4);
+  EXPECT_TRUE(std::isinf(message.estimates[1].stddev));
+  EXPECT_FALSE(message.estimates[1].observable);
+  ASSERT_EQ(message.residuals.size(), 1U);
+  EXPECT_EQ(message.residuals[0].id, 9U);
+  EXPECT_TRUE(message.residuals[0].rejected);
+  EXPECT_EQ(message.residuals[0].reason, "misfit");
+}
+
+}  // namespace
+}  // namespace sac
