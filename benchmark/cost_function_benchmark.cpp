@@ -56,7 +56,7 @@ void orientationCost(benchmark::State& state, Derivative derivative) {
 void torqueCost(benchmark::State& state, Derivative derivative) {
   const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
   const ParameterSpace& space = scenario.model.space();
-  const std::size_t coil = scenario.request.coil - 1;
+  const std::size_t coil = scenario.request.coil.value();
   const Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();
   std::vector<std::vector<Excitation>> excitations;
   for (const Sample& sample : scenario.samples) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <sstream>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac::benchmarks {
@@ -192,7 +194,8 @@ CycleScenario cycleScenario(Cycle cycle, std::size_t samples) {
   CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
   CalibrationState state = initialState(cycle, model.space(), truth);
   const bool has_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
-  const CycleRequest request{cycle, has_coil ? excitedCoil(cycle) + 1 : 0};
+  const CycleRequest request{
+      cycle, has_coil ? std::optional<std::size_t>(excitedCoil(cycle)) : std::nullopt};
   return {std::move(model), request, makeSamples(cycle, samples, truth), std::move(state), truth};
 }
 
@@ -209,7 +212,7 @@ double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x) {
 std::string toJson(const CycleScenario& scenario, const CalibrationState& solution) {
   const ParameterSpace& space = scenario.model.space();
   JsonWriter json;
-  json.addNumber("coil", static_cast<double>(scenario.request.coil));
+  json.addNumber("coil", static_cast<double>(numberOrZero(scenario.request.coil)));
   json.addObject("initial", toJson(space.actuatorAt(scenario.state.belief.x)));
   json.addObject("solution", toJson(space.actuatorAt(solution.belief.x)));
   json.addObject("curve", toJson(scenario.model.curve()));

@@ -45,7 +45,7 @@ class Planner {
     const Eigen::VectorXd x = Eigen::VectorXd::Zero(model_.space().size());
     std::vector<Eigen::Index> all(static_cast<std::size_t>(x.size()));
     std::iota(all.begin(), all.end(), 0);
-    const Eigen::MatrixXd covariance = cramerRaoBound(model_, samples, {Cycle::kRefine, 0}, all, x);
+    const Eigen::MatrixXd covariance = cramerRaoBound(model_, samples, {Cycle::kRefine}, all, x);
     return model_.space().reportedStddevs(x, covariance).maxCoeff();
   }
 

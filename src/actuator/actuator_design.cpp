@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -20,7 +21,7 @@ void requireSameCount(const std::string& what, std::size_t nominal, std::size_t 
 void requireSameDesign(const Actuator& nominal, const Actuator& truth) {
   for (std::size_t k = 0; k < kJoints; ++k) {
     if (nominal.joints[k].name != truth.joints[k].name) {
-      throw ConfigError("The truth calls joint " + std::to_string(k + 1) + " \"" +
+      throw ConfigError("The truth calls joint " + std::to_string(numberOf(k)) + " \"" +
                         truth.joints[k].name + "\", the actuator description \"" +
                         nominal.joints[k].name + "\".");
     }

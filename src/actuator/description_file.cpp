@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
@@ -166,7 +167,7 @@ std::string readDate(const YamlMap& map) {
 CycleRecord readCycle(const YamlMap& map) {
   CycleRecord record;
   record.cycle = map.choice("cycle", {"joint", "poles", "coil", "refine"});
-  record.coil = readCount(map, "coil");
+  record.coil = indexOf(readCount(map, "coil"));
   record.samples_used = readCount(map, "samples_used");
   record.samples_rejected = readCount(map, "samples_rejected");
   record.error_before = map.number("error_before", ValueRange::nonNegative());

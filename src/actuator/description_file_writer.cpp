@@ -2,6 +2,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 
 namespace sac {
@@ -82,7 +83,7 @@ std::string curveLine(const TorqueCurveDescription& curve) {
 std::string cycleLine(const CycleRecord& record) {
   YamlLine line;
   line.add("cycle", yamlText(record.cycle));
-  line.add("coil", std::to_string(record.coil));
+  line.add("coil", std::to_string(numberOrZero(record.coil)));
   line.add("samples_used", std::to_string(record.samples_used));
   line.add("samples_rejected", std::to_string(record.samples_rejected));
   line.add("error_before", yamlNumber(record.error_before));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "urdf_elements.hpp"
 
 #include <tinyxml2.h>
@@ -213,7 +214,7 @@ class RobotWriter {
     stator.ring("lower_ring", "frame", inner, outer, kRingHeight, -z);
     for (std::size_t j = 0; j < actuator_.coils.size(); ++j) {
       const CoilAxis& coil = actuator_.coils[j];
-      stator.cylinder("coil_" + std::to_string(j + 1),
+      stator.cylinder("coil_" + std::to_string(numberOf(j)),
                       "copper",
                       alongAxis(coil.polar, coil.azimuth, d_.coilDistance()),
                       d_.coil_radius,
@@ -254,7 +255,7 @@ class RobotWriter {
     LinkDrawing rotor(link);
     for (std::size_t i = 0; i < actuator_.poles.size(); ++i) {
       const PoleAxis& pole = actuator_.poles[i];
-      rotor.cylinder("pole_" + std::to_string(i + 1),
+      rotor.cylinder("pole_" + std::to_string(numberOf(i)),
                      pole.polarity > 0 ? "north" : "south",
                      alongAxis(pole.polar, pole.azimuth, d_.poleDistance()),
                      d_.pole_radius,

@@ -167,24 +167,24 @@ class Judge {
       }
     }
     const EstimationOptions& estimation = session_.config().estimation;
-    const std::vector<std::string> advice = adviceForUnobservable(
-        session_.model(),
-        session_.samples(),
-        selectObservations(session_.samples(), {Cycle::kRefine, 0}, estimation),
-        {Cycle::kPoles, polesCoil()},
-        session_.state().belief.x,
-        coordinates);
+    const std::vector<std::string> advice =
+        adviceForUnobservable(session_.model(),
+                              session_.samples(),
+                              selectObservations(session_.samples(), {Cycle::kRefine}, estimation),
+                              {Cycle::kPoles, polesCoil()},
+                              session_.state().belief.x,
+                              coordinates);
     steps.insert(steps.end(), advice.begin(), advice.end());
   }
 
-  /// Coil that the poles were measured with, from 1.
-  std::size_t polesCoil() const {
+  /// Coil that the poles were measured with.
+  std::optional<std::size_t> polesCoil() const {
     for (const CycleReport& report : session_.reports()) {
       if (report.cycle == Cycle::kPoles) {
         return report.coil;
       }
     }
-    return 1;
+    return 0;
   }
 
   /// What was not tried yet.

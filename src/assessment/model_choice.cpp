@@ -19,7 +19,7 @@ void sumUp(const CalibrationSession& session, ModelFit& fit) {
   EstimationProblem problem;
   problem.model = &session.model();
   problem.samples = &session.samples();
-  problem.observations = selectObservations(session.samples(), {Cycle::kRefine, 0}, options);
+  problem.observations = selectObservations(session.samples(), {Cycle::kRefine}, options);
   problem.prior = session.state().belief;
   const ObservationEvaluator evaluator(problem, options);
   LinearizedObservation linear;
@@ -46,7 +46,7 @@ ModelFit fitWith(const std::string& name,
        possibleCycles(session.model(), session.samples(), config.estimation)) {
     session.run(request);
   }
-  const CycleReport refined = session.run({Cycle::kRefine, 0});
+  const CycleReport refined = session.run({Cycle::kRefine});
   ModelFit fit;
   fit.effects = name;
   fit.converged = refined.success;

@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 
@@ -145,7 +146,7 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
 
 void writeCycle(ReportWriter& writer, const CycleReport& report) {
   writer.line(2, "- cycle: " + cycleName(report.cycle));
-  writer.entry(3, "coil", std::to_string(report.coil));
+  writer.entry(3, "coil", std::to_string(numberOrZero(report.coil)));
   writer.entry(3, "success", truthText(report.success));
   writer.entry(3, "message", yamlText(report.message));
   writer.entry(3, "samples_used", std::to_string(report.samples_used));
@@ -210,7 +211,7 @@ void writeSamples(ReportWriter& writer, const CalibrationSession& session) {
   for (const Sample& sample : session.samples()) {
     std::vector<std::string> coils;
     for (const Excitation& excitation : excitedCoils(sample, threshold)) {
-      coils.push_back(std::to_string(excitation.coil + 1));
+      coils.push_back(std::to_string(numberOf(excitation.coil)));
     }
     YamlLine line;
     line.add("id", std::to_string(sample.id));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
@@ -21,9 +22,9 @@ std::string cycleInWords(const CycleRequest& request) {
     case Cycle::kJoint:
       return "Joint";
     case Cycle::kPoles:
-      return "Poles and coil " + std::to_string(request.coil);
+      return "Poles and coil " + std::to_string(numberOrZero(request.coil));
     case Cycle::kCoil:
-      return "Coil " + std::to_string(request.coil);
+      return "Coil " + std::to_string(numberOrZero(request.coil));
     case Cycle::kRefine:
       break;
   }
@@ -41,16 +42,16 @@ std::string refusal(const CalibrationModel& model,
     return "The actuator description has no poles, coils or torque curve: only the joint can be "
            "calibrated.";
   }
-  if (needs_coil && (request.coil < 1 || request.coil > space.coils())) {
-    return "Coil " + std::to_string(request.coil) + " does not exist: coils count from 1 to " +
-           std::to_string(space.coils()) + ".";
+  if (needs_coil && (!request.coil || *request.coil >= space.coils())) {
+    return "Coil " + std::to_string(numberOrZero(request.coil)) +
+           " does not exist: coils count from 1 to " + std::to_string(space.coils()) + ".";
   }
   if (request.cycle == Cycle::kCoil) {
     const auto first = state.identified.begin() + space.pole(0);
     const auto last = state.identified.begin() + space.coil(0);
     if (std::find(first, last, true) == last) {
       return "No pole is calibrated yet: run the poles cycle before coil " +
-             std::to_string(request.coil) + ".";
+             std::to_string(numberOrZero(request.coil)) + ".";
     }
   }
   if (request.cycle == Cycle::kJoint && observations.size() < kFewestPoses) {
@@ -61,7 +62,8 @@ std::string refusal(const CalibrationModel& model,
         kFewestPoses);
   }
   if (observations.empty()) {
-    return needs_coil ? "No sample has a torque with only coil " + std::to_string(request.coil) +
+    return needs_coil ? "No sample has a torque with only coil " +
+                            std::to_string(numberOrZero(request.coil)) +
                             " excited: capture poses with that coil on."
                       : "No sample can serve: capture poses first.";
   }
@@ -310,7 +312,7 @@ std::vector<Observation> selectObservations(const std::vector<Sample>& samples,
     const std::vector<Excitation> excited = excitedCoils(sample, options.current_threshold);
     const bool serves = request.cycle == Cycle::kRefine
                             ? !excited.empty()
-                            : excited.size() == 1 && excited.front().coil + 1 == request.coil;
+                            : excited.size() == 1 && excited.front().coil == request.coil;
     if (serves) {
       observations.push_back({n, Quantity::kTorque});
     }
@@ -333,7 +335,7 @@ std::vector<Eigen::Index> selectCoordinates(const ParameterSpace& space,
   }
   std::vector<bool> excited(space.coils(), false);
   if (request.cycle == Cycle::kPoles || request.cycle == Cycle::kCoil) {
-    excited.at(request.coil - 1) = true;
+    excited.at(request.coil.value()) = true;
   } else if (request.cycle == Cycle::kRefine) {
     for (const Observation& observation : selectObservations(samples, request, options)) {
       if (observation.quantity == Quantity::kTorque) {

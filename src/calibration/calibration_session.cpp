@@ -89,7 +89,7 @@ CalibrationState startState(const ParameterSpace& space,
 CycleRecord cycleRecord(const CycleReport& report) {
   CycleRecord record;
   record.cycle = cycleName(report.cycle);
-  record.coil = static_cast<std::uint32_t>(report.coil);
+  record.coil = report.coil;
   record.samples_used = report.samples_used;
   record.samples_rejected = report.samples_rejected;
   record.error_before = report.error_history.front();

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -16,26 +17,26 @@ namespace {
                     "refine, separated by commas.");
 }
 
-/// Number of a coil: digits only, from 1.
-std::size_t parseCoil(const std::string& digits, const std::string& word) {
-  std::size_t coil = 0;
+/// The coil of a number: digits only, from 1.
+std::optional<std::size_t> parseCoil(const std::string& digits, const std::string& word) {
+  std::size_t number = 0;
   const char* end = digits.data() + digits.size();
-  const std::from_chars_result result = std::from_chars(digits.data(), end, coil);
-  if (result.ec != std::errc{} || result.ptr != end || coil == 0) {
+  const std::from_chars_result result = std::from_chars(digits.data(), end, number);
+  if (result.ec != std::errc{} || result.ptr != end || number == 0) {
     throwUnknown(word);
   }
-  return coil;
+  return indexOf(number);
 }
 
 CycleRequest parseCycle(const std::string& word) {
   if (word == "joint") {
-    return {Cycle::kJoint, 0};
+    return {Cycle::kJoint};
   }
   if (word == "coils") {
-    return {Cycle::kCoil, 0};
+    return {Cycle::kCoil};
   }
   if (word == "refine") {
-    return {Cycle::kRefine, 0};
+    return {Cycle::kRefine};
   }
   const std::size_t colon = word.find(':');
   const std::string name = word.substr(0, colon);
@@ -89,12 +90,12 @@ std::vector<CycleRequest> expandCoils(const std::vector<CycleRequest>& requests,
     });
   };
   for (const CycleRequest& request : requests) {
-    if (request.cycle != Cycle::kCoil || request.coil != 0) {
+    if (request.cycle != Cycle::kCoil || request.coil) {
       expanded.push_back(request);
       continue;
     }
-    for (std::size_t coil = 1; coil <= counts.size(); ++coil) {
-      if (counts[coil - 1] > 0 && !is_covered(coil)) {
+    for (std::size_t coil = 0; coil < counts.size(); ++coil) {
+      if (counts[coil] > 0 && !is_covered(coil)) {
         expanded.push_back({Cycle::kCoil, coil});
       }
     }
@@ -111,26 +112,27 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
         return sample.has_orientation && !sample.validation;
       });
   if (has_orientations) {
-    requests.push_back({Cycle::kJoint, 0});
+    requests.push_back({Cycle::kJoint});
   }
   const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
   const auto most = std::max_element(counts.begin(), counts.end());
   const bool has_torques = most != counts.end() && *most > 0;
   if (has_torques) {
-    const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most)) + 1;
+    const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most));
     requests.push_back({Cycle::kPoles, coil});
-    requests.push_back({Cycle::kCoil, 0});
+    requests.push_back({Cycle::kCoil});
   }
   const bool models_effects = model.space().effects().size() > 0;
   if (has_torques || (has_orientations && models_effects)) {
-    requests.push_back({Cycle::kRefine, 0});
+    requests.push_back({Cycle::kRefine});
   }
   return expandCoils(requests, model, samples, options);
 }
 
 std::string cycleText(const CycleRequest& request) {
   const bool has_coil = request.cycle == Cycle::kPoles || request.cycle == Cycle::kCoil;
-  return cycleName(request.cycle) + (has_coil ? ":" + std::to_string(request.coil) : "");
+  return cycleName(request.cycle) +
+         (has_coil ? ":" + std::to_string(numberOrZero(request.coil)) : "");
 }
 
 }  // namespace sac

@@ -10,6 +10,7 @@
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
@@ -175,8 +176,8 @@ std::string adviceForTorque(const CalibrationModel& model,
                             Part part,
                             std::size_t index) {
   const bool is_pole = part == Part::kPole;
-  const std::size_t coil = is_pole ? (request.coil > 0 ? request.coil - 1 : 0) : index;
-  std::string words = (is_pole ? "Pole " : "Coil ") + std::to_string(index + 1);
+  const std::size_t coil = is_pole ? request.coil.value_or(0) : index;
+  std::string words = (is_pole ? "Pole " : "Coil ") + std::to_string(numberOf(index));
   words += isSeen(model, samples, observations, x, part, index)
                ? " is seen too weakly: "
                : (is_pole ? " is seen by no sample: " : " sees no pole in any sample: ");
@@ -184,10 +185,10 @@ std::string adviceForTorque(const CalibrationModel& model,
       bestPose(model, x, coil, is_pole ? std::optional<std::size_t>(index) : std::nullopt);
   if (!pose) {
     return words + "no pose of the workspace brings it within reach of coil " +
-           std::to_string(coil + 1) + ".";
+           std::to_string(numberOf(coil)) + ".";
   }
-  return words + "excite coil " + std::to_string(coil + 1) + " with " + poseInWords(model, *pose) +
-         ".";
+  return words + "excite coil " + std::to_string(numberOf(coil)) + " with " +
+         poseInWords(model, *pose) + ".";
 }
 
 }  // namespace

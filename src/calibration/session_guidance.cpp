@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 
 namespace sac {
@@ -61,7 +62,7 @@ class Guide {
   }
 
   std::string jointStep() const {
-    const std::size_t held = serving({Cycle::kJoint, 0});
+    const std::size_t held = serving({Cycle::kJoint});
     if (held >= kAdvisedPoses) {
       return "Call calibrate_joint: " + number(held) + " samples have an orientation.";
     }
@@ -69,11 +70,11 @@ class Guide {
            missing(held, kAdvisedPoses) + " with an orientation.";
   }
 
-  /// Coil that was excited alone most often, from 1; the first when none was.
+  /// Coil that was excited alone most often; the first when none was.
   std::size_t referenceCoil() const {
-    std::size_t best = 1;
+    std::size_t best = 0;
     std::size_t most = 0;
-    for (std::size_t coil = 1; coil <= model_.space().coils(); ++coil) {
+    for (std::size_t coil = 0; coil < model_.space().coils(); ++coil) {
       const std::size_t held = serving({Cycle::kPoles, coil});
       if (held > most) {
         best = coil;
@@ -88,10 +89,10 @@ class Guide {
     const std::size_t held = serving({Cycle::kPoles, coil});
     const std::size_t advised = kAdvisedTorquesPerPole * model_.space().poles();
     if (held >= advised) {
-      return "Call calibrate_poles with coil " + number(coil) + ": " + number(held) +
+      return "Call calibrate_poles with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
     }
-    return "Excite coil " + number(coil) +
+    return "Excite coil " + number(numberOf(coil)) +
            " alone and capture at poses that bring each pole near it: " + missing(held, advised) +
            ".";
   }
@@ -99,7 +100,7 @@ class Guide {
   std::optional<std::size_t> firstOpenCoil() const {
     for (std::size_t j = 0; j < progress_.coil_done.size(); ++j) {
       if (!progress_.coil_done[j]) {
-        return j + 1;
+        return j;
       }
     }
     return std::nullopt;
@@ -108,10 +109,10 @@ class Guide {
   std::string coilStep(std::size_t coil) const {
     const std::size_t held = serving({Cycle::kCoil, coil});
     if (held >= kAdvisedTorquesPerCoil) {
-      return "Call calibrate_coil with coil " + number(coil) + ": " + number(held) +
+      return "Call calibrate_coil with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
     }
-    return "Excite coil " + number(coil) +
+    return "Excite coil " + number(numberOf(coil)) +
            " alone and capture at poses that bring poles near it: " +
            missing(held, kAdvisedTorquesPerCoil) + ".";
   }

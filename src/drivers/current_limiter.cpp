@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
@@ -21,7 +22,7 @@ std::string commandDefect(const Eigen::VectorXd& command, std::size_t coils) {
   }
   for (Eigen::Index coil = 0; coil < command.size(); ++coil) {
     if (!std::isfinite(command[coil])) {
-      return "The commanded current of coil " + std::to_string(coil + 1) + " is not finite.";
+      return "The commanded current of coil " + std::to_string(numberOf(coil)) + " is not finite.";
     }
   }
   return {};

@@ -8,6 +8,7 @@
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -89,7 +90,7 @@ void requireEachJointOnce(const JointSensorOptions& options, const YamlMap& map)
   for (std::size_t k = 0; k < kJoints; ++k) {
     if (sensors[k] != 1) {
       map.fail("encoders",
-               "joint " + std::to_string(k + 1) + " has " + std::to_string(sensors[k]) +
+               "joint " + std::to_string(numberOf(k)) + " has " + std::to_string(sensors[k]) +
                    " sensors; each joint needs one.");
     }
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -110,7 +111,7 @@ ParameterId ParameterSpace::id(Eigen::Index parameter) const {
 
 std::string ParameterSpace::name(Eigen::Index parameter) const {
   const ParameterId which = id(parameter);
-  const std::string number = std::to_string(which.index + 1);
+  const std::string number = std::to_string(numberOf(which.index));
   switch (which.kind) {
     case ParameterKind::kJointOffset:
       return "joint_" + number + "/offset";

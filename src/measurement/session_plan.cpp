@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
 
@@ -113,7 +114,7 @@ void validate(const SessionPlanOptions& options, const Actuator& nominal) {
     return;
   }
   if (options.main_coil >= nominal.coils.size()) {
-    throw ConfigError("main coil: " + std::to_string(options.main_coil + 1) +
+    throw ConfigError("main coil: " + std::to_string(numberOf(options.main_coil)) +
                       " is not one of the coils 1 to " + std::to_string(nominal.coils.size()) +
                       ".");
   }

@@ -82,7 +82,7 @@ std::vector<std::size_t> usableCoils(const PlanningProblem& problem) {
     return {};
   }
   if (problem.request.cycle != Cycle::kRefine) {
-    return {problem.request.coil - 1};
+    return {problem.request.coil.value()};
   }
   std::vector<std::size_t> coils(problem.model->space().coils());
   std::iota(coils.begin(), coils.end(), 0);

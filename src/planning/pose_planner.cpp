@@ -8,6 +8,7 @@
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
@@ -41,8 +42,8 @@ void validateRequest(const PlanningProblem& problem) {
         "be planned for.");
   }
   const std::size_t coils = problem.model->space().coils();
-  if (problem.request.coil < 1 || problem.request.coil > coils) {
-    throw ConfigError("coil: " + std::to_string(problem.request.coil) +
+  if (!problem.request.coil || *problem.request.coil >= coils) {
+    throw ConfigError("coil: " + std::to_string(numberOrZero(problem.request.coil)) +
                       " is not one of the coils 1 to " + std::to_string(coils) + ".");
   }
 }
@@ -191,9 +192,6 @@ class Planner {
       const SelectedPose& pose = selection_.poses()[n];
       PlannedPose planned{positions[n], coilsOf(candidates_, pose)};
       plan.torque_samples += planned.coils.size();
-      for (std::size_t& coil : planned.coils) {
-        ++coil;  // people count from 1
-      }
       plan.orientation_samples += candidates_[pose.candidate].orientation ? 1 : 0;
       plan.poses.push_back(std::move(planned));
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 
@@ -24,7 +25,7 @@ std::string poseLine(const PlannedPose& pose) {
   std::vector<std::string> coils;
   coils.reserve(pose.coils.size());
   for (const std::size_t coil : pose.coils) {
-    coils.push_back(std::to_string(coil));
+    coils.push_back(std::to_string(numberOf(coil)));
   }
   YamlLine line;
   line.add("joint_position", yamlVector(pose.joint_position));
@@ -57,7 +58,7 @@ PlannedPose readPose(const YamlMap& map) {
     if (static_cast<double>(number) != coil) {
       map.fail("coils", "coils are whole numbers, counted from 1.");
     }
-    pose.coils.push_back(number);
+    pose.coils.push_back(indexOf(number).value());
   }
   return pose;
 }
@@ -176,12 +177,12 @@ SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator)
     PlannedDwell dwell;
     dwell.joint_position = pose.joint_position;
     for (const std::size_t coil : pose.coils) {
-      if (coil < 1 || coil > actuator.coils.size()) {
-        throw ConfigError("The session plan excites coil " + std::to_string(coil) +
+      if (coil >= actuator.coils.size()) {
+        throw ConfigError("The session plan excites coil " + std::to_string(numberOf(coil)) +
                           ", but coils count from 1 to " + std::to_string(coils) + ".");
       }
-      dwell.patterns.emplace_back(
-          record.current * Eigen::VectorXd::Unit(coils, static_cast<Eigen::Index>(coil) - 1));
+      dwell.patterns.emplace_back(record.current *
+                                  Eigen::VectorXd::Unit(coils, static_cast<Eigen::Index>(coil)));
     }
     session.dwells.push_back(dwell);
   }

@@ -6,6 +6,7 @@
 
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac::cycle_table {
 namespace {
@@ -139,7 +140,11 @@ std::int64_t insert(const SQLite::Database& database,
                 "samples_rejected, iterations, error_measure, reduced_chi_square, "
                 "condition_number, solve_time, orientation_uncertainty, torque_uncertainty) "
                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  row.put(date).put(software).put(cycleName(report.cycle)).put(report.coil).put(report.success);
+  row.put(date)
+      .put(software)
+      .put(cycleName(report.cycle))
+      .put(numberOrZero(report.coil))
+      .put(report.success);
   row.put(report.message).put(report.samples_used).put(report.samples_rejected);
   row.put(report.iterations).put(wordOf(kErrorMeasures, report.error_measure));
   row.put(report.reduced_chi_square).put(report.condition_number).put(report.solve_time);
@@ -168,7 +173,7 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   row.next();
   CycleReport report;
   report.cycle = cycleOf(row.text());
-  report.coil = static_cast<std::size_t>(row.integer());
+  report.coil = indexOf(static_cast<std::size_t>(row.integer()));
   report.success = row.flag();
   report.message = row.text();
   report.samples_used = row.count();

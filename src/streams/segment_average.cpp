@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "robust_mean.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -134,13 +135,13 @@ class SegmentAverager {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (estimate.drift[k] >
           options_.largest_joint_drift + kDriftSignificance * estimate.drift_stddev[k]) {
-        return refuse("joint_" + std::to_string(k + 1) + " drifted by " +
+        return refuse("joint_" + std::to_string(numberOf(k)) + " drifted by " +
                       format(estimate.drift[k] * kMilli) + " mrad.");
       }
       // A range is at least twice the standard deviation.
       const double stddev = std::sqrt(estimate.single_variance[k]);
       if (2.0 * stddev > options_.largest_joint_spread) {
-        return refuse("joint_" + std::to_string(k + 1) +
+        return refuse("joint_" + std::to_string(numberOf(k)) +
                       " was not at rest: its readings scatter by " + format(stddev * kMilli) +
                       " mrad.");
       }

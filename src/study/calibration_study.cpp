@@ -110,7 +110,7 @@ StudyTrial runTrial(const StudyOptions& options, std::uint64_t seed) {
   CalibrationSession session({options.nominal}, samples, config);
   const CalibrationModel& model = session.model();
   const Eigen::VectorXd truth = model.space().coordinatesOf(made);
-  const CycleRequest refine{Cycle::kRefine, 0};
+  const CycleRequest refine{Cycle::kRefine};
   const std::vector<Eigen::Index> free =
       selectCoordinates(model.space(), samples, refine, options.estimation);
   const Eigen::VectorXd bound = cramerRaoBound(model, samples, refine, free, truth).diagonal();

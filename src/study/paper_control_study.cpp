@@ -55,7 +55,7 @@ Calibrated calibrated(const PaperStudyOptions& options, std::uint64_t seed) {
   }
   Calibrated result;
   result.sequential = model.space().actuatorAt(session.state().belief.x);
-  run({Cycle::kRefine, 0});
+  run({Cycle::kRefine});
   result.refined = model.space().actuatorAt(session.state().belief.x);
   return result;
 }

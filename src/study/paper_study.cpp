@@ -124,8 +124,8 @@ CalibrationState startOf(const ParameterSpace& space, const Actuator& truth, Sit
 }
 
 CycleRequest requestOf(Situation situation) {
-  return situation == Situation::kCoil ? CycleRequest{Cycle::kCoil, 2}
-                                       : CycleRequest{Cycle::kPoles, 1};
+  return situation == Situation::kCoil ? CycleRequest{Cycle::kCoil, 1}
+                                       : CycleRequest{Cycle::kPoles, 0};
 }
 
 std::vector<Eigen::Vector3d> plannedPoses(const PaperStudyOptions& options,
@@ -207,8 +207,8 @@ std::vector<LevelOneRun> studyLevelOne(const PaperStudyOptions& options, std::si
     const std::vector<Sample> samples =
         orientationSamples(options, randomPoses(orientations, options.joint_tilt, seed), 0.0, seed);
     LevelOneRun& run = runs.emplace_back();
-    run.errors = runCycle(model, samples, start, {Cycle::kJoint, 0}, options.estimation)
-                     .report.error_history;
+    run.errors =
+        runCycle(model, samples, start, {Cycle::kJoint}, options.estimation).report.error_history;
     const FreeAxisPath newton =
         calibrateFreeAxes(samples, nominal, JacobianUse::kEveryIteration, kPaperIterations);
     const FreeAxisPath chord =
@@ -246,7 +246,7 @@ std::vector<LevelOneNoiseRun> studyLevelOneNoise(const PaperStudyOptions& option
             samples, freeAxes(options.nominal), JacobianUse::kEveryIteration, kPaperIterations)
             .errors.back();
     const CycleOutcome outcome =
-        runCycle(model, samples, start, {Cycle::kJoint, 0}, options.estimation);
+        runCycle(model, samples, start, {Cycle::kJoint}, options.estimation);
     const bool is_done = outcome.report.success && !outcome.report.error_history.empty();
     run.error =
         is_done ? outcome.report.error_history.back() : std::numeric_limits<double>::infinity();
@@ -273,8 +273,8 @@ std::vector<LevelTwoRun> studyLevelTwo(const PaperStudyOptions& options,
     if (orientations == Orientations::kRandom) {
       poses = randomPoses(measurements, options.torque_tilt, seed);
     }
-    const std::vector<Sample> samples =
-        torqueSamples(options, poses, request.coil - 1, noise ? options.torque_noise : 0.0, seed);
+    const std::vector<Sample> samples = torqueSamples(
+        options, poses, request.coil.value(), noise ? options.torque_noise : 0.0, seed);
     runs.push_back(
         judge(model, options, runCycle(model, samples, start, request, options.estimation)));
   }

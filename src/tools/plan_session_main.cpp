@@ -9,6 +9,7 @@
 
 #include "plan_session_options.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
@@ -96,7 +97,7 @@ void printPlan(const PosePlan& plan) {
     const Eigen::Vector3d& q = pose.joint_position;
     std::printf("%3zu  joints %7.3f %7.3f %7.3f rad  coils", n + 1, q[0], q[1], q[2]);
     for (const std::size_t coil : pose.coils) {
-      std::printf(" %zu", coil);
+      std::printf(" %zu", numberOf(coil));
     }
     std::printf("%s\n", pose.coils.empty() ? " none" : "");
   }

@@ -94,7 +94,7 @@ po::options_description sensorOptions(PosePlanOptions& plan, RawValues& raw) {
 CycleRequest parseCycle(const std::string& text) {
   const std::vector<CycleRequest> cycles = parseCycles(text);
   // "coils" stands for a coil without number.
-  if (cycles.size() != 1 || (cycles.front().cycle == Cycle::kCoil && cycles.front().coil == 0)) {
+  if (cycles.size() != 1 || (cycles.front().cycle == Cycle::kCoil && !cycles.front().coil)) {
     throw ConfigError("--cycle: \"" + text + "\" is not one cycle; see --help.");
   }
   return cycles.front();

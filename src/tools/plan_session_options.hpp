@@ -19,7 +19,7 @@ struct PlanSessionOptions {
   std::optional<std::string> samples_path;  ///< held already, as a sample file
   std::vector<std::string> bags;            ///< the same, as recordings
   std::string ns = "/actuator";
-  CycleRequest cycle{Cycle::kRefine, 0};
+  CycleRequest cycle{Cycle::kRefine};
   PosePlanOptions plan;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };

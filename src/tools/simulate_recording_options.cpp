@@ -10,6 +10,7 @@
 #include <boost/program_options.hpp>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -296,7 +297,7 @@ std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
   SimulateRecordingOptions options;
   RawValues raw;
   raw.seed = options.simulation.seed;
-  raw.main_coil = options.plan.main_coil + 1;
+  raw.main_coil = numberOf(options.plan.main_coil);
   raw.force_bias = raw.torque_bias = raw.unbalance = "0,0,0";
   raw.compression = "lz4";
   raw.dropout_duration = StreamOptions{}.dropout_duration;

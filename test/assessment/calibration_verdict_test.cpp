@@ -48,7 +48,7 @@ CalibrationVerdict verdictOf(const CalibrationSession& session) {
 
 TEST(CalibrationVerdict, NothingWorksWithoutASuccessfulCycle) {
   EXPECT_EQ(verdictOf(sessionWith({}, {})).grade, CalibrationGrade::kFailed);
-  const CalibrationVerdict verdict = verdictOf(sessionWith({}, {{Cycle::kJoint, 0}}));
+  const CalibrationVerdict verdict = verdictOf(sessionWith({}, {{Cycle::kJoint}}));
   EXPECT_EQ(verdict.grade, CalibrationGrade::kFailed);
   EXPECT_NE(stepsOf(verdict).find("capture at least 3 poses"), std::string::npos)
       << stepsOf(verdict);
@@ -57,7 +57,7 @@ TEST(CalibrationVerdict, NothingWorksWithoutASuccessfulCycle) {
 TEST(CalibrationVerdict, CompleteWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
   const std::vector<Sample> samples = sessionSamples();
   const CalibrationVerdict verdict =
-      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}}));
+      verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
   EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
   EXPECT_NE(verdict.sentence.find("held-out samples agree"), std::string::npos) << verdict.sentence;
   EXPECT_NE(verdict.sentence.find("orientation 0."), std::string::npos) << verdict.sentence;
@@ -73,7 +73,7 @@ TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
     }
   }
   const CalibrationVerdict verdict =
-      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}}));
+      verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
   EXPECT_EQ(verdict.grade, CalibrationGrade::kContradicted);
   EXPECT_EQ(verdict.sentence.find("Do not use this calibration yet"), 0U);
   EXPECT_EQ(verdict.next_steps[0].find("Find out why the held-out samples differ"), 0U);
@@ -96,7 +96,7 @@ TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {
     samples.push_back(sample);
   }
   const CalibrationVerdict verdict =
-      verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kPoles, 1}}));
+      verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kPoles, 0}}));
   EXPECT_EQ(verdict.grade, CalibrationGrade::kIncomplete);
   EXPECT_NE(verdict.sentence.find("2 that were asked for are not"), std::string::npos)
       << verdict.sentence;
@@ -109,7 +109,7 @@ TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
   for (Sample& sample : samples) {
     sample.validation = false;
   }
-  const CalibrationVerdict verdict = verdictOf(sessionWith(samples, {{Cycle::kJoint, 0}}));
+  const CalibrationVerdict verdict = verdictOf(sessionWith(samples, {{Cycle::kJoint}}));
   EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
   EXPECT_NE(verdict.sentence.find("9 of 73 parameters"), std::string::npos) << verdict.sentence;
   EXPECT_NE(stepsOf(verdict).find("Call calibrate_poles with coil 1"), std::string::npos)
@@ -119,8 +119,7 @@ TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
 TEST(CalibrationVerdict, NamesRejectedAndIrreplaceableSamples) {
   std::vector<Sample> samples = sessionSamples();
   samples[20].R_stator_rotor = rotationExp({0.1, 0.0, 0.0}) * samples[20].R_stator_rotor;
-  const CalibrationSession session =
-      sessionWith(samples, {{Cycle::kJoint, 0}, {Cycle::kRefine, 0}});
+  const CalibrationSession session = sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}});
   SampleInfluence influence;
   influence.id = 12;
   influence.irreplaceable = true;
@@ -137,7 +136,7 @@ TEST(CalibrationVerdict, PrefersTheEffectsThatExplainBest) {
   ModelFit fewer = all;
   fewer.effects = "without torque_bias";
   fewer.bic = 100.0;
-  const CalibrationSession session = sessionWith(sessionSamples(), {{Cycle::kJoint, 0}});
+  const CalibrationSession session = sessionWith(sessionSamples(), {{Cycle::kJoint}});
   EXPECT_NE(stepsOf(judgeCalibration(session, {}, {all, fewer})).find("\"without torque_bias\""),
             std::string::npos);
   EXPECT_EQ(stepsOf(judgeCalibration(session, {}, {all})).find("effects"), std::string::npos);

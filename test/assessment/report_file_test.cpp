@@ -21,8 +21,7 @@ CalibrationSession calibratedSession(int hold_out_every) {
       {scenarios::paperNominal()},
       scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator),
       config);
-  for (const CycleRequest& request :
-       {CycleRequest{Cycle::kJoint, 0}, CycleRequest{Cycle::kRefine, 0}}) {
+  for (const CycleRequest& request : {CycleRequest{Cycle::kJoint}, CycleRequest{Cycle::kRefine}}) {
     session.run(request);
   }
   return session;

@@ -23,9 +23,9 @@ CalibrationSession refined(const std::vector<Sample>& samples) {
   CalibrationConfig config;
   config.estimation.false_alarm_probability = 1e-12;
   CalibrationSession session({scenarios::paperNominal()}, samples, config);
-  session.run({Cycle::kJoint, 0});
-  session.run({Cycle::kPoles, 1});
-  session.run({Cycle::kRefine, 0});
+  session.run({Cycle::kJoint});
+  session.run({Cycle::kPoles, 0});
+  session.run({Cycle::kRefine});
   return session;
 }
 
@@ -100,7 +100,7 @@ TEST(SampleInfluence, NamesTheSampleThatNothingReplaces) {
 
 TEST(SampleInfluence, AFailedCycleHasNone) {
   CalibrationSession session({scenarios::paperNominal()}, {}, {});
-  session.run({Cycle::kRefine, 0});
+  session.run({Cycle::kRefine});
   EXPECT_TRUE(influencesOf(session).empty());
 }
 

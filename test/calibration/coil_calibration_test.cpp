@@ -8,7 +8,7 @@ namespace sac {
 namespace {
 
 constexpr double kNoise = 5e-4;  // uniform, per component [N·m]
-constexpr CycleRequest kCoil2{Cycle::kCoil, 2};
+constexpr CycleRequest kCoil2{Cycle::kCoil, 1};
 
 class CoilCalibration : public testing::Test {
  protected:

@@ -11,7 +11,7 @@ namespace sac {
 namespace {
 
 constexpr double kNoise = 1e-3;  // uniform, per component [rad]
-constexpr CycleRequest kJointCycle{Cycle::kJoint, 0};
+constexpr CycleRequest kJointCycle{Cycle::kJoint};
 
 class JointCalibration : public testing::Test {
  protected:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNoise = 5e-4;  // uniform, per component [N·m]
-constexpr CycleRequest kPolesCycle{Cycle::kPoles, 1};
+constexpr CycleRequest kPolesCycle{Cycle::kPoles, 0};
 
 class PoleCalibration : public testing::Test {
  protected:
@@ -175,7 +175,7 @@ TEST_F(PoleCalibration, UsesOnlySamplesWithItsCoilAlone) {
 TEST_F(PoleCalibration, RefusesWhatItCannotDo) {
   EXPECT_NE(run({}).report.message.find("No sample has a torque with only coil 1"),
             std::string::npos);
-  const CycleOutcome no_coil = runCycle(model_, {}, joints_known_, {Cycle::kPoles, 25}, options_);
+  const CycleOutcome no_coil = runCycle(model_, {}, joints_known_, {Cycle::kPoles, 24}, options_);
   EXPECT_NE(no_coil.report.message.find("Coil 25 does not exist"), std::string::npos);
 
   Actuator joints_only = scenarios::paperNominal();

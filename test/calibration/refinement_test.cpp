@@ -19,7 +19,7 @@ class Refinement : public testing::Test {
   /// Poles and coils as of a session's first samples; the refinement starts from the joint cycle.
   CycleOutcome refine(const std::vector<Sample>& samples) const {
     CalibrationState state = nominalState(space_, ManufacturingTolerance());
-    for (const CycleRequest& request : {CycleRequest{Cycle::kJoint, 0}, {Cycle::kPoles, 1}}) {
+    for (const CycleRequest& request : {CycleRequest{Cycle::kJoint}, {Cycle::kPoles, 0}}) {
       const CycleOutcome outcome = runCycle(model_, samples, state, request, options_);
       EXPECT_TRUE(outcome.report.success) << outcome.report.message;
       state = outcome.state;
@@ -65,7 +65,7 @@ class Refinement : public testing::Test {
     EXPECT_LE(everything.coverage(), 0.96);
   }
 
-  static constexpr CycleRequest kRefine{Cycle::kRefine, 0};
+  static constexpr CycleRequest kRefine{Cycle::kRefine};
   const CalibrationModel model_{ParameterSpace(scenarios::paperNominal())};
   const ParameterSpace& space_ = model_.space();
   const EstimationOptions options_{};

@@ -35,13 +35,13 @@ CalibrationSession paperSession() {
 TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
   CalibrationSession session = paperSession();
   EXPECT_EQ(nextStep(session), "Call calibrate_joint: 10 samples have an orientation.");
-  ASSERT_TRUE(session.run({Cycle::kJoint, 0}).success);
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
   EXPECT_EQ(nextStep(session),
             "Call calibrate_poles with coil 1: 30 samples have a torque of this coil alone.");
-  ASSERT_TRUE(session.run({Cycle::kPoles, 1}).success);
-  for (std::size_t coil = 2; coil <= 24; ++coil) {
+  ASSERT_TRUE(session.run({Cycle::kPoles, 0}).success);
+  for (std::size_t coil = 1; coil < 24; ++coil) {
     EXPECT_EQ(nextStep(session),
-              "Call calibrate_coil with coil " + std::to_string(coil) +
+              "Call calibrate_coil with coil " + std::to_string(coil + 1) +
                   ": 4 samples have a torque of this coil alone.");
     ASSERT_TRUE(session.run({Cycle::kCoil, coil}).success);
   }
@@ -64,7 +64,7 @@ TEST(SessionGuidance, CountsWhatIsMissing) {
       scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
   samples.resize(22);
   session = CalibrationSession({scenarios::paperNominal()}, samples, {});
-  session.run({Cycle::kJoint, 0});
+  session.run({Cycle::kJoint});
   EXPECT_NE(nextStep(session).find("Excite coil 1 alone"), std::string::npos);
   EXPECT_NE(nextStep(session).find("12 of 24 are held"), std::string::npos);
 }
@@ -101,7 +101,7 @@ TEST(SessionGuidance, AJointAloneIsDoneAfterItsCycle) {
       joint_only, scenarios::randomPoses(12, 0.3, generator), 1e-3, 1e-3, generator);
   CalibrationSession session({joint_only}, samples, {});
   EXPECT_EQ(nextStep(session), "Call calibrate_joint: 12 samples have an orientation.");
-  ASSERT_TRUE(session.run({Cycle::kJoint, 0}).success);
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
   EXPECT_NE(nextStep(session).find("validate"), std::string::npos);
 }
 

@@ -56,8 +56,7 @@ struct Trial {
       coordinate = error(generator);
     }
     const Actuator actuator = model.space().actuatorAt(truth);
-    outcome =
-        runCycle(model, torquesOnly(actuator, generator), prior, {Cycle::kRefine, 0}, options());
+    outcome = runCycle(model, torquesOnly(actuator, generator), prior, {Cycle::kRefine}, options());
   }
 
   static EstimationOptions options() { return {}; }
@@ -156,7 +155,7 @@ TEST(TorqueOnlyRefinement, OneCoilAloneTellsThePoles) {
                                scenarios::uniformStddev(5e-4),
                                generator);
   const CycleOutcome outcome =
-      runCycle(model, samples, priorOf(model.space()), {Cycle::kRefine, 0}, {});
+      runCycle(model, samples, priorOf(model.space()), {Cycle::kRefine}, {});
   ASSERT_TRUE(outcome.report.success) << outcome.report.message;
   EXPECT_FALSE(outcome.report.open_directions.empty()) << outcome.report.message;
   for (const ParameterEstimate& estimate : outcome.report.estimates) {
@@ -190,7 +189,7 @@ TEST(TorqueOnlyRefinement, AnUnseenPoleIsHeldByItself) {
           }),
       samples.end());
   const CycleOutcome outcome =
-      runCycle(model, samples, priorOf(model.space()), {Cycle::kRefine, 0}, {});
+      runCycle(model, samples, priorOf(model.space()), {Cycle::kRefine}, {});
   ASSERT_TRUE(outcome.report.success) << outcome.report.message;
   EXPECT_EQ(outcome.report.open_directions.size(), 3U) << outcome.report.message;
   EXPECT_NE(outcome.report.message.find("Pole 5 is seen by no sample"), std::string::npos)

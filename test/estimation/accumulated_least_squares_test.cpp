@@ -57,13 +57,13 @@ class AccumulatedLeastSquares : public ::testing::Test {
 
 TEST_F(AccumulatedLeastSquares, FindsTheMinimumThatCeresFinds) {
   for (const Cycle cycle : {Cycle::kJoint, Cycle::kRefine}) {
-    prepare({cycle, 0}, 1);
+    prepare({cycle}, 1);
     expectTheSameMinimum(1e-10);
   }
 }
 
 TEST_F(AccumulatedLeastSquares, WeighsMisfitsByTheLoss) {
-  prepare({Cycle::kJoint, 0}, 2);
+  prepare({Cycle::kJoint}, 2);
   samples_[3].R_stator_rotor = samples_[4].R_stator_rotor;
   for (const Loss loss : {Loss::kHuber, Loss::kCauchy}) {
     input_.loss = loss;
@@ -73,7 +73,7 @@ TEST_F(AccumulatedLeastSquares, WeighsMisfitsByTheLoss) {
 }
 
 TEST_F(AccumulatedLeastSquares, LeavesOutWhatIsNotActiveOrFree) {
-  prepare({Cycle::kRefine, 0}, 3);
+  prepare({Cycle::kRefine}, 3);
   samples_[20].torque *= 5.0;
   for (std::size_t n = 0; n < problem_.observations.size(); ++n) {
     input_.active[n] = problem_.observations[n].sample != 20;
@@ -84,7 +84,7 @@ TEST_F(AccumulatedLeastSquares, LeavesOutWhatIsNotActiveOrFree) {
 }
 
 TEST_F(AccumulatedLeastSquares, CountsThePrior) {
-  prepare({Cycle::kRefine, 0}, 4);
+  prepare({Cycle::kRefine}, 4);
   input_.prior.directions = Eigen::MatrixXd::Zero(model_.space().size(), 2);
   input_.prior.directions(0, 0) = 1.0;
   input_.prior.directions(30, 1) = 1.0;
@@ -95,7 +95,7 @@ TEST_F(AccumulatedLeastSquares, CountsThePrior) {
 }
 
 TEST_F(AccumulatedLeastSquares, StopsAtTheLimitOfIterations) {
-  prepare({Cycle::kRefine, 0}, 5);
+  prepare({Cycle::kRefine}, 5);
   input_.max_iterations = 2;
   const LeastSquaresResult result = solveAccumulatedLeastSquares(input_);
   EXPECT_EQ(result.termination, Termination::kIterationLimit);

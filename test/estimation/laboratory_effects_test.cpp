@@ -86,9 +86,9 @@ class EffectTrials {
            const std::vector<Sample>& samples,
            const std::vector<double>& values) {
     CalibrationSession session({scenarios::paperNominal()}, samples, config_);
-    session.run({Cycle::kJoint, 0});
-    session.run({Cycle::kPoles, 1});
-    const CycleReport refined = session.run({Cycle::kRefine, 0});
+    session.run({Cycle::kJoint});
+    session.run({Cycle::kPoles, 0});
+    const CycleReport refined = session.run({Cycle::kRefine});
     chi_square_ += refined.reduced_chi_square;
     ++trials_;
     if (!refined.success) {
@@ -101,7 +101,7 @@ class EffectTrials {
     for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
       truth[space.effect() + e] = values[static_cast<std::size_t>(e)] / space.effects().unit(e);
     }
-    const CycleRequest refine{Cycle::kRefine, 0};
+    const CycleRequest refine{Cycle::kRefine};
     const std::vector<Eigen::Index> free =
         selectCoordinates(space, samples, refine, config_.estimation);
     const Eigen::MatrixXd bound = cramerRaoBound(session.model(), samples, refine, free, truth);
@@ -306,8 +306,8 @@ TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
   CalibrationConfig config;
   config.effects = only({Effect::kTiltCrossAxis});
   CalibrationSession session({nominal}, samples, config);
-  session.run({Cycle::kJoint, 0});
-  const CycleReport& report = session.run({Cycle::kRefine, 0});
+  session.run({Cycle::kJoint});
+  const CycleReport& report = session.run({Cycle::kRefine});
   ASSERT_TRUE(report.success) << report.message;
   EXPECT_LT(report.reduced_chi_square, 1.5);
   const ParameterSpace& space = session.model().space();
@@ -355,9 +355,9 @@ TEST(LaboratoryEffects, ATrackerRegistrationThatNothingTellsIsRefusedByName) {
   config.tolerance.effect = 1e-3;
   CalibrationSession session(
       {scenarios::paperNominal()}, sessionIn({}, madeUnit(generator), generator), config);
-  session.run({Cycle::kJoint, 0});
-  session.run({Cycle::kPoles, 1});
-  const CycleReport& report = session.run({Cycle::kRefine, 0});
+  session.run({Cycle::kJoint});
+  session.run({Cycle::kPoles, 0});
+  const CycleReport& report = session.run({Cycle::kRefine});
   ASSERT_TRUE(report.success) << report.message;
   EXPECT_NE(report.message.find("switch off effects.tracker_registration"), std::string::npos)
       << report.message;
@@ -380,9 +380,9 @@ TEST(LaboratoryEffects, AreInTheCalibratedDescription) {
   config.effects = only({Effect::kTorqueBias, Effect::kStrengthScale});
   CalibrationSession session(
       {scenarios::paperNominal()}, sessionIn(laboratory, made, generator), config);
-  session.run({Cycle::kJoint, 0});
-  session.run({Cycle::kPoles, 1});
-  ASSERT_TRUE(session.run({Cycle::kRefine, 0}).success);
+  session.run({Cycle::kJoint});
+  session.run({Cycle::kPoles, 0});
+  ASSERT_TRUE(session.run({Cycle::kRefine}).success);
   const CalibratedDescription result = session.description({"2024-05-31T12:00:00Z", {}, "0.1.0"});
   EXPECT_NEAR(result.actuator.poles[4].gain, 0.97, 1e-3);
   ASSERT_EQ(result.calibration->effects.size(), 4U);

@@ -85,7 +85,7 @@ TEST(TwoAxisPositioner, IsFittedAndItsMissingJointIsNamed) {
   ASSERT_EQ(samples.size(), 105u);
   const CalibrationState nominal = nominalState(model.space(), ManufacturingTolerance());
   const CycleOutcome outcome =
-      runCycle(model, samples, nominal, {Cycle::kJoint, 0}, EstimationOptions());
+      runCycle(model, samples, nominal, {Cycle::kJoint}, EstimationOptions());
   ASSERT_TRUE(outcome.report.success) << outcome.report.message;
   EXPECT_EQ(outcome.report.samples_used, 105u);
   double squares = 0.0;

@@ -45,18 +45,15 @@ class PosePlanner : public ::testing::Test {
   Eigen::VectorXd boundOf(const std::vector<Sample>& samples) const {
     const Eigen::VectorXd& x = problem_.state.belief.x;
     return model_.space().reportedStddevs(
-        x, cramerRaoBound(model_, samples, {Cycle::kRefine, 0}, allCoordinates(), x));
+        x, cramerRaoBound(model_, samples, {Cycle::kRefine}, allCoordinates(), x));
   }
 
   /// The samples that a plan asks for.
   std::vector<Sample> samplesOf(const PosePlan& plan) const {
     std::vector<Sample> samples;
     for (const PlannedPose& pose : plan.poses) {
-      std::vector<std::size_t> coils = pose.coils;
-      for (std::size_t& coil : coils) {
-        --coil;
-      }
-      for (const Sample& sample : visitSamples(problem_, options_, pose.joint_position, coils)) {
+      for (const Sample& sample :
+           visitSamples(problem_, options_, pose.joint_position, pose.coils)) {
         samples.push_back(sample);
         predictMeasurements(model_, problem_.state.belief.x, samples.back());
       }
@@ -133,7 +130,7 @@ TEST_F(PosePlanner, StaysInsideTheLimitsAndAwayFromUncertainAngles) {
     EXPECT_LE(pose.joint_position[2], 2.5);
     EXPECT_LE(pose.coils.size(), 4U);
     for (const std::size_t coil : pose.coils) {
-      EXPECT_EQ(sampler.grade(pose.joint_position, coil - 1, std::nullopt), PoseGrade::kClear);
+      EXPECT_EQ(sampler.grade(pose.joint_position, coil, std::nullopt), PoseGrade::kClear);
     }
     const Eigen::Matrix3d R = rotorOrientation(joints, pose.joint_position);
     for (std::size_t m = 0; m < n; ++m) {
@@ -188,7 +185,7 @@ TEST_F(PosePlanner, MakesUpForAPoleThatNoSampleSees) {
   // Without the torques that coils exert on pole 3 it is not identified.
   const Actuator belief = model_.space().actuatorAt(problem_.state.belief.x);
   const Eigen::MatrixXd held_covariance =
-      cramerRaoBound(model_, held_, {Cycle::kRefine, 0}, allCoordinates(), problem_.state.belief.x);
+      cramerRaoBound(model_, held_, {Cycle::kRefine}, allCoordinates(), problem_.state.belief.x);
   ASSERT_TRUE(held_covariance.allFinite());
   held_.erase(std::remove_if(held_.begin(),
                              held_.end(),
@@ -213,7 +210,7 @@ TEST_F(PosePlanner, MakesUpForAPoleThatNoSampleSees) {
 }
 
 TEST_F(PosePlanner, PlansForOneCycle) {
-  problem_.request = {Cycle::kJoint, 0};
+  problem_.request = {Cycle::kJoint};
   PosePlan plan = planPoses(problem_, options_);
   EXPECT_TRUE(plan.success);
   EXPECT_EQ(plan.expected.size(), 9U);
@@ -222,19 +219,19 @@ TEST_F(PosePlanner, PlansForOneCycle) {
   // The orientation is known: what remains is the pole angles and those of the coil.
   const Eigen::Index joints = model_.space().pole(0);
   problem_.state.belief.covariance.topLeftCorner(joints, joints) *= 1e-6;
-  problem_.request = {Cycle::kPoles, 3};
+  problem_.request = {Cycle::kPoles, 2};
   options_.max_poses = 12;
   plan = planPoses(problem_, options_);
   EXPECT_TRUE(isAllObservable(plan)) << plan.message;
   EXPECT_EQ(plan.expected.size(), 18U);
   EXPECT_EQ(plan.orientation_samples, 0U);
   for (const PlannedPose& pose : plan.poses) {
-    EXPECT_EQ(pose.coils, std::vector<std::size_t>{3});
+    EXPECT_EQ(pose.coils, std::vector<std::size_t>{2});
   }
 
   std::fill(problem_.state.identified.begin(), problem_.state.identified.end(), true);
   problem_.state.belief.covariance *= 1e-6;
-  problem_.request = {Cycle::kCoil, 24};
+  problem_.request = {Cycle::kCoil, 23};
   plan = planPoses(problem_, options_);
   EXPECT_TRUE(isAllObservable(plan)) << plan.message;
   EXPECT_EQ(namesOf(plan.expected), (std::vector<std::string>{"coil_24/polar", "coil_24/azimuth"}));
@@ -243,7 +240,7 @@ TEST_F(PosePlanner, PlansForOneCycle) {
 TEST_F(PosePlanner, OptimisesTheVolumeOfTheUncertaintyOnRequest) {
   const auto log_volume = [&](const PosePlan& plan) {
     const Eigen::MatrixXd covariance = cramerRaoBound(
-        model_, samplesOf(plan), {Cycle::kRefine, 0}, allCoordinates(), problem_.state.belief.x);
+        model_, samplesOf(plan), {Cycle::kRefine}, allCoordinates(), problem_.state.belief.x);
     return covariance.ldlt().vectorD().array().log().sum();
   };
   const PosePlan smallest_worst = planPoses(problem_, options_);
@@ -287,7 +284,7 @@ TEST_F(PosePlanner, PlansJointsOfAnActuatorWithoutTorqueModel) {
   EXPECT_TRUE(plan.success);
   EXPECT_EQ(plan.expected.size(), 9U);
   EXPECT_TRUE(isAllObservable(plan));
-  problem_.request = {Cycle::kPoles, 1};
+  problem_.request = {Cycle::kPoles, 0};
   EXPECT_THROW(planPoses(problem_, options_), ConfigError);
 }
 
@@ -306,7 +303,7 @@ TEST_F(PosePlanner, RefusesOptionsOutOfRange) {
   refuses([](PosePlanOptions& options) { options.spin_minimum = 4.0; });
   refuses([](PosePlanOptions& options) { options.current = 0.01; });
   refuses([](PosePlanOptions& options) { options.orientation_stddev = 0.0; });
-  problem_.request = {Cycle::kCoil, 25};
+  problem_.request = {Cycle::kCoil, 24};
   EXPECT_THROW(planPoses(problem_, options_), ConfigError);
 }
 

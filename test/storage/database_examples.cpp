@@ -122,7 +122,7 @@ CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters
   Numbers numbers(seed);
   CycleReport report;
   report.cycle = Cycle::kCoil;
-  report.coil = 3;
+  report.coil = 2;
   report.success = true;
   report.message = "Coil 3: \"η\" and 'ϕ' identified; refine next.";
   report.samples_used = samples;

@@ -50,8 +50,8 @@ TEST_F(LiveSessionTest, GoesOnWhereItEnded) {
   {
     LiveSession session = open();
     addAll(session);
-    ASSERT_TRUE(session.run({Cycle::kJoint, 0}, kDate).success);
-    ASSERT_TRUE(session.run({Cycle::kPoles, 1}, kDate).success);
+    ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+    ASSERT_TRUE(session.run({Cycle::kPoles, 0}, kDate).success);
     x = session.calibration().state().belief.x;
   }
   LiveSession session = open();
@@ -87,7 +87,7 @@ TEST_F(LiveSessionTest, ASampleThatCannotBeUsedIsNotStored) {
 TEST_F(LiveSessionTest, AFailedCycleIsStoredAndChangesNothing) {
   LiveSession session = open();
   addAll(session);
-  EXPECT_FALSE(session.run({Cycle::kCoil, 5}, kDate).success);
+  EXPECT_FALSE(session.run({Cycle::kCoil, 4}, kDate).success);
   EXPECT_EQ(session.revision().number, 0U);
   EXPECT_TRUE(session.calibration().state().belief.x.isZero(0.0));
   EXPECT_EQ(session.lastReport()->cycle, Cycle::kCoil);
@@ -97,7 +97,7 @@ TEST_F(LiveSessionTest, AFailedCycleIsStoredAndChangesNothing) {
 TEST_F(LiveSessionTest, ResetAndRestoreAreRevisionsThemselves) {
   LiveSession session = open();
   addAll(session);
-  session.run({Cycle::kJoint, 0}, kDate);
+  session.run({Cycle::kJoint}, kDate);
   const Eigen::VectorXd identified = session.calibration().state().belief.x;
   session.reset(kDate);
   EXPECT_EQ(session.revision().number, 2U);
@@ -118,19 +118,19 @@ TEST_F(LiveSessionTest, ResetAndRestoreAreRevisionsThemselves) {
 TEST_F(LiveSessionTest, OnlyARefinementCountsAsRefined) {
   LiveSession session = open();
   addAll(session);
-  session.run({Cycle::kJoint, 0}, kDate);
-  session.run({Cycle::kPoles, 1}, kDate);
+  session.run({Cycle::kJoint}, kDate);
+  session.run({Cycle::kPoles, 0}, kDate);
   EXPECT_FALSE(session.progress().refined);
-  ASSERT_TRUE(session.run({Cycle::kRefine, 0}, kDate).success);
+  ASSERT_TRUE(session.run({Cycle::kRefine}, kDate).success);
   EXPECT_TRUE(session.progress().refined);
-  session.run({Cycle::kJoint, 0}, kDate);
+  session.run({Cycle::kJoint}, kDate);
   EXPECT_FALSE(session.progress().refined);
 }
 
 TEST_F(LiveSessionTest, DescriptionCarriesItsRevision) {
   LiveSession session = open();
   addAll(session);
-  session.run({Cycle::kJoint, 0}, kDate);
+  session.run({Cycle::kJoint}, kDate);
   const CalibratedDescription description = session.description(kDate);
   EXPECT_EQ(description.calibration->revision, 1U);
   EXPECT_EQ(description.calibration->software, "0.1.0");
@@ -146,7 +146,7 @@ TEST_F(LiveSessionTest, ReportIsOfTheRevisionInForceAndTheSamplesInUse) {
   {
     LiveSession session = open();
     addAll(session);
-    session.run({Cycle::kJoint, 0}, kDate);
+    session.run({Cycle::kJoint}, kDate);
     EXPECT_TRUE(holds(session, "  revision: 1\n"));
     EXPECT_TRUE(holds(session, "    - {id: 40, joint_position"));
     session.removeSample(40, kDate);

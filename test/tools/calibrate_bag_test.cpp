@@ -120,7 +120,7 @@ TEST_F(CalibrateBag, FindsTheTruthOfAnEmulatedSession) {
   EXPECT_LT(result.stddevs.poles.at(7).azimuth.value(), 5e-4);
   EXPECT_LT(result.stddevs.coils.at(2).polar.value(), 5e-4);
   ASSERT_EQ(result.calibration->cycles.size(), 5U);
-  EXPECT_EQ(result.calibration->cycles[3].coil, 3U);
+  EXPECT_EQ(result.calibration->cycles[3].coil, 2U);
   EXPECT_EQ(result.calibration->cycles[4].cycle, "refine");
   EXPECT_TRUE(result.calibration->unidentified.empty());
 

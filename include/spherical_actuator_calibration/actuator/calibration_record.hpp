@@ -38,8 +38,8 @@ struct RecordingSource {
 
 /// One cycle of a calibration, in short (message CalibrationReport).
 struct CycleRecord {
-  std::string cycle;       ///< joint, poles, coil or refine
-  std::uint32_t coil = 0;  ///< excited coil, counted from 1; 0 where the cycle has none
+  std::string cycle;                               ///< joint, poles, coil or refine
+  std::optional<std::size_t> coil = std::nullopt;  ///< excited coil; none where the cycle has none
   std::uint32_t samples_used = 0;
   std::uint32_t samples_rejected = 0;
   double error_before = 0.0;  ///< ε₁ or ε₂ before the first iteration, in `unit`

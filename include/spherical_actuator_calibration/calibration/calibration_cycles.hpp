@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
@@ -14,7 +15,7 @@ namespace sac {
 /// A cycle as an operator asks for it.
 struct CycleRequest {
   Cycle cycle = Cycle::kJoint;
-  std::size_t coil = 0;  ///< for kPoles and kCoil: the excited coil, counted from 1; else 0
+  std::optional<std::size_t> coil = std::nullopt;  ///< the excited one, for kPoles and kCoil only
 };
 
 /// Observations that serve a cycle: held-out samples never do. For kPoles and kCoil those with only

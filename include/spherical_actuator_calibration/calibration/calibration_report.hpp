@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ struct SampleResidual {
 /// What a cycle tells (message CalibrationReport).
 struct CycleReport {
   Cycle cycle = Cycle::kJoint;
-  std::size_t coil = 0;  ///< excited coil, counted from 1; 0 where the cycle has none
+  std::optional<std::size_t> coil = std::nullopt;  ///< excited coil; none where the cycle has none
   bool success = false;
   std::string message;  ///< a sentence or two that an operator can act on
   std::uint32_t samples_used = 0;

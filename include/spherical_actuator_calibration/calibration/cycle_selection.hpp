@@ -11,11 +11,11 @@
 namespace sac {
 
 /// Cycles as an operator writes them, "joint,poles:1,coil:3,coils,refine", in this order. `coils`
-/// becomes a kCoil with coil 0: see expandCoils(). Throws ConfigError that names the word which is
-/// not understood and the words that are.
+/// becomes a kCoil without a coil: see expandCoils(). Throws ConfigError that names the word which
+/// is not understood and the words that are.
 std::vector<CycleRequest> parseCycles(const std::string& text);
 
-/// Replaces each kCoil with coil 0 by one request for every coil that has samples and that no
+/// Replaces each kCoil without a coil by one request for every coil that has samples and that no
 /// request before identifies.
 std::vector<CycleRequest> expandCoils(const std::vector<CycleRequest>& requests,
                                       const CalibrationModel& model,

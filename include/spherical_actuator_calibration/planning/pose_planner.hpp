@@ -65,7 +65,7 @@ void validate(const PosePlanOptions& options, const PlanningProblem& problem);
 /// One pose to measure at, and what to excite there (message PlannedPose).
 struct PlannedPose {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
-  std::vector<std::size_t> coils;  ///< in turn, counted from 1; none: orientation only
+  std::vector<std::size_t> coils;                            ///< in turn; none: orientation only
 };
 
 /// A session and what it will tell.

@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
@@ -49,7 +50,7 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   for (const Cycle cycle : {Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine}) {
     const bool needs_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
     if (request.cycle == cycleName(cycle) || (request.cycle.empty() && cycle == Cycle::kRefine)) {
-      return {cycle, needs_coil ? request.coil : 0U};
+      return {cycle, needs_coil ? indexOf(request.coil) : std::nullopt};
     }
   }
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
@@ -216,25 +217,25 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
 
 bool CalibrationNode::calibrateJoint(msg::Calibrate::Request& /*request*/,
                                      msg::Calibrate::Response& response) {
-  run({Cycle::kJoint, 0}, response);
+  run({Cycle::kJoint}, response);
   return true;
 }
 
 bool CalibrationNode::calibratePoles(msg::Calibrate::Request& request,
                                      msg::Calibrate::Response& response) {
-  run({Cycle::kPoles, request.coil}, response);
+  run({Cycle::kPoles, indexOf(request.coil)}, response);
   return true;
 }
 
 bool CalibrationNode::calibrateCoil(msg::Calibrate::Request& request,
                                     msg::Calibrate::Response& response) {
-  run({Cycle::kCoil, request.coil}, response);
+  run({Cycle::kCoil, indexOf(request.coil)}, response);
   return true;
 }
 
 bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
                              msg::Calibrate::Response& response) {
-  run({Cycle::kRefine, 0}, response);
+  run({Cycle::kRefine}, response);
   return true;
 }
 

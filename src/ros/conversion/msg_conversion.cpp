@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
@@ -206,7 +207,7 @@ std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
 msg::CalibrationReport reportToRos(const CycleReport& report) {
   msg::CalibrationReport message;
   message.cycle = cycleName(report.cycle);
-  message.coil = static_cast<std::uint32_t>(report.coil);
+  message.coil = numberOrZero(report.coil);
   message.success = static_cast<std::uint8_t>(report.success);
   message.message = report.message;
   message.samples_used = report.samples_used;
@@ -253,7 +254,9 @@ msg::PlanPoses::Response planToRos(const PosePlan& plan) {
     for (std::size_t k = 0; k < kJoints; ++k) {
       item.joint_position[k] = pose.joint_position[static_cast<Eigen::Index>(k)];
     }
-    item.coils.assign(pose.coils.begin(), pose.coils.end());
+    for (const std::size_t coil : pose.coils) {
+      item.coils.push_back(static_cast<std::uint32_t>(numberOf(coil)));
+    }
   }
   std::transform(plan.expected.begin(),
                  plan.expected.end(),

@@ -157,7 +157,7 @@ TEST(MsgConversion, ParametersTellTheActuator) {
 TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
   CycleReport report;
   report.cycle = Cycle::kPoles;
-  report.coil = 3;
+  report.coil = 2;
   report.success = true;
   report.message = "Done.";
   report.error_history = {2.0, 1.0};
