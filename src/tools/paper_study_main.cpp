@@ -55,7 +55,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
           known,
           "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
           "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
-          "scripts/paper_study draws tables and figures of it.\n")) {
+          "study/paper_study draws tables and figures of it.\n")) {
     return std::nullopt;
   }
   return options;

@@ -25,7 +25,7 @@ class PaperStudy(unittest.TestCase):
         cls.run_study("--output", str(cls.results))
         subprocess.run(
             [
-                SOURCE / "scripts/render_paper_study",
+                SOURCE / "study/render_paper_study",
                 cls.results,
                 SOURCE / "config/paper/published_values.yaml",
                 cls.page,

@@ -2,18 +2,13 @@
 """What a guided session does next, and what it tells, without ROS."""
 
 import io
-import os
-import sys
 import unittest
 from types import SimpleNamespace
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "scripts"))
-
-# pylint: disable=wrong-import-position
-from session_guide import progress
-from session_guide.options import OptionError, Options, parse
-from session_guide.progress import Measured, Pose, Progress
-from session_guide.terminal import Terminal
+from spherical_actuator_calibration.session_guide import progress
+from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
+from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
+from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 
 class ExcitedCoil(unittest.TestCase):

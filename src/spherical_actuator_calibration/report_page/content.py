@@ -3,8 +3,8 @@
 import math
 import re
 
-from report_page import figures
-from report_page.numbers import change_of, plus_minus, signed, significant, with_unit
+from . import figures
+from .numbers import change_of, plus_minus, signed, significant, with_unit
 
 GRADES = {
     "complete": "Complete",

@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402: the backend comes first
 from matplotlib.patches import Rectangle  # noqa: E402
 
-from report_page.numbers import SHOWN, significant, with_unit  # noqa: E402
+from .numbers import SHOWN, significant, with_unit  # noqa: E402
 
 SIZE = (4.7, 3.0)  # [inch]
 INK = "#1f2933"

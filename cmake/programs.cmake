@@ -1,0 +1,16 @@
+# Programs that are installed as they are: what users run beside the nodes and tools.
+# Their Python package is src/spherical_actuator_calibration; setup.py and catkin_python_setup() install it.
+
+install(PROGRAMS scripts/record_session
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION}
+)
+catkin_install_python(
+  PROGRAMS
+    scripts/guided_session
+    scripts/level_1_by_coils
+    scripts/plot_study
+    scripts/plot_tracking
+    scripts/render_report
+    scripts/track_orientation
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION}
+)

@@ -1,1 +1,0 @@
-"""Turning the rotor by its own coils, through the orientation controller. See ../track_orientation."""

@@ -1,0 +1,1 @@
+"""What the programs of scripts/ are made of. Messages and services are beside it, in `msg` and `srv`."""
