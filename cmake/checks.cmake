@@ -17,10 +17,15 @@ add_check(changelog)
 add_check(clang_tidy ${PROJECT_BINARY_DIR})
 add_check(cppcheck ${PROJECT_BINARY_DIR})
 add_check(format)
-add_check(includes)
 add_check(launch)
 add_check(messages)
+add_check(rooms)
 add_check(shell)
 add_check(xml)
 # It takes minutes after a large change: it starts first, on every processor, and is nice to the rest.
 set_tests_properties(check.clang_tidy PROPERTIES COST 10 TIMEOUT 3600)
+
+# That a check fails when it must: test/dev/check_<name>_test.py.
+add_test(NAME check.rooms_test
+  COMMAND ${PYTHON_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/dev/check_rooms_test.py)
+set_tests_properties(check.rooms_test PROPERTIES LABELS check)

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""dev/check_rooms accepts a small house in order, and names every kind of disorder that is put into it."""
+
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+INCLUDE = "include/spherical_actuator_calibration"
+
+
+def include(header):
+    return f'#include "spherical_actuator_calibration/{header}"\n'
+
+
+class CheckRooms(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.write(f"{INCLUDE}/base/angle.hpp", "#include <cmath>\nint angle();\n")
+        self.write("src/base/angle.cpp", include("base/angle.hpp") + '#include "turns.hpp"\n')
+        self.write("src/base/turns.hpp", "int turns();\n")
+        for room in ("streams", "estimation", "planning", "control", "storage", "tools"):
+            self.write(f"src/{room}/rest.cpp", 10 * "int a();\n")
+        self.write(f"{INCLUDE}/actuator/coil.hpp", include("base/angle.hpp"))
+        self.write("src/actuator/coil.cpp", include("actuator/coil.hpp"))
+        self.write("src/ros/node/coil_node.cpp", include("actuator/coil.hpp") + "#include <ros/ros.h>\n")
+        self.write("test/base/angle_test.cpp", include("base/angle.hpp"))
+        self.write("scripts/turn", "#!/usr/bin/python3\ndef turn():\n    return 1\n")
+        self.write("CMakeLists.txt", "project(house)\n")
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def complaints(self):
+        command = [ROOT / "dev" / "check_rooms", self.root]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 1 if result.stderr else 0, result.stderr)
+        return result.stderr.splitlines()
+
+    def expect_one(self, *parts):
+        """Exactly one complaint, with these parts."""
+        complaints = self.complaints()
+        self.assertEqual(len(complaints), 1, complaints)
+        for part in parts:
+            self.assertIn(part, complaints[0])
+
+    def test_accepts_a_house_in_order(self):
+        self.assertEqual(self.complaints(), [])
+
+    def test_names_an_include_against_the_order(self):
+        self.write("src/base/wire.cpp", include("actuator/coil.hpp"))
+        self.expect_one(f"src/base/wire.cpp: base must not include {INCLUDE}/actuator/coil.hpp: actuator comes after it")
+
+    def test_names_an_internal_header_of_a_later_room(self):
+        self.write("src/actuator/winding.hpp", "")
+        self.write("src/base/wire.cpp", '#include "../actuator/winding.hpp"\n')
+        self.expect_one("src/base/wire.cpp: base must not include src/actuator/winding.hpp")
+
+    def test_names_a_circle_of_files_through_their_sources(self):
+        self.write(f"{INCLUDE}/base/angle.hpp", include("base/sine.hpp"))
+        self.write(f"{INCLUDE}/base/sine.hpp", "")
+        self.write("src/base/sine.cpp", include("base/sine.hpp") + include("base/angle.hpp"))
+        self.expect_one("circle of files: base/angle -> base/sine -> base/angle")
+
+    def test_names_a_folder_that_is_no_room(self):
+        self.write("src/helpers/all.cpp", "")
+        self.expect_one("src/helpers/all.cpp", '"helpers" is no room')
+
+    def test_names_headers_of_ros_and_messages_below_ros(self):
+        for place in ("src/base/wire.cpp", "test/base/wire_test.cpp", "test/support/wire.hpp"):
+            for header in ("ros/time.h", "geometry_msgs/Pose.h", "spherical_actuator_calibration/CoilCurrents.h"):
+                with self.subTest(place + header):
+                    self.write(place, f"#include <{header}>\n")
+                    self.expect_one(place, header, "belongs to ROS")
+            (self.root / place).unlink()
+
+    def test_names_a_folder_with_more_than_a_quarter_of_the_lines(self):
+        self.write("src/ros/node/all.cpp", 40 * "int a;\n")
+        self.expect_one("src/ros/node: holds 42 of ", "more than 25 %")
+
+    def test_names_a_long_source(self):
+        for name, line in (("test/base/long.py", "\n"), ("scripts/long", "#!/bin/sh\n")):
+            with self.subTest(name):
+                self.write(name, 400 * line)
+                self.assertEqual(self.complaints(), [])
+                self.write(name, 401 * line)
+                self.expect_one(name, "has 401 lines, more than 400")
+                (self.root / name).unlink()
+
+    def test_names_a_long_function_in_python(self):
+        for length in (60, 61):
+            self.write("scripts/turn", "#!/usr/bin/python3\ndef turn():\n" + (length - 1) * "    print()\n")
+            if length == 60:
+                self.assertEqual(self.complaints(), [])
+        self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
+
+    def test_names_a_long_cmake_file(self):
+        for name in ("CMakeLists.txt", "src/base/CMakeLists.txt", "cmake/rooms.cmake"):
+            with self.subTest(name):
+                self.write(name, 200 * "\n")
+                self.assertEqual(self.complaints(), [])
+                self.write(name, 201 * "\n")
+                self.expect_one(name, "has 201 lines, more than 200")
+                self.write(name, "")
+
+    def test_says_when_there_is_nothing_to_check(self):
+        with tempfile.TemporaryDirectory() as empty:
+            result = subprocess.run([ROOT / "dev" / "check_rooms", empty], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("holds no C++", result.stderr)
+
+
+class LongFunctionInCpp(unittest.TestCase):
+    """What .clang-tidy says about the length of functions."""
+
+    def findings(self, body_lines):
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "long.cpp"
+            source.write_text("int f(int a) {\n" + body_lines * "  ++a;\n" + "  return a;\n}\n", encoding="utf-8")
+            command = ["clang-tidy", "--quiet", f"--config-file={ROOT}/.clang-tidy", str(source), "--", "-std=c++17"]
+            result = subprocess.run(command, capture_output=True, text=True, check=False)
+        return result.returncode, result.stdout
+
+    def test_sixty_lines_are_allowed_and_more_are_named(self):
+        self.assertEqual(self.findings(57), (0, ""))
+        status, said = self.findings(60)
+        self.assertEqual(status, 1)
+        self.assertIn("readability-function-size", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
