@@ -26,6 +26,11 @@ add_check(xml)
 set_tests_properties(check.clang_tidy PROPERTIES COST 10 TIMEOUT 3600)
 
 # That a check fails when it must: test/dev/check_<name>_test.py.
-add_test(NAME check.rooms_test
-  COMMAND ${PYTHON_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/dev/check_rooms_test.py)
-set_tests_properties(check.rooms_test PROPERTIES LABELS check)
+function(add_check_test name)
+  add_test(NAME check.${name}_test
+    COMMAND ${PYTHON_EXECUTABLE} ${PROJECT_SOURCE_DIR}/test/dev/check_${name}_test.py)
+  set_tests_properties(check.${name}_test PROPERTIES LABELS check)
+endfunction()
+
+add_check_test(clang_tidy)
+add_check_test(rooms)
