@@ -7,6 +7,7 @@ import re
 import shutil
 import tempfile
 import unittest
+import unittest.mock
 
 import yaml
 from report_page_case import HOSTILE, SOURCE, actuator_file, calibrated, program, read, run
@@ -202,18 +203,28 @@ class ReportPage(unittest.TestCase):
         self.assertIn("cannot be written", outcome.stderr)
         self.assertEqual(os.listdir(folder), ["page.html"])
 
+    def calibrate_positioner(self, calibrate_bag, name):
+        """Output of a calibration of the example, which leaves an axis open; the folder of its report."""
+        actuator = os.path.join(SOURCE, "config", "examples", "two_axis_positioner", "actuator.yaml")
+        bag = os.path.join(os.environ["EXAMPLES"], "two_axis_positioner.bag")
+        report = os.path.join(self.folder.name, name)
+        outcome = run(calibrate_bag, "--actuator", actuator, "--output", report + ".yaml", "--report", report, bag)
+        self.assertEqual(outcome.returncode, 1)
+        return outcome, report
+
+    def test_needs_no_sourced_environment(self):
+        with unittest.mock.patch.dict(os.environ):
+            os.environ.pop("PYTHONPATH", None)
+            _, report = self.calibrate_positioner(program("calibrate_bag"), "unsourced")
+        self.assertEqual(sorted(os.listdir(report)), ["report.html", "report.yaml"])
+
     def test_the_figures_stand_without_the_page(self):
         alone = os.path.join(self.folder.name, "calibrate_bag")
         shutil.copy(program("calibrate_bag"), alone)
-        actuator = os.path.join(SOURCE, "config", "examples", "two_axis_positioner", "actuator.yaml")
-        bag = os.path.join(os.environ["EXAMPLES"], "two_axis_positioner.bag")
-        report = os.path.join(self.folder.name, "alone")
-        output = os.path.join(self.folder.name, "alone.yaml")
-        outcome = run(alone, "--actuator", actuator, "--output", output, "--report", report, bag)
-        self.assertEqual(outcome.returncode, 1)  # as without a report: an axis is not observable
+        outcome, report = self.calibrate_positioner(alone, "alone")
         self.assertIn("warning: There is no page of the report: ", outcome.stderr)
         self.assertEqual(os.listdir(report), ["report.yaml"])
-        self.assertTrue(os.path.exists(output))
+        self.assertTrue(os.path.exists(report + ".yaml"))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,9 @@
 #include <csignal>
 #include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <sys/wait.h>
 
@@ -59,21 +61,47 @@ class Pipe {
   std::array<int, 2> ends_ = {-1, -1};
 };
 
+/// The environment of this process, in which Python also finds the packages that were built or
+/// installed with this program, whether or not somebody has sourced setup.bash.
+std::vector<std::string> rendererEnvironment(const fs::path& programs) {
+  // Programs are in <prefix>/lib/<package>/.
+  const fs::path packages = programs.parent_path() / "python3" / "dist-packages";
+  const std::string name = "PYTHONPATH=";
+  std::string python_path = name + packages.string();
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    if (text.substr(0, name.size()) == name) {
+      python_path.append(":").append(text.substr(name.size()));
+    } else {
+      variables.emplace_back(text);
+    }
+  }
+  variables.push_back(python_path);
+  return variables;
+}
+
 /// Starts a program with its standard error in the pipe. Returns an errno, 0 on success.
-int start(const std::string& program,
+int start(const fs::path& program,
           const std::string& report_path,
           const std::string& page_path,
           const Pipe& errors,
           pid_t& child) {
-  std::array<std::string, 3> words = {program, report_path, page_path};
+  std::array<std::string, 3> words = {program.string(), report_path, page_path};
   std::array<char*, 4> arguments = {words[0].data(), words[1].data(), words[2].data(), nullptr};
+  std::vector<std::string> variables = rendererEnvironment(program.parent_path());
+  std::vector<char*> environment;
+  for (std::string& variable : variables) {
+    environment.push_back(variable.data());
+  }
+  environment.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, errors.writing(), STDERR_FILENO);
-  const int error =
-      ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error = ::posix_spawn(
+      &child, program.c_str(), &actions, nullptr, arguments.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   return error;
 }
@@ -124,7 +152,7 @@ std::string writeReportPage(const std::string& report_path, const std::string& p
   const std::string failure = "There is no page of the report: ";
   std::error_code unknown;
   const fs::path self = fs::read_symlink("/proc/self/exe", unknown);
-  const std::string program = (self.parent_path() / "render_report").string();
+  const fs::path program = self.parent_path() / "render_report";
   Pipe errors;
   if (!errors.isOpen()) {
     return failure + systemMessage(errno) + ".";
@@ -132,7 +160,7 @@ std::string writeReportPage(const std::string& report_path, const std::string& p
   pid_t child = -1;
   const int error = start(program, report_path, page_path, errors, child);
   if (error != 0) {
-    return failure + program + " cannot be started: " + systemMessage(error) + ".";
+    return failure + program.string() + " cannot be started: " + systemMessage(error) + ".";
   }
   errors.closeWriting();
   std::string said;
@@ -147,7 +175,7 @@ std::string writeReportPage(const std::string& report_path, const std::string& p
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     return {};
   }
-  return failure + (said.empty() ? program + " ended early." : lastLine(said));
+  return failure + (said.empty() ? program.string() + " ended early." : lastLine(said));
 }
 
 }  // namespace sac
