@@ -28,14 +28,22 @@ function(use_precompiled_headers target)
   endif()
 endfunction()
 
-# One shared library, whose rooms add their sources. add_library_of_rooms(<name> [ROS] [USES libraries...])
+# One shared library, whose rooms add their sources: sac_<part>, and sac::<part> for those who link it.
+# add_library_of_rooms(<name> [ROS] [EXPORTED] [USES libraries...])
 # ROS: with ROS headers and generated messages, as system headers: their warnings are not ours.
+# EXPORTED: other packages may link it, so that the headers of its rooms are installed (see export.cmake).
 function(add_library_of_rooms name)
-  cmake_parse_arguments(arg "ROS" "" "USES" ${ARGN})
+  cmake_parse_arguments(arg "ROS;EXPORTED" "" "USES" ${ARGN})
   add_library(${name} SHARED)
   use_project_options(${name})
+  string(REGEX REPLACE "^sac_" "" part ${name})
   # Without DEFINE_SYMBOL all libraries can share one precompiled header.
-  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX DEFINE_SYMBOL "")
+  set_target_properties(${name} PROPERTIES
+    LINKER_LANGUAGE CXX
+    DEFINE_SYMBOL ""
+    EXPORT_NAME ${part}
+    EXPORTED ${arg_EXPORTED})
+  add_library(sac::${part} ALIAS ${name})
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include>)
@@ -43,13 +51,22 @@ function(add_library_of_rooms name)
   # The link fails as soon as a symbol comes from a library that is not named.
   target_link_options(${name} PRIVATE -Wl,--no-undefined)
   if(arg_ROS)
-    target_include_directories(${name} SYSTEM PUBLIC
-      ${catkin_INCLUDE_DIRS}
-      ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
-    target_link_libraries(${name} PUBLIC ${catkin_LIBRARIES})
+    # Who links the installed library has both from catkin.
+    set(headers ${catkin_INCLUDE_DIRS} ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+    set(libraries ${catkin_LIBRARIES})
+    list(TRANSFORM headers REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
+    list(TRANSFORM libraries REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
+    target_include_directories(${name} SYSTEM PUBLIC ${headers})
+    target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES} INTERFACE ${libraries})
     add_dependencies(${name} ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
   endif()
-  install(TARGETS ${name}
+  set(export)
+  if(arg_EXPORTED AND arg_ROS)
+    set(export EXPORT sac_ros)
+  elseif(arg_EXPORTED)
+    set(export EXPORT sac)
+  endif()
+  install(TARGETS ${name} ${export}
     ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
     LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
     RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
@@ -64,6 +81,12 @@ function(add_room room)
   target_sources(${arg_LIBRARY} PRIVATE ${arg_SOURCES})
   target_link_libraries(${arg_LIBRARY} PRIVATE ${arg_PRIVATE})
   set_property(TARGET ${arg_LIBRARY} APPEND PROPERTY ROOMS ${room})
+  get_target_property(is_exported ${arg_LIBRARY} EXPORTED)
+  if(is_exported)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/${PROJECT_NAME}/${room}/
+      DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION}/${room}
+      FILES_MATCHING PATTERN "*.hpp")
+  endif()
   if(ENABLE_CHECKS)
     add_order_check(${room} ${arg_LIBRARY})
   endif()

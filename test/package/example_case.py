@@ -1,0 +1,39 @@
+"""What the examples must do, wherever they were built."""
+
+import os
+import re
+import subprocess
+
+POSITIONER = os.path.join("config", "examples", "two_axis_positioner")
+
+# Of the real machine: value and standard deviation, as calibrate_bag finds them.
+POSITIONER_PARAMETERS = {
+    "joint_1/offset": (-0.001350, 0.000144),
+    "joint_1/axis_u": (-0.002703, 0.000150),
+    "joint_1/axis_v": (-0.010682, 0.000151),
+    "joint_2/offset": (-0.000444, 0.000135),
+    "joint_2/axis_u": (-0.004487, 0.000135),
+    "joint_2/axis_v": (-0.003445, 0.000050),
+    "joint_3/offset": (-0.004183, 0.000071),
+}
+LINE = re.compile(r"^(\S+) +(-?[\d.]+) ± ([\d.]+)( \(not identified\))?$", re.MULTILINE)
+
+
+def run(*command, **options):
+    """Runs a program to its end; returns its status and what it said."""
+    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False, **options)
+
+
+def check_calibrate_samples(case, program, source):
+    """The example finds the parameters of the positioner, and tells which the measurements do not show."""
+    folder = os.path.join(source, POSITIONER)
+    result = run(program, os.path.join(folder, "actuator.yaml"), os.path.join(folder, "samples.yaml"))
+    case.assertEqual(result.returncode, 1, result.stderr)
+    lines = {name: (float(value), float(stddev), bool(open_)) for name, value, stddev, open_ in LINE.findall(result.stdout)}
+    for name, (value, stddev) in POSITIONER_PARAMETERS.items():
+        case.assertFalse(lines[name][2], name)
+        case.assertAlmostEqual(lines[name][0], value, delta=1.5e-6, msg=name)
+        case.assertAlmostEqual(lines[name][1], stddev, delta=1.5e-6, msg=name)
+    case.assertEqual(
+        sorted(name for name, line in lines.items() if line[2]), ["joint_3/axis_u", "joint_3/axis_v"]
+    )
