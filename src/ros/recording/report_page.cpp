@@ -91,6 +91,7 @@ int start(const fs::path& program,
   std::array<char*, 4> arguments = {words[0].data(), words[1].data(), words[2].data(), nullptr};
   std::vector<std::string> variables = rendererEnvironment(program.parent_path());
   std::vector<char*> environment;
+  environment.reserve(variables.size() + 1);
   for (std::string& variable : variables) {
     environment.push_back(variable.data());
   }
