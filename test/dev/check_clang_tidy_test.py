@@ -33,8 +33,8 @@ class CheckClangTidy(unittest.TestCase):
         if path.suffix == ".cpp" and path not in self.sources:
             self.sources.append(path)
 
-    def check(self):
-        """Exit status and output."""
+    def check(self, *sources):
+        """Exit status and output; of these sources only, if any."""
         flags = f"-I{self.root}/include -Wall -Wextra -Wshadow -Werror -std=c++17 -o x.o -c"
         entries = [
             {"directory": str(self.root), "file": str(file), "command": f"/usr/bin/c++ {flags} {file}"}
@@ -42,7 +42,11 @@ class CheckClangTidy(unittest.TestCase):
         ]
         (self.root / "build" / "compile_commands.json").write_text(json.dumps(entries))
         result = subprocess.run(
-            [ROOT / "dev" / "check_clang_tidy", "build"], cwd=self.root, capture_output=True, text=True, check=False
+            [ROOT / "dev" / "check_clang_tidy", "build", *sources],
+            cwd=self.root,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         return result.returncode, result.stdout + result.stderr
 
@@ -65,6 +69,14 @@ class CheckClangTidy(unittest.TestCase):
         for name in ("one", "two"):
             self.assertIn(f"{self.root}/src/base/{name}.cpp:2:7: error: {FINDING}", said)
         self.assertIn("3 sources in 1 groups, 1 checked now, 1 with findings", said)
+
+    def test_checks_single_sources(self):
+        self.write("src/base/bad.cpp", DEFECT.format(name="bad"))
+        self.assertEqual(self.check("src/base/angle.cpp")[0], 0)
+        self.assertIn(FINDING, self.check("src/base/bad.cpp")[1])
+        status, said = self.check("src/base/angle.cpp", "src/base/missing.cpp")
+        self.assertEqual(status, 1)
+        self.assertIn("lacks sources", said)
 
     def test_keeps_apart_what_uses_a_name_for_its_own(self):
         for name in ("one", "two"):
@@ -112,7 +124,7 @@ class CheckClangTidy(unittest.TestCase):
         self.sources = []
         status, said = self.check()
         self.assertEqual(status, 1)
-        self.assertIn("has no source", said)
+        self.assertIn("lacks sources", said)
 
 
 if __name__ == "__main__":
