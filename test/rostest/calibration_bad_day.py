@@ -29,12 +29,17 @@ from emulated_streams import EmulatedStreams, rotation
 
 POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.0, 0.1, 0.5))
 DURATION = 0.3  # [s] of a capture
+REST = 1.5  # [s] of the streams, long enough for an automatic sample
 
 
 def free_port():
     with socket.socket() as probe:
         probe.bind(("localhost", 0))
         return probe.getsockname()[1]
+
+
+def is_at(sample, pose):
+    return all(abs(found - wanted) < 1e-3 for found, wanted in zip(sample.joint_position, pose))
 
 
 def stop_process(process):
@@ -61,7 +66,7 @@ class BadDay(unittest.TestCase):
         return self.client.call("capture", duration=DURATION)
 
     def captured(self):
-        """Captures, and asks again while the streams have just come back."""
+        """Captures, and asks again while the streams have just come back, or are late on a busy computer."""
         return wait_for(self.successful_capture, "a sample").sample
 
     def successful_capture(self):
@@ -69,11 +74,14 @@ class BadDay(unittest.TestCase):
         return answer if answer.success else None
 
     def capture_at(self, pose):
+        before = self.streams.joint_position
         self.streams.move_to(pose)
         sample = self.captured()
-        # A capture that began before the move refuses; one that succeeded is of this pose.
-        for found, wanted in zip(sample.joint_position, pose):
-            self.assertAlmostEqual(found, wanted, delta=1e-3)
+        # A capture that began before the move refuses; only where the streams are late it may not have begun.
+        while is_at(sample, before):
+            self.assertTrue(self.client.call("remove_sample", id=sample.id).success)
+            sample = self.captured()
+        self.assertTrue(is_at(sample, pose), sample.joint_position)
         return sample
 
     def capture_all(self):
@@ -86,6 +94,16 @@ class BadDay(unittest.TestCase):
         self.assertTrue(answer.message.endswith("."), answer.message)
         for word in words:
             self.assertIn(word, answer.message)
+
+    def captures_are_refused(self, *words):
+        """Every capture is, until one for this reason: a busy computer may delay a stream, and that is told first."""
+
+        def told():
+            answer = self.capture()
+            self.refused(answer)
+            return all(word in answer.message for word in words)
+
+        wait_for(told, f"a refusal that holds {words}")
 
     def wait_for_count(self, stream, key, least=1):
         def is_reached():
@@ -110,7 +128,7 @@ class BadDay(unittest.TestCase):
     def test_silent_tracker_is_named_and_the_next_capture_works(self):
         self.streams.silent.add("measured_orientation")
         self.wait_for_age("measured_orientation", 2.0)
-        self.refused(self.capture(), "measured_orientation", "silent")
+        self.captures_are_refused("measured_orientation", "silent")
         self.streams.silent.clear()
         self.assertTrue(self.captured().has_orientation)
 
@@ -130,30 +148,23 @@ class BadDay(unittest.TestCase):
         self.assertTrue(self.automatic_sample_at(POSES[1]).has_orientation)
 
     def automatic_sample_at(self, pose):
-        def is_here(sample):
-            pairs = zip(sample.joint_position, pose)
-            return all(abs(found - wanted) < 1e-3 for found, wanted in pairs)
-
         def samples_here():
-            return [sample for sample in self.client.samples if is_here(sample)]
+            return [sample for sample in self.client.samples if is_at(sample, pose)]
 
         return wait_for(samples_here, f"an automatic sample at {pose}")[0]
 
     def rest_at(self, pose):
-        """Rests long enough for an automatic sample, by the count of measurements."""
         self.streams.move_to(pose)
-        so_far = int(self.client.diagnostic("joint_states").get("accepted", 0))
-        self.wait_for_count("joint_states", "accepted", so_far + 150)
+        self.streams.rest(REST)
 
     def test_stamps_may_jump_backwards_and_forwards_again(self):
         held = self.client.held()
+        (first,) = held.values()
         self.streams.stamp_offset = -100.0
-        early = self.captured()
+        wait_for(lambda: self.captured().header.stamp < first.header.stamp, "a sample of the time before")
         self.streams.stamp_offset = 0.0
-        late = self.captured()
-        self.assertLess(early.header.stamp, held[1].header.stamp)
-        self.assertGreater(late.header.stamp, held[1].header.stamp)
-        self.assertEqual(self.client.held()[1], held[1])
+        wait_for(lambda: self.captured().header.stamp > first.header.stamp, "a sample of the time after")
+        self.assertEqual(self.client.held()[first.id], first)
 
     def test_nan_is_refused_and_the_rest_is_used(self):
         seen = {"count": 0}
@@ -178,15 +189,16 @@ class BadDay(unittest.TestCase):
         self.wait_for_refusal("measured_torque", "finite")
         self.wait_for_age("measured_torque", 0.5)
         held = self.client.held()
-        self.refused(self.capture(), "measured_torque")
+        self.captures_are_refused("measured_torque")
         self.nothing_changed(0, held)
 
     def test_a_rotor_that_never_settles_gives_no_sample(self):
         held = self.client.held()
         self.streams.tremble = 0.01
-        self.refused(self.capture(), "moves")
+        self.streams.rest(REST)
+        self.captures_are_refused("moves")
         self.assertTrue(self.client.call("set_auto_capture", data=True).success)
-        self.refused(self.capture(), "moves")
+        self.captures_are_refused("moves")
         self.nothing_changed(0, held)
 
     def test_wrong_number_of_coils_is_refused(self):
@@ -196,7 +208,7 @@ class BadDay(unittest.TestCase):
         self.streams.spoil["coil_currents"] = drop_last
         self.wait_for_refusal("coil_currents", "size")
         self.wait_for_age("coil_currents", 0.5)
-        self.refused(self.capture(), "coil_currents")
+        self.captures_are_refused("coil_currents")
         self.streams.spoil.clear()
         self.assertEqual(len(self.captured().current), 24)
 
@@ -207,7 +219,7 @@ class BadDay(unittest.TestCase):
         self.streams.spoil["measured_orientation"] = mislabel
         self.wait_for_refusal("measured_orientation", "tracker")
         self.wait_for_age("measured_orientation", 0.5)
-        self.refused(self.capture(), "measured_orientation")
+        self.captures_are_refused("measured_orientation")
 
     # -- requests ------------------------------------------------------------------------------------
 
@@ -249,18 +261,17 @@ class BadDay(unittest.TestCase):
 
     def test_two_clients_at_once_are_both_answered(self):
         self.capture_all()
-        for service, fields in (("capture", {"duration": DURATION}), ("calibrate_joint", {})):
-            answers = self.at_once(service, fields)
-            self.assertEqual([answer.success for answer in answers], [True, True], service)
+        first, second = self.at_once(self.captured)
+        self.assertNotEqual(first.id, second.id)
+        answers = self.at_once(lambda: self.client.call("calibrate_joint"))
+        self.assertEqual([answer.success for answer in answers], [True, True])
         wait_for(lambda: self.client.revision() == 2, "one revision per cycle")
         self.assertEqual(len(self.client.held()), len(POSES) + 2)
 
-    def at_once(self, service, fields):
+    @staticmethod
+    def at_once(call):
         answers = []
-        clients = [
-            threading.Thread(target=lambda: answers.append(self.client.call(service, **fields)))
-            for _ in range(2)
-        ]
+        clients = [threading.Thread(target=lambda: answers.append(call())) for _ in range(2)]
         for client in clients:
             client.start()
         for client in clients:

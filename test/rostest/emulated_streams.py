@@ -6,7 +6,7 @@ import threading
 import time
 
 import rospy
-from calibration_client import NAMESPACE
+from calibration_client import NAMESPACE, wait_for
 from geometry_msgs.msg import QuaternionStamped, Vector3Stamped
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
@@ -38,7 +38,10 @@ def rotation(angles):
 
 
 class EmulatedStreams:
-    """Publishes from construction on; every attribute may be changed meanwhile."""
+    """Publishes from construction on; every attribute may be changed meanwhile.
+
+    Its time goes on by one period with every measurement: on a busy computer it lags behind the clock, and its
+    streams have no holes."""
 
     def __init__(self, rate=100.0, seed=1):
         self.joint_position = [0.0, 0.0, 0.0]
@@ -48,6 +51,7 @@ class EmulatedStreams:
         self.spoil = {}  # stream -> function that changes its messages
         self.stamp_offset = 0.0  # [s]
         self._period = 1.0 / rate
+        self._count = 0  # measurements of each stream so far
         self._random = random.Random(seed)
         self._publishers = {
             topic: rospy.Publisher(f"{NAMESPACE}/{topic}", message, queue_size=1000)
@@ -64,15 +68,20 @@ class EmulatedStreams:
     def move_to(self, joint_position):
         self.joint_position = list(joint_position)
 
-    def _run(self):
-        due = time.monotonic()
-        while not self._stop.is_set():
-            self._publish()
-            due = max(due + self._period, time.monotonic() - 1.0)
-            self._stop.wait(max(0.0, due - time.monotonic()))
+    def rest(self, duration):
+        """Returns after so many seconds of the streams."""
+        end = self._count + duration / self._period
+        wait_for(lambda: self._count > end, f"streams of {duration} s")
 
-    def _publish(self):
-        stamp = rospy.Time.now() + rospy.Duration(self.stamp_offset)
+    def _run(self):
+        begin_of_stamps, begin = rospy.Time.now(), time.monotonic()
+        while not self._stop.is_set():
+            elapsed = self._count * self._period
+            self._publish(begin_of_stamps + rospy.Duration(elapsed + self.stamp_offset))
+            self._count += 1
+            self._stop.wait(max(0.0, begin + elapsed + self._period - time.monotonic()))
+
+    def _publish(self, stamp):
         messages = self._measure()
         for topic, message in messages.items():
             message.header.stamp = stamp
