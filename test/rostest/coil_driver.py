@@ -11,7 +11,7 @@ import unittest
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
-from driver_node import ERROR, OK, DriverNode
+from driver_node import ERROR, OK, RESPONSE_TIMEOUT, DriverNode
 from modbus_device import ModbusDevice, RudeServer, SerialPair, free_port
 from spherical_actuator_calibration.msg import CoilCurrents
 
@@ -20,6 +20,7 @@ COILS = 24
 ENABLE = 100
 TRIPPED = 100
 MILLI = 1e-3
+PATIENT = 10.0  # [s] of the watchdog where it must not be what makes zero, nor end a current on a busy computer
 
 
 def amperes(word):
@@ -65,10 +66,10 @@ class CoilDriver(unittest.TestCase):
         self.addCleanup(subscriber.unregister)
         self.addCleanup(self.commander.close)
 
-    def start(self, **changes):
+    def start(self, response_timeout=RESPONSE_TIMEOUT, **changes):
         parameters = rospy.get_param("/shipped/coil_driver")
         parameters["diagnostic_period"] = 0.1
-        parameters["link"]["port"] = self.port
+        parameters["link"].update(port=self.port, response_timeout=response_timeout)
         parameters.update(changes)
         node = DriverNode("coil_driver", parameters)
         self.addCleanup(node.close)
@@ -107,7 +108,7 @@ class CoilDriver(unittest.TestCase):
     # -- what it is for ------------------------------------------------------------------------------
 
     def test_follows_commands_and_publishes_what_is_measured(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.device.input.setValues(2, [1490])
         self.follow(3, 1.5)
         wait_for(lambda: self.measured and abs(self.measured[-1].current[2] - 1.49) < 1e-9, "1.49 A")
@@ -124,7 +125,8 @@ class CoilDriver(unittest.TestCase):
         self.addCleanup(pair.close)
         self.device.start_serial(pair.device_end)
         link = {"type": "rtu", "device": pair.driver_end, "baud": 115200, "parity": "none"}
-        node = self.start(link=link, rate=30.0, watchdog=1.0)
+        link["response_timeout"] = RESPONSE_TIMEOUT
+        node = self.start(link=link, rate=30.0, watchdog=PATIENT)
         self.follow(3, 1.5)
         node.end(signal.SIGTERM)
         self.assertTrue(self.is_zero())
@@ -141,7 +143,7 @@ class CoilDriver(unittest.TestCase):
 
     def test_changes_currents_no_faster_than_allowed(self):
         limits = {"coil": 2.5, "total": 8.0, "slew": 5.0}
-        self.started(limits=limits)
+        self.started(limits=limits, watchdog=PATIENT)
         self.follow(3, 2.0)
         blocks = [block for address, block in self.device.holding.history if address == 0]
         steps = [amperes(b[2]) - amperes(a[2]) for a, b in zip(blocks, blocks[1:])]
@@ -159,27 +161,27 @@ class CoilDriver(unittest.TestCase):
         wait_for(lambda: "no fresh command" in node.message("output"), "the reason")
 
     def test_zero_on_sigterm(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.follow()
         node.end(signal.SIGTERM)
         self.assertTrue(self.is_zero())
         self.assertEqual(self.device.holding_at(ENABLE), [0])
 
     def test_zero_on_sigint(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.follow()
         node.end(signal.SIGINT)
         self.assertTrue(self.is_zero())
 
     def test_zero_on_rosnode_kill(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.follow()
         subprocess.run(["rosnode", "kill", node.name], check=True, stdout=subprocess.DEVNULL)
-        node.process.communicate(timeout=30)
+        node.wait_for_end()
         self.assertTrue(self.is_zero())
 
     def test_zero_first_when_the_link_is_back(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.follow()
         self.device.stop()
         node.wait_for_level("link", ERROR)
@@ -195,7 +197,7 @@ class CoilDriver(unittest.TestCase):
         self.follow()
 
     def test_zero_when_the_amplifier_trips(self):
-        node = self.started()
+        node = self.started(watchdog=PATIENT)
         self.follow()
         self.device.input.setValues(TRIPPED, [1])
         self.wait_for_zero()
@@ -236,7 +238,7 @@ class CoilDriver(unittest.TestCase):
     def test_garbage_is_never_taken_for_an_answer(self):
         server = RudeServer(self.port, bytes(range(1, 40)))
         self.addCleanup(server.close)
-        node = self.start()
+        node = self.start(response_timeout=0.1)
         self.commander.command = self.pattern(3, 1.5)
         node.wait_for_level("link", ERROR)
         wait_for(lambda: server.requests >= 3, "further attempts")

@@ -4,11 +4,12 @@ import os
 import subprocess
 
 import rospy
-from calibration_client import NAMESPACE, program, wait_for
+from calibration_client import DEADLINE, NAMESPACE, program, wait_for
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 OK = DiagnosticStatus.OK
 ERROR = DiagnosticStatus.ERROR
+RESPONSE_TIMEOUT = 5.0  # [s] for a device that answers, on however busy a computer
 
 
 class DriverNode:
@@ -54,10 +55,14 @@ class DriverNode:
     def end(self, signal_number):
         """Ends the node by a signal and returns what it wrote to its standard error."""
         self.process.send_signal(signal_number)
-        return self.process.communicate(timeout=30)[1]
+        return self.wait_for_end()
+
+    def wait_for_end(self):
+        """What an ending node wrote to its standard error."""
+        return self.process.communicate(timeout=DEADLINE)[1]
 
     def close(self):
         self._subscriber.unregister()
         if self.process.poll() is None:
             self.process.terminate()
-        self.process.communicate(timeout=30)
+        self.wait_for_end()

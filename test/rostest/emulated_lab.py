@@ -15,6 +15,7 @@ from std_srvs.srv import SetBool, Trigger
 COILS = 24
 JOINTS = ["joint_1", "joint_2", "joint_3"]
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
+RESPONSE_TIMEOUT = 5.0  # [s] of the devices, on however busy a computer
 
 
 def free_port():
@@ -24,14 +25,14 @@ def free_port():
 
 
 def configuration_with_free_ports(folder):
-    """A copy of the shipped configuration whose devices listen at free ports."""
+    """A copy of the shipped configuration whose devices listen at free ports, and may take their time."""
     shipped = pathlib.Path(rospy.get_param("~config"))
     copy = pathlib.Path(folder) / "config"
     copy.mkdir()
     for file in shipped.glob("*.yaml"):
         content = yaml.safe_load(file.read_text())
         if isinstance(content.get("link"), dict):
-            content["link"]["port"] = free_port()
+            content["link"].update(port=free_port(), response_timeout=RESPONSE_TIMEOUT)
         (copy / file.name).write_text(yaml.safe_dump(content))
     return str(copy)
 

@@ -8,11 +8,12 @@ import unittest
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
-from driver_node import ERROR, OK, DriverNode
+from driver_node import ERROR, OK, RESPONSE_TIMEOUT, DriverNode
 from modbus_device import ModbusDevice, RudeServer, SerialPair, free_port
 from sensor_msgs.msg import JointState
 
 UNIT = 1
+COUNT_FOR_A_RATE = 100
 COUNTS_PER_TURN = 131072
 TURN = 2.0 * math.pi
 
@@ -42,10 +43,10 @@ class JointSensor(unittest.TestCase):
         self.addCleanup(self.subscriber.unregister)
         self.addCleanup(self.device.stop)
 
-    def start(self, **changes):
+    def start(self, response_timeout=RESPONSE_TIMEOUT, **changes):
         parameters = rospy.get_param("/shipped/joint_sensor")
         parameters["diagnostic_period"] = 0.1
-        parameters["link"]["port"] = self.port
+        parameters["link"].update(port=self.port, response_timeout=response_timeout)
         parameters.update(changes)
         node = DriverNode("joint_sensor", parameters)
         self.addCleanup(node.close)
@@ -62,7 +63,14 @@ class JointSensor(unittest.TestCase):
     def check_stamps(self):
         stamps = [message.header.stamp for message in self.received]
         self.assertEqual(stamps, sorted(set(stamps)), "stamps increase")
-        self.assertLess(abs((rospy.Time.now() - stamps[-1]).to_sec()), 1.0)
+        wait_for(lambda: abs((rospy.Time.now() - self.received[-1].header.stamp).to_sec()) < 1.0, "a fresh stamp")
+
+    def attained_rate(self):
+        """What device, node and computer give just now [Hz], by the stamps of further joint states."""
+        begin = len(self.received)
+        wait_for(lambda: len(self.received) > begin + COUNT_FOR_A_RATE, "further joint states")
+        stamps = [message.header.stamp.to_sec() for message in self.received[begin:]]
+        return (len(stamps) - 1) / (stamps[-1] - stamps[0])
 
     def test_reads_angles_over_tcp(self):
         self.device.start_tcp(self.port)
@@ -73,6 +81,13 @@ class JointSensor(unittest.TestCase):
         self.assertEqual(self.received[-1].name, ["joint_1", "joint_2", "joint_3"])
         self.check_stamps()
         node.wait_for_level("link", OK)
+
+    def test_a_rate_that_is_kept_is_good(self):
+        self.device.start_tcp(self.port)
+        node = self.start()
+        rate = self.attained_rate()
+        node.close()
+        node = self.start(rate=0.5 * rate)
         node.wait_for_level("joint_states", OK)
 
     def test_reads_angles_over_a_serial_line(self):
@@ -80,6 +95,7 @@ class JointSensor(unittest.TestCase):
         self.addCleanup(pair.close)
         self.device.start_serial(pair.device_end)
         link = {"type": "rtu", "device": pair.driver_end, "baud": 115200, "parity": "none"}
+        link["response_timeout"] = RESPONSE_TIMEOUT
         self.start(link=link, rate=50.0)
         for q in ([0.3, -0.2, 1.0], [-0.5, 0.4, -2.0]):
             set_pose(self.device, q)
@@ -130,7 +146,7 @@ class JointSensor(unittest.TestCase):
     def test_a_silent_device_is_told(self):
         server = RudeServer(self.port, b"")
         self.addCleanup(server.close)
-        node = self.start()
+        node = self.start(response_timeout=0.1)
         node.wait_for_level("link", ERROR)
         wait_for(lambda: "timed out" in node.message("link"), "the timeout in words")
         self.assertEqual(self.received, [])
@@ -138,7 +154,7 @@ class JointSensor(unittest.TestCase):
     def test_garbage_is_never_taken_for_an_answer(self):
         server = RudeServer(self.port, bytes(range(1, 40)))
         self.addCleanup(server.close)
-        node = self.start()
+        node = self.start(response_timeout=0.1)
         node.wait_for_level("link", ERROR)
         wait_for(lambda: server.requests >= 3, "further attempts")
         self.assertEqual(self.received, [])
@@ -154,7 +170,7 @@ class JointSensor(unittest.TestCase):
 
     def test_a_wrong_key_ends_the_node_with_its_name(self):
         node = self.start(rat=100.0)
-        error = node.process.communicate(timeout=30)[1]
+        error = node.wait_for_end()
         self.assertEqual(node.process.returncode, 1)
         self.assertIn("rat: the key is unknown", error)
 

@@ -15,6 +15,7 @@ from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import ActuatorParameters
 
 RATE = 200.0  # [Hz] of joint angles
+LARGEST_AGE = 1.0  # [s] of joint angles: on a busy computer they come late
 
 
 class Joints:
@@ -23,6 +24,7 @@ class Joints:
     def __init__(self):
         self.position = [0.0, 0.0, 0.0]
         self.silent = False
+        self.count = 0
         self._publisher = rospy.Publisher(f"{NAMESPACE}/joint_states", JointState, queue_size=10)
         self._timer = rospy.Timer(rospy.Duration(1.0 / RATE), self._publish)
 
@@ -31,6 +33,11 @@ class Joints:
             message = JointState(name=["joint_1", "joint_2", "joint_3"], position=self.position)
             message.header.stamp = rospy.Time.now()
             self._publisher.publish(message)
+            self.count += 1
+
+    def wait_for_further(self, count):
+        enough = self.count + count
+        wait_for(lambda: self.count > enough, f"{count} further joint angles")
 
     def stop(self):
         self._timer.shutdown()
@@ -54,14 +61,17 @@ class OrientationController(unittest.TestCase):
         self.publisher.unregister()
 
     def start(self, **parameters):
-        self.controller = Controller(**parameters)
+        self.controller = Controller(**{"largest_age": LARGEST_AGE, **parameters})
         return self.controller
 
     def test_nothing_is_commanded_before_it_is_enabled(self):
         controller = self.start()
         controller.wait_for_level("control", OK)
         controller.send(target(0.1, 0.0, 0.0))
-        rospy.sleep(0.3)
+        # Targets are taken in their order: once this one is refused, the other one is in force.
+        controller.send(target(0.1, 0.0, 0.0, "rotor"))
+        wait_for(lambda: "rotor" in controller.value("control", "last refusal"), "the refusal")
+        self.joints.wait_for_further(50)
         self.assertEqual(self.commands.count, 0)
 
     def test_follows_a_target_once_enabled_and_ends_with_zero(self):
@@ -79,10 +89,14 @@ class OrientationController(unittest.TestCase):
         controller.wait_until_enabled()
         controller.enable(False)
         self.joints.silent = True
-        rospy.sleep(0.3)
-        answer = controller.enable()
-        self.assertFalse(answer.success)
-        self.assertIn("s old", answer.message)
+
+        def refused():
+            answer = controller.enable()
+            if answer.success:
+                controller.enable(False)
+            return not answer.success and "s old" in answer.message
+
+        wait_for(refused, "the refusal of joint angles that are old")
 
     def test_stops_when_joint_angles_cease(self):
         controller = self.start()
@@ -93,7 +107,7 @@ class OrientationController(unittest.TestCase):
         controller.wait_for_level("control", ERROR)
         self.assertIn("joint angles", controller.message("control"))
         self.joints.silent = False
-        rospy.sleep(0.3)
+        self.joints.wait_for_further(50)
         self.assertTrue(self.commands.ended_with_zero())
         controller.wait_until_enabled()
         controller.wait_for_level("control", OK)
@@ -141,7 +155,7 @@ class OrientationController(unittest.TestCase):
 
     def test_names_a_wrong_parameter(self):
         controller = self.start(gains={"proportional": -1.0})
-        self.assertIn("gains.proportional", controller.process.communicate(timeout=30)[1])
+        self.assertIn("gains.proportional", controller.wait_for_end())
 
 
 if __name__ == "__main__":

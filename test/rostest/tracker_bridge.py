@@ -124,10 +124,10 @@ class TrackerBridge(unittest.TestCase):
         self.addCleanup(self.bench.close)
         self.now = rospy.Time.now()
 
-    def start(self, registrations=(), **private_parameters):
+    def start(self, registrations=(), transform_wait=10.0, **private_parameters):
         if registrations:
             self.bench.transforms.publish(TFMessage(list(registrations)))
-        bridge = BridgeProcess(diagnostic_period=0.05, **private_parameters)
+        bridge = BridgeProcess(diagnostic_period=0.05, transform_wait=transform_wait, **private_parameters)
         self.addCleanup(bridge.stop)
         self.bench.wait_for_bridge()
         return bridge
@@ -274,7 +274,7 @@ class TrackerBridge(unittest.TestCase):
         self.wait_for_measured("measured_torque", 1)
 
     def test_waits_a_moment_for_a_transform(self):
-        self.start(transform_wait=10.0)
+        self.start()
         self.send_pose(0)
         wait_for(
             lambda: self.bench.value("registrations", "stator to tracker") == "missing",
