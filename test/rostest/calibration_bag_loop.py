@@ -8,7 +8,15 @@ import unittest
 
 import rospy
 import rostest
-from calibration_client import PACKAGE, CalibrationClient, CalibrationNode, play, run_tool, wait_for
+from calibration_client import (
+    PACKAGE,
+    CalibrationClient,
+    CalibrationNode,
+    play,
+    run_tool,
+    stop_player,
+    wait_for,
+)
 
 ROUNDS = 3
 POSES = 5
@@ -32,9 +40,8 @@ class BagLoop(unittest.TestCase):
         self.client.start(self.node)
 
     def test_every_round_gives_the_same_samples(self):
-        player = play(self.bag, "--loop", "--clock", "--rate", "5")
-        self.addCleanup(player.wait)
-        self.addCleanup(player.terminate)
+        player = play(self.bag, "--loop", "--clock", "--rate", "2")
+        self.addCleanup(stop_player, player)
         wait_for(self.all_rounds_are_held, f"{ROUNDS} rounds of {POSES} samples")
         samples = list(self.client.held().values())
         # The last round may be under way.

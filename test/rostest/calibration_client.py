@@ -1,5 +1,6 @@
 """What the tests of the calibration node share: the node's program, and a client of its interface."""
 
+import glob
 import os
 import signal
 import subprocess
@@ -27,7 +28,10 @@ from std_srvs.srv import SetBool, Trigger
 PACKAGE = "spherical_actuator_calibration"
 NAMESPACE = "/actuator"
 NODE = NAMESPACE + "/calibration"
-DEADLINE = 60.0  # [s] for what takes a moment; only a failing test waits so long
+DEADLINE = 180.0  # [s] for what takes a moment; only a failing test waits so long
+
+MOST_WAITING = 0.5  # share of its processor time that a node may wait for it
+SILENCE = 30.0  # [s] without anything new, after which what is missing is lost
 
 SERVICES = {
     "calibrate_coil": Calibrate,
@@ -81,14 +85,22 @@ def run_tool(name, bags=(), **options):
 
 
 def play(bag, *options):
-    """Plays the streams of a recording as soon as the node listens; returns the process."""
-    command = ["rosbag", "play", bag, "--quiet", "--queue", "100000", "--wait-for-subscribers"]
+    """Plays the streams of a recording as soon as the node listens; returns the process.
+
+    It stays until stop_player(): a player that ends by itself takes its last messages with it where the computer is
+    too busy to send them at once."""
+    command = ["rosbag", "play", bag, "--quiet", "--queue", "100000", "--wait-for-subscribers", "--keep-alive"]
     topics = [f"{NAMESPACE}/{stream}" for stream in STREAMS]
     return subprocess.Popen(
         command + list(options) + ["--topics"] + topics,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
     )
+
+
+def stop_player(player):
+    player.terminate()
+    player.wait()
 
 
 class CalibrationNode:
@@ -149,6 +161,18 @@ class CalibrationNode:
         with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def was_starved(self):
+        """Whether it had to wait for the processors, which others had, as on no computer of its own."""
+        return self.waiting_seconds() > MOST_WAITING * self.cpu_seconds()
+
+    def waiting_seconds(self):
+        """For how long its threads were ready to run, and others had the processors."""
+        waited = 0
+        for path in glob.glob(f"/proc/{self.process.pid}/task/*/schedstat"):
+            with open(path, encoding="ascii") as file:
+                waited += int(file.read().split()[1])
+        return 1e-9 * waited
 
 
 class CalibrationClient:

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """The node at the full rates of the laboratory: no message is lost, and the services answer.
 
+A computer that is busy with something else gets less: the rates that it can give.
+
 Prints what it measures: processor time, and times from request to result.
 """
 
@@ -16,11 +18,13 @@ import rostest
 from calibration_client import (
     NAMESPACE,
     PACKAGE,
+    SILENCE,
     STREAMS,
     CalibrationClient,
     CalibrationNode,
     play,
     run_tool,
+    stop_player,
     wait_for,
 )
 
@@ -35,6 +39,7 @@ SESSION = {
     "current-rate": 1000,
 }
 SAMPLES_FOR_A_CYCLE = 4
+RATES = (1.0, 0.5, 0.25)  # shares of the full rates, from the first until the node has the processor time for it
 PAUSE = 0.1  # [s] between calls: as many as people make, so that the streams make the load
 
 
@@ -45,10 +50,6 @@ class FullRates(unittest.TestCase):
         self.bag = os.path.join(self.folder.name, "session.bag")
         self.counts = self.record()
         self.client = CalibrationClient()
-        directory = os.path.join(self.folder.name, "calibration")
-        self.node = CalibrationNode(directory, auto_capture=True, diagnostic_period=0.1)
-        self.addCleanup(self.node.stop)
-        self.client.start(self.node)
 
     def record(self):
         """Records a session, and counts its messages by stream."""
@@ -59,41 +60,67 @@ class FullRates(unittest.TestCase):
         return {stream: topics[f"{NAMESPACE}/{stream}"].message_count for stream in STREAMS}
 
     def test_no_message_is_lost_while_services_answer(self):
-        player = play(self.bag)
-        self.addCleanup(player.wait)
-        wait_for(self.accepted_of_joints, "the first measurements")
-        begin = time.monotonic()
-        cpu_before = self.node.cpu_seconds()
-        latencies = self.use_services(player)
-        elapsed = time.monotonic() - begin
-        cpu = (self.node.cpu_seconds() - cpu_before) / elapsed
-        self.assertEqual(player.wait(), 0)
-        for stream, sent in self.counts.items():
-            self.check_received(stream, sent)
-        self.report(cpu, latencies)
+        for rate in RATES:
+            if self.takes_all_at(rate):
+                return
+        self.fail("the node never had the processor time for it")
 
-    def accepted_of_joints(self):
-        return int(self.client.diagnostic("joint_states").get("accepted", 0))
+    def takes_all_at(self, rate):
+        """Plays to a new node, which must take every message; unless others had the processors, then false."""
+        directory = os.path.join(self.folder.name, f"calibration_at_{rate}")
+        node = CalibrationNode(directory, auto_capture=True, diagnostic_period=0.1)
+        self.addCleanup(node.stop)
+        self.client.start(node)
+        self.last_received = (0, time.monotonic())
+        player = play(self.bag, "--rate", str(rate))
+        self.addCleanup(stop_player, player)
+        wait_for(lambda: sum(self.received("joint_states")), "the first measurements")
+        begin, cpu_before = time.monotonic(), node.cpu_seconds()
+        latencies = self.use_services()
+        cpu = (node.cpu_seconds() - cpu_before) / (time.monotonic() - begin)
+        was_starved = node.was_starved()
+        stop_player(player)
+        node.stop()
+        self.report(rate, cpu, latencies)
+        received = {stream: self.received(stream) for stream in STREAMS}
+        all_taken = {stream: (sent, 0) for stream, sent in self.counts.items()}
+        if received != all_taken and was_starved:
+            return False
+        self.assertEqual(received, all_taken)
+        self.assertGreater(len(latencies["sample to parameters"]), 0)
+        return True
 
-    def use_services(self, player):
-        """Calls services for as long as the recording plays; returns seconds by what was waited for."""
+    def received(self, stream):
+        """Messages that the node has accepted, and refused."""
+        values = self.client.diagnostic(stream)
+        return int(values.get("accepted", 0)), int(values.get("refused", 0))
+
+    def use_services(self):
+        """Calls services until every message was received; returns seconds by what was waited for."""
         latencies = {"list_samples": [], "sample to parameters": [], "solve": []}
-        while player.poll() is None:
+        while self.is_playing():
             begin = time.monotonic()
             held = self.client.call("list_samples").samples
             latencies["list_samples"].append(time.monotonic() - begin)
             if len(held) >= SAMPLES_FOR_A_CYCLE:
-                self.calibrate_after_next_sample(player, latencies)
+                self.calibrate_after_next_sample(latencies)
             time.sleep(PAUSE)
-        self.assertGreater(len(latencies["sample to parameters"]), 0)
         return latencies
 
-    def calibrate_after_next_sample(self, player, latencies):
+    def is_playing(self):
+        """Whether messages are still to come: not all were received, and some were a moment ago."""
+        received = sum(sum(self.received(stream)) for stream in STREAMS)
+        now = time.monotonic()
+        if received != self.last_received[0]:
+            self.last_received = (received, now)
+        return received < sum(self.counts.values()) and now - self.last_received[1] < SILENCE
+
+    def calibrate_after_next_sample(self, latencies):
         before = len(self.client.samples)
         while len(self.client.samples) == before:
-            if player.poll() is not None:
+            if not self.is_playing():
                 return
-            time.sleep(0.0005)
+            time.sleep(0.001)
         begin = time.monotonic()
         revision = self.client.revision()
         answer = self.client.call("calibrate_joint")
@@ -102,19 +129,12 @@ class FullRates(unittest.TestCase):
         latencies["sample to parameters"].append(time.monotonic() - begin)
         latencies["solve"].append(answer.report.solve_time)
 
-    def check_received(self, stream, sent):
-        def counts():
-            values = self.client.diagnostic(stream)
-            return int(values["accepted"]), int(values["refused"])
-
-        try:
-            wait_for(lambda: sum(counts()) >= sent, "all messages")
-        finally:
-            self.assertEqual(counts(), (sent, 0), stream)
-
-    def report(self, cpu, latencies):
-        print(f"MEASURED processor time of the node: {100.0 * cpu:.1f} % of one core")
+    @staticmethod
+    def report(rate, cpu, latencies):
+        print(f"MEASURED processor time of the node at {rate} of the full rates: {100.0 * cpu:.1f} % of one core")
         for what, times in latencies.items():
+            if not times:
+                continue
             times.sort()
             median, largest = times[len(times) // 2], times[-1]
             print(

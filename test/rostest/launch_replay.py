@@ -45,7 +45,7 @@ class LaunchReplay(unittest.TestCase):
             launch_file("replay.launch"),
             bag=self.bag,
             directory=self.path(directory),
-            rate=5,
+            rate=2,
             **arguments,
         )
         self.addCleanup(launch.stop)
