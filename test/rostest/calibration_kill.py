@@ -20,7 +20,7 @@ from emulated_streams import EmulatedStreams
 
 KILLS = 100
 SEED = 20240611
-LONGEST_LIFE = 0.8  # [s] of one node after it is up
+LONGEST_LIFE = 0.5  # [s] of one node after it is up
 CAPTURE_DURATION = 0.1  # [s]
 FIRST_POSES = 6  # enough for the joint cycle
 # The two services that put parameters in force again, and what else a user may call meanwhile.

@@ -19,6 +19,7 @@ from emulated_lab import EmulatedLab
 POSES = 8
 OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
 OPTIONS += ("--validation-poses", "1", "--settling", "0.15")
+SESSION_TIMEOUT = 600.0  # [s]
 INTERVALS = 4.0  # standard deviations that hold every parameter
 
 
@@ -58,7 +59,7 @@ class GuidedProgram:
         return self.wait()
 
     def wait(self):
-        status = self._process.wait(timeout=120.0)
+        status = self._process.wait(timeout=SESSION_TIMEOUT)
         self._reader.join()
         return status
 

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 from matplotlib import image
-from report_page_case import actuator_file, calibrated, read
+from report_page_case import TIMEOUT, actuator_file, calibrated, read
 
 WIDTHS = {"desktop": 1280, "phone": 390}
 HEIGHT = 4000
@@ -59,7 +59,7 @@ class ReportLayout(unittest.TestCase):
         command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
         command += ["--disable-dev-shm-usage", f"--user-data-dir={self.folder.name}/profile"]
         command += [f"--window-size={width},{HEIGHT}", "--virtual-time-budget=5000", *options, "file://" + page]
-        outcome = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        outcome = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         return outcome.stdout
 

@@ -8,6 +8,8 @@ import yaml
 PROGRAMS = os.environ["PROGRAMS"]  # folder of the built programs
 SOURCE = os.environ["SOURCE"]  # folder of this package
 
+TIMEOUT = 600.0  # [s] of a program, on however busy a computer
+
 # What a page must not take for markup.
 HOSTILE = "<script>alert('&')</script><img src=x>"
 
@@ -18,7 +20,7 @@ def program(name):
 
 def run(*command):
     """Runs a program to its end; returns its status and what it said."""
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False)
 
 
 def actuator_file(folder, coils, serial):
