@@ -89,7 +89,9 @@ def play(bag, *options):
 
     It stays until stop_player(): a player that ends by itself takes its last messages with it where the computer is
     too busy to send them at once."""
-    command = ["rosbag", "play", bag, "--quiet", "--queue", "100000", "--wait-for-subscribers", "--keep-alive"]
+    command = ["rosbag", "play", bag, "--quiet", "--queue", "100000", "--wait-for-subscribers"]
+    # A player that is kept alive does not begin again.
+    command += [] if "--loop" in options else ["--keep-alive"]
     topics = [f"{NAMESPACE}/{stream}" for stream in STREAMS]
     return subprocess.Popen(
         command + list(options) + ["--topics"] + topics,
