@@ -3,15 +3,16 @@
 namespace sac {
 namespace {
 
-std::mt19937_64 seededGenerator(std::uint64_t seed, std::uint32_t purpose) {
-  std::seed_seq sequence{
-      static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U), purpose};
+std::mt19937_64 seededGenerator(std::uint64_t seed, RandomPurpose purpose) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed),
+                         static_cast<std::uint32_t>(seed >> 32U),
+                         static_cast<std::uint32_t>(purpose)};
   return std::mt19937_64(sequence);
 }
 
 }  // namespace
 
-NoiseSource::NoiseSource(std::uint64_t seed, std::uint32_t purpose)
+NoiseSource::NoiseSource(std::uint64_t seed, RandomPurpose purpose)
     : generator_(seededGenerator(seed, purpose)) {}
 
 std::size_t NoiseSource::index(std::size_t count) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
@@ -11,14 +12,6 @@ namespace sac {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-enum Purpose : std::uint32_t {
-  kJointNoise = 300,
-  kTrackerNoise,
-  kTrackerBadDwells,
-  kWrenchNoise,
-  kCurrentNoise,
-};
 
 double quantised(double value, double step) {
   return step > 0.0 ? step * std::round(value / step) : value;
@@ -29,7 +22,7 @@ double quantised(double value, double step) {
 std::vector<std::optional<Eigen::Matrix3d>> drawDwellErrors(const TrackerOptions& options,
                                                             std::size_t dwells,
                                                             std::uint64_t seed) {
-  NoiseSource noise(seed, kTrackerBadDwells);
+  NoiseSource noise(seed, RandomPurpose::kTrackerBadDwells);
   std::vector<std::optional<Eigen::Matrix3d>> errors(dwells);
   const std::size_t eligible = std::min(dwells, options.poses.value_or(dwells));
   for (std::size_t bad = 0; bad < std::min(options.bad_dwells, eligible);) {
@@ -81,7 +74,7 @@ void validate(const CurrentSensorOptions& options) {
 }
 
 EmulatedJointSensor::EmulatedJointSensor(const EmulatedJointOptions& options, std::uint64_t seed)
-    : options_(options), noise_(seed, kJointNoise) {}
+    : options_(options), noise_(seed, RandomPurpose::kJointNoise) {}
 
 JointMeasurement EmulatedJointSensor::measure(Stamp stamp,
                                               const Eigen::Vector3d& position,
@@ -105,7 +98,7 @@ EmulatedTracker::EmulatedTracker(const TrackerOptions& options,
                                  std::uint64_t seed)
     : options_(options),
       registration_(registration),
-      noise_(seed, kTrackerNoise),
+      noise_(seed, RandomPurpose::kTrackerNoise),
       dwell_errors_(drawDwellErrors(options, dwells, seed)) {}
 
 MarkerPoseMeasurement EmulatedTracker::measure(Stamp stamp,
@@ -141,7 +134,7 @@ std::vector<std::size_t> EmulatedTracker::badDwells() const {
 EmulatedWrenchSensor::EmulatedWrenchSensor(const WrenchSensorOptions& options,
                                            const Registration& registration,
                                            std::uint64_t seed)
-    : options_(options), registration_(registration), noise_(seed, kWrenchNoise) {}
+    : options_(options), registration_(registration), noise_(seed, RandomPurpose::kWrenchNoise) {}
 
 WrenchMeasurement EmulatedWrenchSensor::measure(Stamp stamp,
                                                 const Eigen::Vector3d& torque_rotor,
@@ -161,7 +154,7 @@ WrenchMeasurement EmulatedWrenchSensor::measure(Stamp stamp,
 
 EmulatedCurrentSensor::EmulatedCurrentSensor(const CurrentSensorOptions& options,
                                              std::uint64_t seed)
-    : options_(options), noise_(seed, kCurrentNoise) {}
+    : options_(options), noise_(seed, RandomPurpose::kCurrentNoise) {}
 
 const CurrentMeasurement& EmulatedCurrentSensor::measure(Stamp stamp,
                                                          const Eigen::VectorXd& current,

@@ -5,12 +5,11 @@
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
 namespace {
-
-constexpr std::uint32_t kPurpose = 100;
 
 /// Errors of the angles may lead over the pole of the coordinates; the axis then comes down on the
 /// other side.
@@ -40,7 +39,7 @@ Actuator manufacturedActuator(const Actuator& nominal,
                               const ManufacturingErrors& errors,
                               std::uint64_t seed) {
   validate(errors);
-  NoiseSource noise(seed, kPurpose);
+  NoiseSource noise(seed, RandomPurpose::kManufacturingErrors);
   Actuator made = nominal;
   for (JointAxis& joint : made.joints) {
     joint.offset += noise.uniform(errors.joint_offset);

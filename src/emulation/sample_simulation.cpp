@@ -5,19 +5,20 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kPurpose = 200;
-
 /// What the sensors of one actuator tell at a pose.
 class SampleSource {
  public:
   SampleSource(const Actuator& truth, const SampleNoise& noise, std::uint64_t seed)
-      : joints_(jointGeometry(truth.joints)), noise_(noise), random_(seed, kPurpose) {
+      : joints_(jointGeometry(truth.joints)),
+        noise_(noise),
+        random_(seed, RandomPurpose::kSampleNoise) {
     if (truth.hasTorqueModel()) {
       curve_.emplace(*truth.torque_curve);
       geometry_ = torqueGeometry(truth);

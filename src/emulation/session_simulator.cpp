@@ -5,13 +5,12 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
 namespace {
-
-enum Purpose : std::uint32_t { kJointStream = 400, kTrackerStream, kWrenchStream, kCurrentStream };
 
 /// Simulated time between two reports of progress [s].
 constexpr double kProgressStep = 1.0;
@@ -37,10 +36,10 @@ class Simulation {
         tracker_(options.tracker, options.registration, plan.dwells.size(), options.seed),
         wrench_sensor_(options.wrench_sensor, options.registration, options.seed),
         current_sensor_(options.current_sensor, options.seed),
-        joint_stream_(schedule(options.joint_sensor.stream, kJointStream)),
-        tracker_stream_(schedule(options.tracker.stream, kTrackerStream)),
-        wrench_stream_(schedule(options.wrench_sensor.stream, kWrenchStream)),
-        current_stream_(schedule(options.current_sensor.stream, kCurrentStream)),
+        joint_stream_(schedule(options.joint_sensor.stream, RandomPurpose::kJointStream)),
+        tracker_stream_(schedule(options.tracker.stream, RandomPurpose::kTrackerStream)),
+        wrench_stream_(schedule(options.wrench_sensor.stream, RandomPurpose::kWrenchStream)),
+        current_stream_(schedule(options.current_sensor.stream, RandomPurpose::kCurrentStream)),
         tracker_end_(trackerEnd()) {
     if (!actuator_.hasTorque()) {
       wrench_stream_.stop();
@@ -66,7 +65,7 @@ class Simulation {
   }
 
  private:
-  StreamSchedule schedule(const StreamOptions& stream, std::uint32_t purpose) const {
+  StreamSchedule schedule(const StreamOptions& stream, RandomPurpose purpose) const {
     return {stream, trajectory_.duration(), options_.seed, purpose};
   }
 

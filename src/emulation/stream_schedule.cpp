@@ -40,7 +40,7 @@ void validate(const std::string& stream, const StreamOptions& options) {
 StreamSchedule::StreamSchedule(const StreamOptions& options,
                                double duration,
                                std::uint64_t seed,
-                               std::uint32_t purpose)
+                               RandomPurpose purpose)
     : options_(options),
       duration_(duration),
       noise_(seed, purpose),

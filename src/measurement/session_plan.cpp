@@ -8,13 +8,13 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
 
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kPurpose = 200;
 constexpr std::size_t kValidationCoils = 3;
 
 Eigen::VectorXd singleCoil(std::size_t coils, std::size_t coil, double current) {
@@ -127,7 +127,7 @@ SessionPlan planSession(const Actuator& nominal,
                         const SessionPlanOptions& options,
                         std::uint64_t seed) {
   validate(options, nominal);
-  NoiseSource noise(seed, kPurpose);
+  NoiseSource noise(seed, RandomPurpose::kSessionPlan);
   const double joint_tilt = options.joint_tilt_share * nominal.workspace.tilt_limit;
   const double torque_tilt = options.torque_tilt_share * nominal.workspace.tilt_limit;
   SessionPlan plan;

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
@@ -14,7 +15,6 @@
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kPurpose = 300;
 /// Poses drawn for each candidate wanted, before the search for useful ones ends.
 constexpr std::size_t kMostDraws = 30;
 
@@ -105,7 +105,7 @@ std::vector<PoseCandidate> drawPoses(const PlanningProblem& problem,
   if (!coils.empty()) {
     sampler.emplace(actuator, tilt);
   }
-  NoiseSource noise(options.seed, kPurpose);
+  NoiseSource noise(options.seed, RandomPurpose::kPoseCandidates);
   std::vector<PoseCandidate> candidates;
   for (std::size_t n = 0;
        n < kMostDraws * options.candidates && candidates.size() < options.candidates;

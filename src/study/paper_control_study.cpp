@@ -5,6 +5,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -16,7 +17,6 @@ namespace sac {
 namespace {
 
 constexpr double kSpeed = 3.14159265358979323846 / 48.0;  // [rad/s]
-constexpr std::uint32_t kPoses = 1;                       // purpose of random numbers
 
 /// Parameters after each stage of a session.
 struct Calibrated {
@@ -100,7 +100,7 @@ std::vector<TorqueErrorRun> studyTorqueErrors(const PaperStudyOptions& options,
                                               std::size_t poses,
                                               double tilt) {
   validate(options);
-  NoiseSource random(1, kPoses);
+  NoiseSource random(1, RandomPurpose::kStudyOrientations);
   std::vector<Eigen::Vector3d> places(poses);
   std::generate(places.begin(), places.end(), [&] { return randomPose(tilt, random); });
   const auto errors_of = [&](const Actuator& model) {

@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
@@ -16,10 +17,6 @@
 
 namespace sac {
 namespace {
-
-// Purposes of random numbers.
-constexpr std::uint32_t kPoses = 1;
-constexpr std::uint32_t kNoise = 2;
 
 /// Iterations of the paper's form that are looked at.
 constexpr int kPaperIterations = 8;
@@ -32,7 +29,7 @@ double uniformStddev(double half_width) {
 }
 
 std::vector<Eigen::Vector3d> randomPoses(std::size_t count, double tilt, std::uint64_t seed) {
-  NoiseSource random(seed, kPoses);
+  NoiseSource random(seed, RandomPurpose::kStudyOrientations);
   std::vector<Eigen::Vector3d> poses(count);
   std::generate(poses.begin(), poses.end(), [&] { return randomPose(tilt, random); });
   return poses;
@@ -42,7 +39,7 @@ std::vector<Sample> orientationSamples(const PaperStudyOptions& options,
                                        const std::vector<Eigen::Vector3d>& poses,
                                        double noise,
                                        std::uint64_t seed) {
-  NoiseSource random(seed, kNoise);
+  NoiseSource random(seed, RandomPurpose::kStudyNoise);
   const JointGeometry joints = jointGeometry(options.truth.joints);
   std::vector<Sample> samples;
   samples.reserve(poses.size());
@@ -62,7 +59,7 @@ std::vector<Sample> torqueSamples(const PaperStudyOptions& options,
                                   std::size_t coil,
                                   double noise,
                                   std::uint64_t seed) {
-  NoiseSource random(seed, kNoise);
+  NoiseSource random(seed, RandomPurpose::kStudyNoise);
   const JointGeometry joints = jointGeometry(options.truth.joints);
   const TorqueGeometry geometry = torqueGeometry(options.truth);
   const TorqueCurve curve(*options.truth.torque_curve);

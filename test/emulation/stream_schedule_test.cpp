@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 
 namespace sac {
 namespace {
@@ -16,7 +17,8 @@ constexpr std::uint64_t kSeed = 5;
 
 std::vector<ScheduledMeasurement> scheduleOf(const StreamOptions& options) {
   std::vector<ScheduledMeasurement> measurements;
-  for (StreamSchedule schedule(options, kDuration, kSeed, 1); !schedule.done();
+  for (StreamSchedule schedule(options, kDuration, kSeed, RandomPurpose::kJointStream);
+       !schedule.done();
        schedule.advance()) {
     measurements.push_back(schedule.next());
   }

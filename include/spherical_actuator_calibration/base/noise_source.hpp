@@ -6,13 +6,15 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
+
 namespace sac {
 
 /// Random numbers of one purpose. Seed and purpose decide all of them, so that what one purpose
 /// draws never changes another; the size of a noise does not change what is drawn after it.
 class NoiseSource {
  public:
-  NoiseSource(std::uint64_t seed, std::uint32_t purpose);
+  NoiseSource(std::uint64_t seed, RandomPurpose purpose);
 
   /// Normally distributed around 0.
   double gaussian(double stddev) { return stddev * normal_(generator_); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
@@ -40,7 +41,7 @@ class StreamSchedule {
   StreamSchedule(const StreamOptions& options,
                  double duration,
                  std::uint64_t seed,
-                 std::uint32_t purpose);
+                 RandomPurpose purpose);
 
   /// True when no measurement is left.
   bool done() const { return done_; }
