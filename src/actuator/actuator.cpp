@@ -3,13 +3,12 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kUnitTolerance = 1e-3;
 
 /// Key of an entry as a description file counts it, from 0: "poles[3]".
 std::string entryKey(const std::string& list, std::size_t index) {

@@ -8,26 +8,25 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // ---- actuator
 // --------------------------------------------------------------------------------------
 
 Eigen::Vector3d readUnitAxis(const YamlMap& joint) {
-  constexpr double kTolerance = 1e-3;
   // An axis this close to unit length was normalised before: saved again, it is the same.
   constexpr double kRounding = 1e-14;
   const std::vector<double> values = joint.numbers("axis", ValueRange::finite(), kJoints);
   const Eigen::Vector3d axis(values[0], values[1], values[2]);
   requireInRange(joint.where("axis") + ": length",
                  axis.norm(),
-                 ValueRange::closed(1.0 - kTolerance, 1.0 + kTolerance));
+                 ValueRange::closed(1.0 - kUnitTolerance, 1.0 + kUnitTolerance));
   return std::abs(axis.norm() - 1.0) > kRounding ? axis.normalized() : axis;
 }
 

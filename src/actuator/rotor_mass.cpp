@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
+
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Inertia [kg·m²] of a body of revolution with the given moments along and across its unit axis.
 Eigen::Matrix3d inertiaOfRevolution(const Eigen::Vector3d& axis, double along, double across) {

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double radiansPerUnit(AngleUnit unit) {
   return unit == AngleUnit::kDegree ? kPi / 180.0 : 1.0;

@@ -9,14 +9,13 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
 
 #include <tinyxml2.h>
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Largest difference [rad] between two descriptions of one nominal joint.
 constexpr double kAngleTolerance = 1e-6;

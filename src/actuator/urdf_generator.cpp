@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
 
 #include <tinyxml2.h>
@@ -15,8 +16,6 @@ namespace sac {
 namespace {
 
 using tinyxml2::XMLElement;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // What holds the stator: drawn only, hence no part of the dimensions [m].
 constexpr int kRods = 4;

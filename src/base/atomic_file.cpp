@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/folder_sync.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -112,16 +113,6 @@ class TemporaryFile {
   bool published_ = false;
 };
 
-/// Makes the new name itself survive a power failure. Some file systems cannot sync a folder; the
-/// file is complete then, too.
-void syncFolder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor >= 0) {
-    ::fsync(descriptor);
-    ::close(descriptor);
-  }
-}
-
 }  // namespace
 
 void writeFileAtomically(const std::string& path,
@@ -147,6 +138,7 @@ void writeFileAtomically(const std::string& path,
   }
   file.write(content);
   file.publish(policy);
+  // The new name itself survives a power failure.
   syncFolder(target.parent_path());
 }
 

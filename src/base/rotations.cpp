@@ -32,6 +32,11 @@ Coefficients coefficients(double theta_squared) {
 
 }  // namespace
 
+bool isUnit(const Eigen::Quaterniond& q) {
+  // False also for NaN, and for a norm that overflows.
+  return std::abs(q.norm() - 1.0) <= kUnitTolerance;
+}
+
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d matrix;
   matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;

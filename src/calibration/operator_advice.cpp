@@ -11,12 +11,11 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 enum class Part { kJointOffset, kJointAxis, kPole, kCoil, kEffect };
 

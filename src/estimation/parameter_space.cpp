@@ -6,11 +6,10 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// ∂(polar, azimuth)/∂(u, v) of an axis given by angles; rows scaled by cos(polar) never below a
 /// floor so that the result stays finite where the azimuth is undefined.

@@ -8,12 +8,11 @@
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Element `index` ≥ 1 of the van der Corput sequence in [0, 1).
 double vanDerCorput(int index, int base) {

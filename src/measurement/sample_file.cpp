@@ -1,15 +1,12 @@
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 
-#include <cmath>
-
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kUnitTolerance = 1e-3;
 
 /// Standard deviations for samples that state none.
 struct DefaultStddevs {
@@ -22,9 +19,10 @@ Eigen::Vector3d vector3(const YamlMap& map, const std::string& key, const ValueR
 }
 
 Eigen::Matrix3d rotation(const YamlMap& map, const std::string& key) {
-  const std::vector<double> xyzw = map.numbers(key, ValueRange::closed(-1.001, 1.001), 4);
+  const std::vector<double> xyzw =
+      map.numbers(key, ValueRange::closed(-1.0 - kUnitTolerance, 1.0 + kUnitTolerance), 4);
   const Eigen::Quaterniond q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-  if (std::abs(q.norm() - 1.0) > kUnitTolerance) {
+  if (!isUnit(q)) {
     map.fail(key, "the quaternion has norm " + std::to_string(q.norm()) + " instead of 1.");
   }
   return q.normalized().toRotationMatrix();

@@ -4,10 +4,11 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
+
 namespace sac {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostDraws = 2000;
 
 // Angles at which a pair is informative, and margins around the joints of the curve where its true

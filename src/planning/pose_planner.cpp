@@ -9,6 +9,7 @@
 #include "pose_selection.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
@@ -16,8 +17,6 @@
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Standard deviation of what nothing tells [rad]: about a manufacturing tolerance. It only ranks
 /// the first poses, which cannot determine everything; the result does not contain it.

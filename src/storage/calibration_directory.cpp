@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "folder_sync.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/folder_sync.hpp"
 
 #include <unistd.h>
 

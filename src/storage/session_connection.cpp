@@ -4,8 +4,8 @@
 
 #include <SQLiteCpp/Transaction.h>
 
-#include "folder_sync.hpp"
 #include "session_schema.hpp"
+#include "spherical_actuator_calibration/base/folder_sync.hpp"
 
 namespace sac {
 namespace {

@@ -4,12 +4,11 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/measurement/stamp_interval.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kNormTolerance = 1e-3;
 
 StampFilterOptions stampOptions(const MeasurementBridgeOptions& options) {
   StampFilterOptions stamps;
@@ -25,9 +24,9 @@ void requireFinite(const MarkerPoseMeasurement& pose) {
 }
 
 void requireUnit(const MarkerPoseMeasurement& pose) {
-  const double norm = pose.q_tracker_marker.norm();
-  if (std::abs(norm - 1.0) > kNormTolerance) {
-    throw DataError("the norm of its quaternion is " + std::to_string(norm) +
+  if (!isUnit(pose.q_tracker_marker)) {
+    throw DataError("the norm of its quaternion is " +
+                    std::to_string(pose.q_tracker_marker.norm()) +
                     ", not 1: check the tracker's driver");
   }
 }

@@ -8,12 +8,10 @@
 
 #include "current_segments.hpp"
 #include "dwell_samples.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
-
-/// Quaternions whose norm is further from 1 are wrong, not just rounded.
-constexpr double kUnitTolerance = 1e-3;
 
 /// A stream that is silent for longer was switched off on purpose: a tracker that is only needed
 /// for some poses [s].
@@ -34,9 +32,7 @@ std::optional<DropReason> defectOf(const Eigen::Quaterniond& q) {
   if (!q.coeffs().allFinite()) {
     return DropReason::kNotFinite;
   }
-  // The negated comparison also catches a norm that overflows.
-  return std::abs(q.norm() - 1.0) <= kUnitTolerance ? std::nullopt
-                                                    : std::optional(DropReason::kNotUnit);
+  return isUnit(q) ? std::nullopt : std::optional(DropReason::kNotUnit);
 }
 
 const SampleBuilderOptions& validated(const SampleBuilderOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
@@ -16,7 +17,7 @@
 namespace sac {
 namespace {
 
-constexpr double kSpeed = 3.14159265358979323846 / 48.0;  // [rad/s]
+constexpr double kSpeed = kPi / 48.0;  // [rad/s]
 
 /// Parameters after each stage of a session.
 struct Calibrated {

@@ -10,12 +10,12 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/error_message.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Actuator validActuator() {

@@ -11,13 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A description with one line per value, so that each can be spoilt.
 constexpr const char* kDescription =

@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Integral over a tube along `axis` by summation over small pieces.
 MassProperties summed(double density,

@@ -12,13 +12,12 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 constexpr const char* kRobot = R"(<?xml version="1.0" encoding="utf-8"?>
 <!-- first comment -->

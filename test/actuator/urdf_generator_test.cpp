@@ -13,13 +13,13 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRounding = 1e-8;
 
 /// Six poles in two layers that are no mirror image of each other, and twelve coils in three.

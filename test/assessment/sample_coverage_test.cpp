@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -36,7 +37,7 @@ class SampleCoverageTest : public ::testing::Test {
 
 /// Coil 1 lies at azimuth 0, poles every 45 degrees, and one reaches no further than 32 degrees.
 TEST_F(SampleCoverageTest, CountsPolesWithinReachOfTheExcitedCoil) {
-  const SampleCoverage result = coverage(atSpins({0.0, 0.0, -M_PI / 4.0}, 0));
+  const SampleCoverage result = coverage(atSpins({0.0, 0.0, -kPi / 4.0}, 0));
   EXPECT_EQ(result.poles, (std::vector<std::uint32_t>{2, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(result.coils[0], 3U);
   EXPECT_EQ(result.coils[1], 0U);

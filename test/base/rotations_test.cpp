@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/numeric_jacobian.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Rotation vectors of every size that matters: zero, below and above the series limit, near π.
 std::vector<Eigen::Vector3d> rotationVectors() {

@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "support/calibration_trials.hpp"
 #include "support/scenarios.hpp"
@@ -13,7 +14,6 @@
 namespace sac {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNoise = 5e-4;  // uniform, per component [N·m]
 constexpr CycleRequest kPolesCycle{Cycle::kPoles, 0};
 

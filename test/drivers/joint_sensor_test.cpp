@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/error_message.hpp"
 #include "support/scripted_transport.hpp"
 
@@ -14,7 +15,6 @@ namespace sac {
 namespace {
 
 constexpr char kShippedFile[] = SOURCE_DIR "/config/joint_sensor.yaml";
-constexpr double kPi = 3.14159265358979323846;
 
 JointSensorOptions shippedOptions() {
   return readJointSensorOptions(YamlMap::load(kShippedFile));

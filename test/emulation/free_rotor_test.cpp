@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -35,7 +36,7 @@ TEST_F(FreeRotorTest, SwingsAsAPendulum) {
   FreeRotor rotor(scenarios::paperNominal(), body, kStopTilt);
   rotor.release({0.05, 0.0, 0.0});
   // Half a period of small swings.
-  const double half = 3.14159265358979 * std::sqrt(1e-3 / 0.01);
+  const double half = kPi * std::sqrt(1e-3 / 0.01);
   for (int n = 0; n < std::lround(half / kStep); ++n) {
     rotor.advance(kStep, no_current_);
   }

@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -54,7 +55,7 @@ TEST(ManufacturingErrors, OfZeroLeaveTheNominalActuator) {
 
 TEST(ManufacturingErrors, LeadOverThePoleOfTheCoordinates) {
   Actuator nominal = scenarios::paperNominal();
-  nominal.coils = {{M_PI_2, 0.0, 1.0}};
+  nominal.coils = {{kPi / 2.0, 0.0, 1.0}};
   ManufacturingErrors errors;
   errors.coil_angle = 0.5;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

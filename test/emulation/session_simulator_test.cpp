@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
 #include "support/scenarios.hpp"
@@ -230,7 +231,7 @@ TEST(SessionSimulator, NoiseHasTheStatedSize) {
     joint_sum += (joint.position - joint_course.at(scene.secondsInto(joint.stamp)).joint_position)
                      .squaredNorm();
   }
-  const double quantisation = 2.0 * M_PI / 131072.0;
+  const double quantisation = 2.0 * kPi / 131072.0;
   EXPECT_NEAR(std::sqrt(joint_sum / (3.0 * static_cast<double>(recording.joints.size()))),
               std::sqrt(4e-10 + quantisation * quantisation / 12.0),
               1e-6);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/emulation/session_simulator.hpp"
 
@@ -20,8 +21,8 @@ Eigen::Matrix3d someOrientation() {
 TEST(Registration, OrientationComesThroughTrackerAndMarker) {
   // Tracker turned a quarter about z, marker a quarter about x: by hand.
   Registration registration;
-  registration.X_stator_tracker.linear() = rotationExp({0.0, 0.0, M_PI_2});
-  registration.X_rotor_marker.linear() = rotationExp({M_PI_2, 0.0, 0.0});
+  registration.X_stator_tracker.linear() = rotationExp({0.0, 0.0, kPi / 2.0});
+  registration.X_rotor_marker.linear() = rotationExp({kPi / 2.0, 0.0, 0.0});
   const MarkerPoseMeasurement pose{7, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()};
   const OrientationMeasurement orientation = orientationFromMarkerPose(registration, pose);
   Eigen::Matrix3d R_expected;
@@ -57,7 +58,7 @@ TEST(Registration, LeverArmEntersTheTorque) {
   // A sensor 0.1 m above the centre, turned a quarter about z, feels 2 N along its x: that is along
   // y of the rotor, and turns the rotor about −x.
   Registration registration;
-  registration.X_rotor_sensor.linear() = rotationExp({0.0, 0.0, M_PI_2});
+  registration.X_rotor_sensor.linear() = rotationExp({0.0, 0.0, kPi / 2.0});
   registration.X_rotor_sensor.translation() = Eigen::Vector3d(0.0, 0.0, 0.1);
   const WrenchMeasurement wrench{9, {2.0, 0.0, 0.0}, {0.05, 0.0, 0.0}};
   const TorqueMeasurement torque = torqueFromWrench(registration, wrench);
@@ -71,7 +72,7 @@ TEST(Registration, SensorUnderTheStatorFeelsTheReaction) {
   // z, so that its x is the stator's y.
   Eigen::Isometry3d X_stator_sensor = Eigen::Isometry3d::Identity();
   X_stator_sensor.translation() = Eigen::Vector3d(0.0, 0.0, -0.1);
-  const Eigen::Quaterniond q_stator_rotor(rotationExp({0.0, 0.0, M_PI_2}));
+  const Eigen::Quaterniond q_stator_rotor(rotationExp({0.0, 0.0, kPi / 2.0}));
   const WrenchMeasurement wrench{9, {2.0, 0.0, 0.0}, {0.0, 0.0, -0.5}};
   const TorqueMeasurement torque = torqueFromStatorWrench(X_stator_sensor, q_stator_rotor, wrench);
   EXPECT_LT((torque.torque - Eigen::Vector3d(0.2, 0.0, 0.5)).norm(), 1e-15);

@@ -10,12 +10,13 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegree = kPi / 180.0;
 constexpr std::uint64_t kSeed = 3;
 
 /// Coil of a pattern that excites just one, counted from 0.
@@ -115,7 +116,7 @@ TEST(SessionPlan, StaysWithinTheTilt) {
     const double tilt = dwell.joint_position.head<2>().cwiseAbs().maxCoeff();
     double& largest = dwell.patterns.empty() || dwell.validation ? largest_joint : largest_torque;
     largest = std::max(largest, tilt);
-    EXPECT_LE(std::abs(dwell.joint_position[2]), M_PI);
+    EXPECT_LE(std::abs(dwell.joint_position[2]), kPi);
   }
   EXPECT_LE(largest_joint, 0.45);
   EXPECT_GT(largest_joint, 0.38);

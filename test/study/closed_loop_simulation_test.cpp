@@ -8,13 +8,14 @@
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kRate = 3.14159265358979323846 / 48.0;  // of the paper's trajectory [rad/s]
+constexpr double kRate = kPi / 48.0;  // of the paper's trajectory [rad/s]
 
 /// The paper's trajectory q₁ = πt/48 (Figure 14).
 DesiredMotion paperTrajectory(double time) {

@@ -5,12 +5,12 @@
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac::scenarios {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLayerElevation = 0.2618;
 constexpr double kOrientationNoise = 1e-3;  // uniform, per component [rad]
 constexpr double kTorqueNoise = 5e-4;       // uniform, per component [N·m]

@@ -14,6 +14,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "spherical_actuator_calibration/ros/conversion/file_checksum.hpp"
@@ -133,8 +134,8 @@ TEST_F(CalibrateBag, FindsTheTruthOfAnEmulatedSession) {
 
 TEST_F(CalibrateBag, TruthMayCountItsAzimuthsFromAnotherTurn) {
   Actuator turned = trueUnit();
-  turned.poles[1].azimuth += 2.0 * M_PI;
-  turned.coils[0].azimuth -= 2.0 * M_PI;
+  turned.poles[1].azimuth += 2.0 * kPi;
+  turned.coils[0].azimuth -= 2.0 * kPi;
   saveDescription(path("turned.yaml"), {turned}, OverwritePolicy::kRefuse);
   const auto table = [](const Outcome& outcome) {
     return outcome.output.substr(outcome.output.find("\nparameter "));

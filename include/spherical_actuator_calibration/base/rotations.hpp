@@ -7,6 +7,13 @@
 
 namespace sac {
 
+/// How far the norm of a unit quaternion or axis may be from 1 where it was written down or
+/// measured: further off it is wrong, not just rounded.
+inline constexpr double kUnitTolerance = 1e-3;
+
+/// Whether a quaternion has norm 1 within kUnitTolerance; false for what is not finite.
+bool isUnit(const Eigen::Quaterniond& q);
+
 /// Cross-product matrix: `skew(v) * w == v.cross(w)`.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 

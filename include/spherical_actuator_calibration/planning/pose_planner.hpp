@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
@@ -45,9 +46,9 @@ struct PosePlanOptions {
   PlanCriterion criterion = PlanCriterion::kWorstStddev;
 
   std::optional<double> tilt_limit;  ///< of |q₁| and |q₂| [rad]; else the workspace's
-  double spin_minimum = -3.14159265358979323846;    ///< of q₃ [rad]
-  double spin_maximum = 3.14159265358979323846;     ///< of q₃ [rad]
-  double minimum_spacing = 0.1;                     ///< rotation angle between two poses [rad]
+  double spin_minimum = -kPi;        ///< of q₃ [rad]
+  double spin_maximum = kPi;         ///< of q₃ [rad]
+  double minimum_spacing = 0.1;      ///< rotation angle between two poses [rad]
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< joint angles where the way begins [rad]
 
   /// Expected of the sensors, per component of a mean; joints: zero is exact.

@@ -8,6 +8,7 @@
 #include <ros/init.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
@@ -131,8 +132,7 @@ void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionSta
                       options_.stator_frame + "\".");
     }
     const OrientationMeasurement target = orientationFromRos(message);
-    constexpr double kUnitTolerance = 1e-3;
-    if (!(std::abs(target.q_stator_rotor.norm() - 1.0) < kUnitTolerance)) {
+    if (!isUnit(target.q_stator_rotor)) {
       throw DataError("its quaternion is not of unit length.");
     }
     const Stamp stamp =

@@ -1,25 +1,21 @@
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
 
-/// Quaternions whose norm is further from 1 are wrong, not just rounded.
-constexpr double kUnitTolerance = 1e-3;
-
 Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::uint32_t id) {
   const Eigen::Quaterniond q = quaternionFromRos(message);
-  // The negated comparison also catches NaN.
-  if (!(std::abs(q.norm() - 1.0) <= kUnitTolerance)) {
+  if (!isUnit(q)) {
     throw DataError("Sample " + std::to_string(id) + ": orientation is not a unit quaternion.");
   }
   return q.normalized().toRotationMatrix();

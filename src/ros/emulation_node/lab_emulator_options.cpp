@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 
@@ -26,9 +27,8 @@ Eigen::Isometry3d readTransform(const YamlMap& map, const char* key) {
   Eigen::Vector4d quaternion;
   text >> position[0] >> position[1] >> position[2];
   text >> quaternion[0] >> quaternion[1] >> quaternion[2] >> quaternion[3];
-  constexpr double kUnitTolerance = 1e-3;
   if (text.fail() || !(text >> std::ws).eof() || !position.allFinite() ||
-      !(std::abs(quaternion.norm() - 1.0) < kUnitTolerance)) {
+      !isUnit(Eigen::Quaterniond(quaternion))) {
     map.fail(key, "is no transform \"x y z qx qy qz qw\" with a unit quaternion.");
   }
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();

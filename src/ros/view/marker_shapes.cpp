@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
@@ -72,7 +73,7 @@ void drawCylinder(
 void drawCone(
     Marker& marker, const Eigen::Vector3d& axis, double from, double to, double half_angle) {
   constexpr int kSegments = 24;
-  constexpr double kFullTurn = 2.0 * 3.14159265358979323846;
+  constexpr double kFullTurn = 2.0 * kPi;
   const Eigen::Vector3d across = axis.unitOrthogonal();
   const Eigen::Vector3d third = axis.cross(across);
   const double slope = std::tan(half_angle);

@@ -1,4 +1,4 @@
-#include "folder_sync.hpp"
+#include "spherical_actuator_calibration/base/folder_sync.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
