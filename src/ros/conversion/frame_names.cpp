@@ -7,4 +7,8 @@ bool isFrame(const std::string& frame_id, const std::string& frame) {
                                frame_id.compare(1, std::string::npos, frame) == 0);
 }
 
+std::string otherFrame(const std::string& frame_id, const std::string& frame) {
+  return "is in the frame \"" + frame_id + "\", not in \"" + frame + "\"";
+}
+
 }  // namespace sac

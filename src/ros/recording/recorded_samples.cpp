@@ -34,8 +34,8 @@ void RecordedSamples::add(const msg::CalibrationSample& message) {
 Sample RecordedSamples::usableSample(const msg::CalibrationSample& message) {
   const std::string& frame = message.header.frame_id;
   if (!frame.empty() && !isFrame(frame, frames_.stator)) {
-    throw DataError("Sample " + std::to_string(message.id) + ": is in the frame \"" + frame +
-                    "\", not in \"" + frames_.stator + "\".");
+    throw DataError("Sample " + std::to_string(message.id) + ": " +
+                    otherFrame(frame, frames_.stator) + ".");
   }
   Sample sample = sampleFromRos(message);
   sample.has_torque = sample.has_torque && coils_ > 0;

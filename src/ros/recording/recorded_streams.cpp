@@ -14,8 +14,8 @@ void requireSomeInFrame(const std::string& topic,
                         std::uint64_t in_other_frame,
                         const std::string& frame) {
   if (received == 0 && in_other_frame > 0) {
-    throw DataError(topic + " is in the frame \"" + other_frame + "\", not in \"" + frame +
-                    "\"; transform it, or name its frame in the configuration (frames).");
+    throw DataError(topic + " " + otherFrame(other_frame, frame) +
+                    "; transform it, or name its frame in the configuration (frames).");
   }
 }
 
@@ -26,11 +26,11 @@ RecordedStreams::RecordedStreams(const Actuator& nominal,
                                  const SampleBuilderOptions& options)
     : nominal_(nominal),
       frames_(frames),
-      joint_reader_(jointNames(nominal)),
+      reader_(nominal, frames),
       builder_(options, modelledCoils(nominal)) {}
 
 void RecordedStreams::add(const sensor_msgs::JointState& message) {
-  if (const auto measurement = joint_reader_.read(message)) {
+  if (const JointMeasurement* measurement = reader_.read(message)) {
     builder_.add(*measurement);
     return;
   }
@@ -39,8 +39,8 @@ void RecordedStreams::add(const sensor_msgs::JointState& message) {
 }
 
 void RecordedStreams::add(const geometry_msgs::QuaternionStamped& message) {
-  if (isFrame(message.header.frame_id, frames_.stator)) {
-    builder_.add(orientationFromRos(message));
+  if (const OrientationMeasurement* measurement = reader_.read(message)) {
+    builder_.add(*measurement);
     return;
   }
   ++counts_.orientations_in_other_frame;
@@ -48,8 +48,8 @@ void RecordedStreams::add(const geometry_msgs::QuaternionStamped& message) {
 }
 
 void RecordedStreams::add(const geometry_msgs::Vector3Stamped& message) {
-  if (isFrame(message.header.frame_id, frames_.rotor)) {
-    builder_.add(torqueFromRos(message));
+  if (const TorqueMeasurement* measurement = reader_.read(message)) {
+    builder_.add(*measurement);
     return;
   }
   ++counts_.torques_in_other_frame;
@@ -57,8 +57,9 @@ void RecordedStreams::add(const geometry_msgs::Vector3Stamped& message) {
 }
 
 void RecordedStreams::add(const msg::CoilCurrents& message) {
-  currentFromRos(message, current_);
-  builder_.add(current_);
+  if (const CurrentMeasurement* measurement = reader_.read(message)) {
+    builder_.add(*measurement);
+  }
   currents_ = message.current.size();
 }
 

@@ -6,10 +6,9 @@
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
-#include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
 
@@ -46,9 +45,8 @@ class RecordedStreams {
  private:
   const Actuator& nominal_;
   const MeasurementFrames& frames_;
-  JointStateReader joint_reader_;
+  MeasurementReader reader_;
   SampleBuilder builder_;
-  CurrentMeasurement current_;  ///< storage, reused
 
   RecordedStreamsReport counts_;  ///< without `samples`
   // The last ones of their kind, for messages.
