@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
 
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
 
@@ -13,8 +14,7 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
   options.capture_duration =
       map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
   options.report_page = map.boolean("report_page", options.report_page);
-  // Read by diagnostic_updater itself.
-  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  acceptDiagnosticPeriod(map);
   map.finish();
   return options;
 }

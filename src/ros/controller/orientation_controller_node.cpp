@@ -9,14 +9,14 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
-constexpr double kWarningPeriod = 2.0;      // [s]
+constexpr double kWarningPeriod = 2.0;  // [s]
 constexpr std::uint32_t kQueueLength = 100;
 constexpr double kMicro = 1e6;
 
@@ -37,7 +37,7 @@ void CycleStatistics::add(double begin, double end) {
   last_begin_ = begin;
 }
 
-void CycleStatistics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void CycleStatistics::report(DiagnosticStatus& status) {
   const double mean = cycles_ == 0 ? 0.0 : total_ / static_cast<double>(cycles_);
   status.add("cycles", cycles_);
   status.add("mean computation [us]", kMicro * mean);
@@ -60,7 +60,7 @@ OrientationControllerNode::OrientationControllerNode(
       joint_reader_(jointNames(design)),
       controller_(design, options.controller),
       statistics_(1.0 / options.rate),
-      diagnostics_(node, private_node) {
+      diagnostics_(node, private_node, design) {
   ros::NodeHandle handle = node;
   ros::NodeHandle private_handle = private_node;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
@@ -75,11 +75,7 @@ OrientationControllerNode::OrientationControllerNode(
                                           this,
                                           at_once));
   service_ = private_handle.advertiseService("enable", &OrientationControllerNode::enable, this);
-  diagnostics_.setHardwareID(design.serial.empty() ? design.name : design.serial);
-  diagnostics_.add("control", this, &OrientationControllerNode::diagnose);
-  diagnostics_timer_ = handle.createWallTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::WallTimerEvent& /*event*/) { diagnostics_.update(); });
+  diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
 }
 
@@ -127,9 +123,8 @@ void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& mes
 void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionStamped& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   try {
-    if (message.header.frame_id != options_.stator_frame) {
-      throw DataError("it is in the frame \"" + message.header.frame_id + "\", not in \"" +
-                      options_.stator_frame + "\".");
+    if (!isFrame(message.header.frame_id, options_.stator_frame)) {
+      throw DataError("it " + otherFrame(message.header.frame_id, options_.stator_frame) + ".");
     }
     const OrientationMeasurement target = orientationFromRos(message);
     if (!isUnit(target.q_stator_rotor)) {
@@ -207,8 +202,7 @@ void OrientationControllerNode::publish(const Eigen::VectorXd& currents, const r
   publisher_.publish(message_);
 }
 
-void OrientationControllerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
+void OrientationControllerNode::diagnose(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   switch (controller_.state()) {
     case ControlState::kIdle:
@@ -226,7 +220,7 @@ void OrientationControllerNode::diagnose(diagnostic_updater::DiagnosticStatusWra
   }
   statistics_.report(status);
   status.add("tracking error [mrad]", 1e3 * controller_.trackingError());
-  status.add("last refusal", last_refusal_.empty() ? "none" : last_refusal_);
+  addTextOrNone(status, "last refusal", last_refusal_);
 }
 
 }  // namespace sac

@@ -3,6 +3,7 @@
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
 namespace {
@@ -65,8 +66,7 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
   if (map.has("reference")) {
     readReference(map.map("reference"), controller.reference);
   }
-  // Read by diagnostic_updater itself.
-  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  acceptDiagnosticPeriod(map);
   map.finish();
   validate(controller);
   return options;

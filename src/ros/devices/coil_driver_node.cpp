@@ -17,13 +17,7 @@
 namespace sac {
 namespace {
 
-constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
-constexpr double kWarningPeriod = 2.0;      // [s]
-
-StreamLimits measuredLimits(double rate) {
-  constexpr double kLargestAge = 0.5;
-  return {0.5 * rate, std::max(kLargestAge, 3.0 / rate)};
-}
+constexpr double kWarningPeriod = 2.0;  // [s]
 
 const Actuator& withCoils(const Actuator& actuator) {
   if (actuator.coils.empty()) {
@@ -37,8 +31,7 @@ const Actuator& withCoils(const Actuator& actuator) {
 CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& private_node) {
   const YamlMap map = privateParameters(private_node);
   CurrentAmplifierOptions options = readCurrentAmplifierOptions(map);
-  // Read by diagnostic_updater itself.
-  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  acceptDiagnosticPeriod(map);
   map.finish();
   return options;
 }
@@ -54,19 +47,15 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       zero_reason_("no command has come"),
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuator.coils.size()))),
       commands_("coil_command", {0.0, options.watchdog}),
-      currents_("coil_currents", measuredLimits(options.rate)),
+      currents_("coil_currents", limitsOfRate(options.rate)),
       link_diagnostics_(describe(options.link)),
-      diagnostics_(node, private_node) {
+      diagnostics_(node, private_node, actuator) {
   ros::NodeHandle handle = node;
   constexpr std::uint32_t kQueueLength = 1000;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_currents", kQueueLength);
-  diagnostics_.setHardwareID(actuator.serial.empty() ? actuator.name : actuator.serial);
   diagnostics_.add(link_diagnostics_);
-  diagnostics_.add("output", this, &CoilDriverNode::diagnoseOutput);
+  diagnostics_.add("output", [this](DiagnosticStatus& status) { diagnoseOutput(status); });
   diagnostics_.add(currents_);
-  diagnostics_timer_ =
-      handle.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
-                             [this](const ros::WallTimerEvent& /*event*/) { updateDiagnostics(); });
   // Only the newest command counts.
   subscriber_ = handle.subscribe(
       "coil_command", 1, &CoilDriverNode::receive, this, ros::TransportHints().tcpNoDelay());
@@ -129,7 +118,7 @@ void CoilDriverNode::beat() {
                                     ? "The coils follow the commands."
                                     : "The currents are zero: " + beat.zero_reason;
       ROS_INFO_STREAM(state);
-      state_changed_ = true;
+      diagnostics_.tellAtOnce();
     }
     zero_reason_ = beat.zero_reason;
     fault_ = beat.fault;
@@ -150,17 +139,7 @@ void CoilDriverNode::publish(const Eigen::VectorXd& currents, const ros::Time& s
   currents_.accept(stamp);
 }
 
-// What makes the currents zero is told at once.
-void CoilDriverNode::updateDiagnostics() {
-  if (state_changed_.exchange(false)) {
-    diagnostics_.force_update();
-  } else {
-    diagnostics_.update();
-  }
-}
-
-void CoilDriverNode::diagnoseOutput(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
+void CoilDriverNode::diagnoseOutput(DiagnosticStatus& status) {
   // Rate, age and refusals of the commands; that none come is a state, no error.
   commands_.run(status);
   const std::lock_guard<std::mutex> lock(mutex_);

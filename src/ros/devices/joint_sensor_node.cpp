@@ -13,22 +13,14 @@
 namespace sac {
 namespace {
 
-constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
-constexpr double kWarningPeriod = 5.0;      // [s]
-
-/// A stream slower than half of what is asked for is a warning.
-StreamLimits limitsFor(double rate) {
-  constexpr double kLargestAge = 0.5;
-  return {0.5 * rate, std::max(kLargestAge, 3.0 / rate)};
-}
+constexpr double kWarningPeriod = 5.0;  // [s]
 
 }  // namespace
 
 JointSensorOptions loadJointSensorOptions(const ros::NodeHandle& private_node) {
   const YamlMap map = privateParameters(private_node);
   JointSensorOptions options = readJointSensorOptions(map);
-  // Read by diagnostic_updater itself.
-  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  acceptDiagnosticPeriod(map);
   map.finish();
   return options;
 }
@@ -40,9 +32,9 @@ JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
                                  std::unique_ptr<ModbusTransport> transport)
     : transport_(std::move(transport)),
       sensor_(options, *transport_),
-      stream_("joint_states", limitsFor(options.rate)),
+      stream_("joint_states", limitsOfRate(options.rate)),
       link_diagnostics_(describe(options.link)),
-      diagnostics_(node, private_node) {
+      diagnostics_(node, private_node, actuator) {
   for (const JointAxis& joint : actuator.joints) {
     message_.name.push_back(joint.name);
   }
@@ -50,12 +42,8 @@ JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
   ros::NodeHandle handle = node;
   constexpr std::uint32_t kQueueLength = 1000;
   publisher_ = handle.advertise<sensor_msgs::JointState>("joint_states", kQueueLength);
-  diagnostics_.setHardwareID(actuator.serial.empty() ? actuator.name : actuator.serial);
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add(stream_);
-  diagnostics_timer_ =
-      handle.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
-                             [this](const ros::WallTimerEvent& /*event*/) { updateDiagnostics(); });
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { poll(); });
 }
 
@@ -80,16 +68,7 @@ void JointSensorNode::poll() {
   }
   link_diagnostics_.update(link_);
   if (was_up != link_.isUp()) {
-    link_changed_ = true;
-  }
-}
-
-// A link that is lost, or back, is told at once.
-void JointSensorNode::updateDiagnostics() {
-  if (link_changed_.exchange(false)) {
-    diagnostics_.force_update();
-  } else {
-    diagnostics_.update();
+    diagnostics_.tellAtOnce();
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
+
 namespace sac {
 
 LinkDiagnostics::LinkDiagnostics(std::string device)
@@ -12,18 +14,18 @@ void LinkDiagnostics::update(const LinkSupervisor& link) {
   link_ = link;
 }
 
-void LinkDiagnostics::run(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void LinkDiagnostics::run(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (link_.isUp()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "connected");
+    status.summary(DiagnosticStatus::OK, "connected");
   } else {
-    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR,
+    status.summary(DiagnosticStatus::ERROR,
                    link_.lastError().empty() ? "not connected yet" : link_.lastError());
   }
   status.add("device", device_);
   status.add("reconnects", link_.reconnects());
   status.add("failures", link_.failures());
-  status.add("last error", link_.lastError().empty() ? "none" : link_.lastError());
+  addTextOrNone(status, "last error", link_.lastError());
 }
 
 }  // namespace sac

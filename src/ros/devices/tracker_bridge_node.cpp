@@ -17,8 +17,7 @@ namespace {
 
 /// Messages that may wait while the computer is busy: seconds at the highest rates.
 constexpr std::uint32_t kQueueLength = 20000;
-constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
-constexpr double kWarningPeriod = 5.0;      // [s]
+constexpr double kWarningPeriod = 5.0;  // [s]
 
 /// The frame to look up: as configured, or the message's own.
 std::string frameOf(const std::string& frame_id, const std::string& configured) {
@@ -30,7 +29,7 @@ std::string frameOf(const std::string& frame_id, const std::string& configured) 
     return frame_id[0] == '/' ? frame_id.substr(1) : frame_id;
   }
   if (!isFrame(frame_id, configured)) {
-    throw DataError("it is in the frame \"" + frame_id + "\", not in \"" + configured + "\"");
+    throw DataError("it " + otherFrame(frame_id, configured));
   }
   return configured;
 }
@@ -64,14 +63,14 @@ TrackerBridgeNode::TrackerBridgeNode(const ros::NodeHandle& node,
       wrenches_("ft_sensor/wrench", options.ft_sensor_limits),
       tracker_frame_(options.frames.tracker),
       ft_sensor_frame_(options.frames.ft_sensor),
-      diagnostics_(node, private_node),
+      diagnostics_(node, private_node, actuator),
       node_(node),
       receiver_(1, &queue_) {
   orientation_publisher_ =
       node_.advertise<geometry_msgs::QuaternionStamped>("measured_orientation", kQueueLength);
   torque_publisher_ =
       node_.advertise<geometry_msgs::Vector3Stamped>("measured_torque", kQueueLength);
-  addDiagnostics(actuator);
+  addDiagnostics();
   subscribe();
   receiver_.start();
 }
@@ -98,16 +97,13 @@ void TrackerBridgeNode::subscribe() {
       hints));
 }
 
-void TrackerBridgeNode::addDiagnostics(const Actuator& actuator) {
-  diagnostics_.setHardwareID(actuator.serial.empty() ? actuator.name : actuator.serial);
+void TrackerBridgeNode::addDiagnostics() {
   diagnostics_.add(poses_);
   if (needs_torque_) {
     diagnostics_.add(wrenches_);
   }
-  diagnostics_.add("registrations", this, &TrackerBridgeNode::diagnoseRegistrations);
-  diagnostics_timer_ = node_.createWallTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::WallTimerEvent& /*event*/) { diagnostics_.update(); });
+  diagnostics_.add("registrations",
+                   [this](DiagnosticStatus& status) { diagnoseRegistrations(status); });
 }
 
 void TrackerBridgeNode::receive(const geometry_msgs::PoseStamped::ConstPtr& message) {
@@ -196,8 +192,7 @@ std::vector<TrackerBridgeNode::Registered> TrackerBridgeNode::registrations() co
   return all;
 }
 
-void TrackerBridgeNode::diagnoseRegistrations(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
+void TrackerBridgeNode::diagnoseRegistrations(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(frames_mutex_);
   status.summary(DiagnosticStatus::OK, "all registrations are known");
   for (const Registered& each : registrations()) {

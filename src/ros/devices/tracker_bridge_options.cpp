@@ -2,6 +2,7 @@
 
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
 namespace {
@@ -70,8 +71,7 @@ TrackerBridgeOptions loadTrackerBridgeOptions(const ros::NodeHandle& private_nod
   if (map.has("ft_sensor")) {
     options.ft_sensor_limits = readLimits(map.map("ft_sensor"), options.ft_sensor_limits);
   }
-  // Read by diagnostic_updater itself.
-  map.number("diagnostic_period", ValueRange::closed(0.01, 3600.0), 1.0);
+  acceptDiagnosticPeriod(map);
   map.finish();
   return options;
 }

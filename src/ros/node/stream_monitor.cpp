@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <limits>
 
-#include <diagnostic_msgs/DiagnosticStatus.h>
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
 
-using diagnostic_msgs::DiagnosticStatus;
+StreamLimits limitsOfRate(double rate) {
+  constexpr double kLargestAge = 0.5;  // at least [s]
+  constexpr double kPeriods = 3.0;
+  return {0.5 * rate, std::max(kLargestAge, kPeriods / rate)};
+}
 
 StreamMonitor::StreamMonitor(const std::string& stream, const StreamLimits& limits)
     : DiagnosticTask(stream), limits_(limits), last_run_(ros::WallTime::now()) {}
@@ -33,7 +37,7 @@ double StreamMonitor::ageLocked(const ros::Time& now) const {
   return newest_.isZero() ? std::numeric_limits<double>::infinity() : (now - newest_).toSec();
 }
 
-void StreamMonitor::run(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void StreamMonitor::run(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
   const double span = std::max((now - last_run_).toSec(), 1e-3);
@@ -59,7 +63,7 @@ void StreamMonitor::run(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.addf("age [s]", "%.3f", age);
   status.add("accepted", accepted_);
   status.add("refused", refused_);
-  status.add("last refusal", last_refusal_.empty() ? "none" : last_refusal_);
+  addTextOrNone(status, "last refusal", last_refusal_);
 }
 
 }  // namespace sac

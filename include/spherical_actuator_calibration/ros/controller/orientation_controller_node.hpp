@@ -5,13 +5,11 @@
 #include <mutex>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/QuaternionStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
 #include <ros/subscriber.h>
-#include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/SetBool.h>
 
@@ -20,6 +18,7 @@
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 
 namespace sac {
@@ -33,7 +32,7 @@ class CycleStatistics {
   /// A cycle that began and ended then, by a clock that never jumps [s].
   void add(double begin, double end);
   /// Writes what was gathered into a diagnostic status, and begins anew. Missed cycles add up.
-  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void report(DiagnosticStatus& status);
   /// The next cycle does not follow the last one.
   void interrupt() { last_begin_ = 0.0; }
 
@@ -71,7 +70,7 @@ class OrientationControllerNode {
   /// One cycle of control. Precondition: mutex_ is held.
   void cycle();
   void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnose(DiagnosticStatus& status);
 
   const Actuator design_;
   const OrientationControllerNodeOptions options_;
@@ -89,8 +88,7 @@ class OrientationControllerNode {
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceServer service_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer diagnostics_timer_;
+  NodeDiagnostics diagnostics_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
 };
 

@@ -1,21 +1,19 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
-#include <ros/wall_timer.h>
 #include <spherical_actuator_calibration/CoilCurrents.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/devices/link_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
 
@@ -44,8 +42,7 @@ class CoilDriverNode {
   void receive(const msg::CoilCurrents::ConstPtr& message);
   void beat();
   void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
-  void updateDiagnostics();
-  void diagnoseOutput(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseOutput(DiagnosticStatus& status);
 
   const double watchdog_;
   std::unique_ptr<ModbusTransport> transport_;
@@ -62,9 +59,7 @@ class CoilDriverNode {
   StreamMonitor commands_;
   StreamMonitor currents_;
   LinkDiagnostics link_diagnostics_;
-  std::atomic<bool> state_changed_{false};
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer diagnostics_timer_;
+  NodeDiagnostics diagnostics_;
   ros::Subscriber subscriber_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
 };

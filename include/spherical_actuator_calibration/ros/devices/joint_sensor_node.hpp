@@ -1,19 +1,17 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
 #include "spherical_actuator_calibration/drivers/link_supervisor.hpp"
 #include "spherical_actuator_calibration/ros/devices/link_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
 
@@ -40,7 +38,6 @@ class JointSensorNode {
  private:
   void poll();
   void publishReading();
-  void updateDiagnostics();
 
   std::unique_ptr<ModbusTransport> transport_;
   JointSensor sensor_;
@@ -49,9 +46,7 @@ class JointSensorNode {
   ros::Publisher publisher_;
   StreamMonitor stream_;
   LinkDiagnostics link_diagnostics_;
-  std::atomic<bool> link_changed_{false};
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer diagnostics_timer_;
+  NodeDiagnostics diagnostics_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
 };
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/callback_queue.h>
@@ -13,11 +12,11 @@
 #include <ros/publisher.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
-#include <ros/wall_timer.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/ros/conversion/transform_lookup.hpp"
 #include "spherical_actuator_calibration/ros/devices/tracker_bridge_options.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
 #include "spherical_actuator_calibration/streams/measurement_bridge.hpp"
 
@@ -46,7 +45,7 @@ class TrackerBridgeNode {
   };
 
   void subscribe();
-  void addDiagnostics(const Actuator& actuator);
+  void addDiagnostics();
   void receive(const geometry_msgs::PoseStamped::ConstPtr& message);
   void receive(const geometry_msgs::WrenchStamped::ConstPtr& message);
   void publishOrientation(const geometry_msgs::PoseStamped& message);
@@ -55,7 +54,7 @@ class TrackerBridgeNode {
   void refuseWrench(const std::string& reason);
   void tellClockResets();
   std::vector<Registered> registrations() const;
-  void diagnoseRegistrations(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseRegistrations(DiagnosticStatus& status);
 
   const TrackerBridgeOptions options_;
   const bool needs_torque_;
@@ -74,8 +73,7 @@ class TrackerBridgeNode {
   std::string tracker_frame_;    ///< of the newest pose, or as configured
   std::string ft_sensor_frame_;  ///< of the newest wrench, or as configured
 
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer diagnostics_timer_;
+  NodeDiagnostics diagnostics_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;  ///< its callbacks run in the receiving thread
   std::vector<ros::Subscriber> subscribers_;

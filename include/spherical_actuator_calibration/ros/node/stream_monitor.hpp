@@ -15,6 +15,9 @@ struct StreamLimits {
   double largest_age = 0.5;    ///< of the newest measurement [s]; an older one is an error
 };
 
+/// Of a stream that should have this rate [Hz]: one slower than half of it is a warning.
+StreamLimits limitsOfRate(double rate);
+
 /// Health of one stream for /diagnostics: rate, age of the newest measurement, measurements refused
 /// and why. Thread-safe.
 class StreamMonitor : public diagnostic_updater::DiagnosticTask {
