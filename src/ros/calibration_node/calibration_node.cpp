@@ -1,23 +1,14 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <system_error>
 #include <utility>
 
 #include <ros/console.h>
-#include <ros/init.h>
 
-#include "spherical_actuator_calibration/actuator/urdf_file.hpp"
-#include "spherical_actuator_calibration/assessment/report_file.hpp"
-#include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
-#include "spherical_actuator_calibration/ros/node/termination.hpp"
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 
 namespace sac {
@@ -25,25 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSamplePeriod = 0.05;      // how often finished dwells are looked for [s]
-constexpr double kDiagnosticsPeriod = 0.1;  // the updater keeps its own, longer one [s]
-constexpr double kCapturePoll = 0.01;       // [s]
-
-/// Nothing came for so long, by this machine's clock: the streams have ended [s].
-constexpr double kStreamsEnded = 2.0;
-
-std::string contentOf(const std::string& path) {
-  std::ostringstream content;
-  content << std::ifstream(path, std::ios::binary).rdbuf();
-  return content.str();
-}
-
-/// Writes a file, or finds it there with this content already.
-void writeOnce(const std::string& path, const std::string& content) {
-  if (!fs::exists(path) || contentOf(path) != content) {
-    writeFileAtomically(path, content, OverwritePolicy::kRefuse);
-  }
-}
+constexpr double kSamplePeriod = 0.05;  // how often finished dwells are looked for [s]
 
 /// The cycle that a plan is asked for; the refinement where none is named.
 CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
@@ -56,11 +29,6 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
-bool anyIdentified(const CalibrationState& state) {
-  return std::find(state.identified.begin(), state.identified.end(), true) !=
-         state.identified.end();
-}
-
 }  // namespace
 
 CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
@@ -71,12 +39,12 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
       private_node_(private_node),
       options_(options),
       directory_(options.directory, start.actuator),
+      files_(directory_),
       session_(start, options.calibration, directory_.database(), PACKAGE_VERSION),
       topics_(node, options.calibration.frames.stator),
       auto_capture_(options.auto_capture),
       intake_(node, start.actuator, options.calibration),
-      last_received_(ros::WallTime::now()),
-      diagnostics_(node, private_node) {
+      diagnostics_(node, private_node, start.actuator) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
   topics_.publishParameters(session_);
   if (const auto report = session_.lastReport()) {
@@ -84,17 +52,12 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   }
   publishStatus();
 
-  diagnostics_.setHardwareID(start.actuator.serial.empty() ? start.actuator.name
-                                                           : start.actuator.serial);
-  diagnostics_.add("session", this, &CalibrationNode::diagnose);
+  diagnostics_.add("session", [this](DiagnosticStatus& status) { diagnose(status); });
   intake_.addDiagnostics(diagnostics_);
   advertiseServices();
   sample_timer_ = node_.createWallTimer(
       ros::WallDuration(kSamplePeriod),
       [this](const ros::WallTimerEvent& /*event*/) { takeAutomaticSamples(); });
-  diagnostics_timer_ = node_.createWallTimer(
-      ros::WallDuration(kDiagnosticsPeriod),
-      [this](const ros::WallTimerEvent& /*event*/) { diagnostics_.update(); });
 }
 
 void CalibrationNode::advertiseServices() {
@@ -132,8 +95,8 @@ void CalibrationNode::answer(Response& response, Action action) {
 }
 
 bool CalibrationNode::capture(msg::Capture::Request& request, msg::Capture::Response& response) {
-  const CaptureProgress progress =
-      waitForCapture(request.duration == 0.0 ? options_.capture_duration : request.duration);
+  const CaptureProgress progress = intake_.waitForCapture(
+      request.duration == 0.0 ? options_.capture_duration : request.duration);
   if (!progress.sample) {
     response.message = "No sample: " + progress.message;
     return true;
@@ -147,30 +110,6 @@ bool CalibrationNode::capture(msg::Capture::Request& request, msg::Capture::Resp
            (progress.message.empty() ? "" : " " + progress.message);
   });
   return true;
-}
-
-CaptureProgress CalibrationNode::waitForCapture(double duration) const {
-  const Stamp from = intake_.newest().value_or(0);
-  std::uint64_t received = intake_.received();
-  ros::WallTime last_received = ros::WallTime::now();
-  for (;;) {
-    CaptureProgress progress = intake_.capture(from, duration);
-    if (progress.state != CaptureProgress::State::kWaiting) {
-      return progress;
-    }
-    if (!ros::ok() || terminationRequested()) {
-      return {CaptureProgress::State::kRefused, std::nullopt, "The node is being shut down."};
-    }
-    if (intake_.received() != received) {
-      received = intake_.received();
-      last_received = ros::WallTime::now();
-    } else if ((ros::WallTime::now() - last_received).toSec() > kStreamsEnded) {
-      return {CaptureProgress::State::kRefused,
-              std::nullopt,
-              "No measurement arrives any more: check the sensor nodes."};
-    }
-    ros::WallDuration(kCapturePoll).sleep();
-  }
 }
 
 bool CalibrationNode::listSamples(msg::ListSamples::Request& /*request*/,
@@ -322,8 +261,8 @@ bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
                            std_srvs::Trigger::Response& response) {
   std::string report_folder;
   answer(response, [&] {
-    std::string message = saveFiles();
-    report_folder = saveReport();
+    std::string message = files_.save(session_, robotDescription());
+    report_folder = files_.saveReport(session_);
     publishStatus();
     return message;
   });
@@ -337,55 +276,17 @@ bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
   return true;
 }
 
-std::string CalibrationNode::saveFiles() {
-  const Revision& revision = session_.revision();
-  if (!anyIdentified(revision.state)) {
-    throw DataError("Nothing is calibrated yet: run calibrate_joint first.");
+RobotDescription CalibrationNode::robotDescription() const {
+  RobotDescription robot;
+  robot.source = node_.resolveName("robot_description");
+  std::string urdf;
+  if (node_.getParam(robot.source, urdf)) {
+    robot.urdf = urdf;
   }
-  const CalibratedDescription description = session_.description(revision.date);
-  const std::string yaml_path = directory_.description(revision.number);
-  const std::string yaml = renderDescription(description, yaml_path);
-  std::string robot;
-  if (!node_.getParam("robot_description", robot)) {
-    writeOnce(yaml_path, yaml);
-    return "Saved " + yaml_path + "; no URDF, since the parameter " +
-           node_.resolveName("robot_description") + " is missing.";
-  }
-  const std::string urdf_path = directory_.urdf(revision.number);
-  const std::string urdf = renderCalibratedUrdf(robot,
-                                                node_.resolveName("robot_description"),
-                                                session_.calibration().start().actuator,
-                                                description.actuator);
-  writeOnce(yaml_path, yaml);
-  writeOnce(urdf_path, urdf);
-  return "Saved " + yaml_path + " and " + urdf_path + ".";
-}
-
-std::string CalibrationNode::saveReport() const {
-  const Revision& revision = session_.revision();
-  std::string folder = directory_.report(revision.number);
-  std::error_code error;
-  fs::create_directory(folder, error);
-  if (error) {
-    throw DataError(folder + ": the folder cannot be made: " + error.message() + ".");
-  }
-  // Samples may have come and gone since the last time.
-  writeFileAtomically((fs::path(folder) / "report.yaml").string(),
-                      renderReport(session_.calibration(), session_.origin(revision.date), {}),
-                      OverwritePolicy::kReplace);
-  return folder;
+  return robot;
 }
 
 void CalibrationNode::takeAutomaticSamples() {
-  const ros::WallTime now = ros::WallTime::now();
-  if (intake_.received() != received_before_) {
-    received_before_ = intake_.received();
-    last_received_ = now;
-    finished_ = false;
-  } else if (!finished_ && (now - last_received_).toSec() > kStreamsEnded) {
-    intake_.finish();
-    finished_ = true;
-  }
   const std::vector<Sample> samples = intake_.takeSamples();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (auto_capture_) {
@@ -431,7 +332,7 @@ Sample CalibrationNode::store(const Sample& sample) {
 void CalibrationNode::publishStatus() {
   const CalibrationSession& calibration = session_.calibration();
   SessionProgress progress = session_.progress();
-  progress.saved = fs::exists(directory_.description(session_.revision().number));
+  progress.saved = files_.isSaved(session_.revision().number);
   topics_.publishStatus(
       session_,
       progress,
@@ -439,12 +340,12 @@ void CalibrationNode::publishStatus() {
           calibration.model(), calibration.samples(), progress, calibration.config().estimation));
 }
 
-void CalibrationNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void CalibrationNode::diagnose(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (waiting_.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "good");
+    status.summary(DiagnosticStatus::OK, "good");
   } else {
-    status.summaryf(diagnostic_msgs::DiagnosticStatus::ERROR,
+    status.summaryf(DiagnosticStatus::ERROR,
                     "%zu samples wait to be stored: %s",
                     waiting_.size(),
                     last_error_.c_str());
@@ -453,7 +354,7 @@ void CalibrationNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.add("samples in use", session_.calibration().samples().size());
   status.add("automatic capture", auto_capture_ ? "on" : "off");
   status.add("directory", directory_.path());
-  status.add("last error", last_error_.empty() ? "none" : last_error_);
+  addTextOrNone(status, "last error", last_error_);
 }
 
 }  // namespace sac

@@ -3,13 +3,13 @@
 #include <array>
 #include <utility>
 
-#include <ros/time.h>
+#include <ros/init.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
-#include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
-#include "spherical_actuator_calibration/ros/recording/recorded_streams.hpp"
+#include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 namespace sac {
 namespace {
@@ -21,22 +21,18 @@ constexpr std::uint32_t kQueueLength = 20000;
 /// calibration; what is too old or too slow for a dwell is.
 constexpr StreamLimits kLimits = {20.0, 0.5};
 
-double steadySeconds() {
-  return ros::SteadyTime::now().toSec();
-}
+/// Nothing came for so long, by this machine's clock: the streams have ended [s].
+constexpr double kStreamsEnded = 2.0;
 
-std::string otherFrame(const std::string& frame_id, const std::string& frame) {
-  return "it is in the frame \"" + frame_id + "\", not in \"" + frame + "\"";
-}
+constexpr double kCapturePoll = 0.01;  // [s]
 
 }  // namespace
 
 MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
-    : frames_(config.frames),
-      builder_(config.samples, modelledCoils(nominal)),
-      joint_reader_(jointNames(nominal)),
+    : builder_(config.samples, modelledCoils(nominal)),
+      reader_(nominal, config.frames),
       joints_("joint_states", kLimits),
       orientations_("measured_orientation", kLimits),
       torques_("measured_torque", kLimits),
@@ -44,21 +40,10 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
       node_(node),
       receiver_(1, &queue_) {
   node_.setCallbackQueue(&queue_);
-  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  const auto subscribe = [&](const char* topic, auto callback) {
-    subscribers_.push_back(node_.subscribe(topic, kQueueLength, callback, this, hints));
-  };
-  using Self = MeasurementIntake;
-  subscribe("joint_states",
-            static_cast<void (Self::*)(const sensor_msgs::JointState::ConstPtr&)>(&Self::receive));
-  subscribe("measured_orientation",
-            static_cast<void (Self::*)(const geometry_msgs::QuaternionStamped::ConstPtr&)>(
-                &Self::receive));
-  subscribe(
-      "measured_torque",
-      static_cast<void (Self::*)(const geometry_msgs::Vector3Stamped::ConstPtr&)>(&Self::receive));
-  subscribe("coil_currents",
-            static_cast<void (Self::*)(const msg::CoilCurrents::ConstPtr&)>(&Self::receive));
+  subscribe<sensor_msgs::JointState>(joints_);
+  subscribe<geometry_msgs::QuaternionStamped>(orientations_);
+  subscribe<geometry_msgs::Vector3Stamped>(torques_);
+  subscribe<msg::CoilCurrents>(currents_);
   receiver_.start();
 }
 
@@ -66,10 +51,74 @@ MeasurementIntake::~MeasurementIntake() {
   receiver_.stop();
 }
 
+// The topics have the names of their streams.
+template <typename Message>
+void MeasurementIntake::subscribe(StreamMonitor& monitor) {
+  const auto receive = [this, &monitor](const typename Message::ConstPtr& message) {
+    ++received_;
+    if (const auto* measurement = reader_.read(*message)) {
+      merge(*measurement);
+    } else {
+      monitor.refuse(reader_.refusal());
+    }
+  };
+  subscribers_.push_back(node_.subscribe<Message>(monitor.getName(),
+                                                  kQueueLength,
+                                                  receive,
+                                                  ros::VoidConstPtr(),
+                                                  ros::TransportHints().tcpNoDelay()));
+}
+
 std::vector<Sample> MeasurementIntake::takeSamples() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (haveStreamsEnded()) {
+    finish();
+  }
   buildInOrder();
   return builder_.takeSamples();
+}
+
+bool MeasurementIntake::haveStreamsEnded() {
+  const double now = steadySeconds();
+  if (received_ != received_before_) {
+    received_before_ = received_;
+    last_received_ = now;
+    finished_ = false;
+    return false;
+  }
+  return !finished_ && now - last_received_ > kStreamsEnded;
+}
+
+void MeasurementIntake::finish() {
+  while (const auto measurement = merger_.nextAtOnce()) {
+    build(*measurement);
+  }
+  builder_.finish();
+  finished_ = true;
+}
+
+CaptureProgress MeasurementIntake::waitForCapture(double duration) const {
+  const Stamp from = newest().value_or(0);
+  std::uint64_t received = received_;
+  double last_received = steadySeconds();
+  for (;;) {
+    CaptureProgress progress = capture(from, duration);
+    if (progress.state != CaptureProgress::State::kWaiting) {
+      return progress;
+    }
+    if (!ros::ok() || terminationRequested()) {
+      return {CaptureProgress::State::kRefused, std::nullopt, "The node is being shut down."};
+    }
+    if (received_ != received) {
+      received = received_;
+      last_received = steadySeconds();
+    } else if (steadySeconds() - last_received > kStreamsEnded) {
+      return {CaptureProgress::State::kRefused,
+              std::nullopt,
+              "No measurement arrives any more: check the sensor nodes."};
+    }
+    ros::WallDuration(kCapturePoll).sleep();
+  }
 }
 
 CaptureProgress MeasurementIntake::capture(Stamp from, double duration) const {
@@ -82,53 +131,11 @@ std::optional<Stamp> MeasurementIntake::newest() const {
   return builder_.newest();
 }
 
-void MeasurementIntake::finish() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  while (const auto measurement = merger_.nextAtOnce()) {
-    build(*measurement);
-  }
-  builder_.finish();
-}
-
-void MeasurementIntake::addDiagnostics(diagnostic_updater::Updater& updater) {
+void MeasurementIntake::addDiagnostics(NodeDiagnostics& diagnostics) {
   for (StreamMonitor* monitor : {&joints_, &orientations_, &torques_, &currents_}) {
-    updater.add(*monitor);
+    diagnostics.add(*monitor);
   }
-  updater.add("dwells", this, &MeasurementIntake::diagnoseDwells);
-}
-
-void MeasurementIntake::receive(const sensor_msgs::JointState::ConstPtr& message) {
-  ++received_;
-  if (const auto measurement = joint_reader_.read(*message)) {
-    merge(*measurement);
-    return;
-  }
-  joints_.refuse("it lacks a joint of the description, or its position");
-}
-
-void MeasurementIntake::receive(const geometry_msgs::QuaternionStamped::ConstPtr& message) {
-  ++received_;
-  if (!isFrame(message->header.frame_id, frames_.stator)) {
-    orientations_.refuse(otherFrame(message->header.frame_id, frames_.stator));
-    return;
-  }
-  merge(orientationFromRos(*message));
-}
-
-void MeasurementIntake::receive(const geometry_msgs::Vector3Stamped::ConstPtr& message) {
-  ++received_;
-  if (!isFrame(message->header.frame_id, frames_.rotor)) {
-    torques_.refuse(otherFrame(message->header.frame_id, frames_.rotor));
-    return;
-  }
-  merge(torqueFromRos(*message));
-}
-
-void MeasurementIntake::receive(const msg::CoilCurrents::ConstPtr& message) {
-  ++received_;
-  CurrentMeasurement measurement;
-  currentFromRos(*message, measurement);
-  merge(std::move(measurement));
+  diagnostics.add("dwells", [this](DiagnosticStatus& status) { diagnoseDwells(status); });
 }
 
 void MeasurementIntake::merge(AnyMeasurement measurement) {
@@ -173,10 +180,10 @@ void MeasurementIntake::build(const Measurement& measurement,
   monitor.accept(stampToRos(measurement.stamp));
 }
 
-void MeasurementIntake::diagnoseDwells(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void MeasurementIntake::diagnoseDwells(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const SampleBuilderReport& report = builder_.report();
-  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "good");
+  status.summary(DiagnosticStatus::OK, "good");
   status.add("dwells seen", report.dwells);
   status.add("samples made", report.samples);
   status.add("discarded", report.discarded);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
@@ -25,7 +24,9 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/storage/calibration_directory.hpp"
+#include "spherical_actuator_calibration/storage/calibration_files.hpp"
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
 namespace sac {
@@ -71,16 +72,14 @@ class CalibrationNode {
   bool restore(msg::Restore::Request& request, msg::Restore::Response& response);
   bool save(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  CaptureProgress waitForCapture(double duration) const;
   void takeAutomaticSamples();
   void keep(const std::vector<Sample>& samples);
   void storeWaitingSamples();
   Sample store(const Sample& sample);
-  std::string saveFiles();
-  /// Writes the figures of the parameters in force; returns the folder that holds them.
-  std::string saveReport() const;
+  /// The parameter robot_description.
+  RobotDescription robotDescription() const;
   void publishStatus();
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnose(DiagnosticStatus& status);
   /// Answers a service: `action` returns the message of success; what it throws becomes that of
   /// failure.
   template <typename Response, typename Action>
@@ -91,7 +90,8 @@ class CalibrationNode {
   const CalibrationNodeOptions options_;
 
   std::mutex session_mutex_;  ///< of everything down to topics_
-  CalibrationDirectory directory_;
+  const CalibrationDirectory directory_;
+  const CalibrationFiles files_;
   LiveSession session_;
   std::deque<Sample> waiting_;  ///< captured by itself, not stored yet: the disk did not take it
   std::string last_error_;
@@ -99,14 +99,10 @@ class CalibrationNode {
 
   std::atomic<bool> auto_capture_;
   MeasurementIntake intake_;
-  std::uint64_t received_before_ = 0;  ///< used by the timer alone, like the next two
-  ros::WallTime last_received_;
-  bool finished_ = true;
 
-  diagnostic_updater::Updater diagnostics_;
+  NodeDiagnostics diagnostics_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer sample_timer_;
-  ros::WallTimer diagnostics_timer_;
 };
 
 }  // namespace sac

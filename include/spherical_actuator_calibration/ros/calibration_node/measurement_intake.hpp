@@ -1,12 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
@@ -14,8 +13,8 @@
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
-#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
+#include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
 #include "spherical_actuator_calibration/streams/stream_merger.hpp"
@@ -35,47 +34,47 @@ class MeasurementIntake {
   MeasurementIntake(const MeasurementIntake&) = delete;
   MeasurementIntake& operator=(const MeasurementIntake&) = delete;
 
-  /// Samples of the dwells that have ended since the last call.
+  /// Samples of the dwells that have ended since the last call. When nothing came for a while (a
+  /// recording is over, its clock stands still) what is there is evaluated as if the streams had
+  /// ended; measurements may go on afterwards.
   std::vector<Sample> takeSamples();
 
-  /// See SampleBuilder::capture().
-  CaptureProgress capture(Stamp from, double duration) const;
-
-  /// Newest stamp of all streams.
-  std::optional<Stamp> newest() const;
-  /// Measurements received so far, of all streams: tells whether any still come.
-  std::uint64_t received() const { return received_; }
-
-  /// Evaluates what is there as if the streams had ended: nothing came for a while (a recording is
-  /// over, its clock stands still). Measurements may go on afterwards.
-  void finish();
+  /// Waits until the measurements from now on make a sample of this duration [s], or it is known
+  /// why they do not: see SampleBuilder::capture(). Never kWaiting.
+  CaptureProgress waitForCapture(double duration) const;
 
   /// Adds one diagnostic task per stream, and one for the dwells.
-  void addDiagnostics(diagnostic_updater::Updater& updater);
+  void addDiagnostics(NodeDiagnostics& diagnostics);
 
  private:
-  void receive(const sensor_msgs::JointState::ConstPtr& message);
-  void receive(const geometry_msgs::QuaternionStamped::ConstPtr& message);
-  void receive(const geometry_msgs::Vector3Stamped::ConstPtr& message);
-  void receive(const msg::CoilCurrents::ConstPtr& message);
+  template <typename Message>
+  void subscribe(StreamMonitor& monitor);
   void merge(AnyMeasurement measurement);
+  // Precondition of these: mutex_ is held.
+  bool haveStreamsEnded();
+  void finish();
   void buildInOrder();
   void build(const AnyMeasurement& measurement);
   template <typename Measurement>
   void build(const Measurement& measurement,
              const StreamStatistics& statistics,
              StreamMonitor& monitor);
-  void diagnoseDwells(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  const MeasurementFrames frames_;
+  CaptureProgress capture(Stamp from, double duration) const;
+  std::optional<Stamp> newest() const;
+  void diagnoseDwells(DiagnosticStatus& status);
+
   std::atomic<std::uint64_t> received_{0};
 
-  mutable std::mutex mutex_;  ///< of merger and builder
+  mutable std::mutex mutex_;  ///< of all down to finished_
   StreamMerger merger_;
   SampleBuilder builder_;
+  std::uint64_t received_before_ = 0;  ///< when samples were last taken
+  double last_received_ = 0.0;         ///< noted then, by a clock that never jumps [s]
+  bool finished_ = true;               ///< nothing came since finish()
 
   // Used by the receiving thread alone, or thread-safe by themselves.
-  JointStateReader joint_reader_;
+  MeasurementReader reader_;
   StreamMonitor joints_;
   StreamMonitor orientations_;
   StreamMonitor torques_;

@@ -1,0 +1,80 @@
+#include "spherical_actuator_calibration/storage/calibration_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/report_file.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+
+namespace sac {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contentOf(const std::string& path) {
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+/// Writes a file, or finds it there with this content already.
+void writeOnce(const std::string& path, const std::string& content) {
+  if (!fs::exists(path) || contentOf(path) != content) {
+    writeFileAtomically(path, content, OverwritePolicy::kRefuse);
+  }
+}
+
+bool anyIdentified(const CalibrationState& state) {
+  return std::find(state.identified.begin(), state.identified.end(), true) !=
+         state.identified.end();
+}
+
+}  // namespace
+
+bool CalibrationFiles::isSaved(std::uint32_t revision) const {
+  return fs::exists(directory_.description(revision));
+}
+
+std::string CalibrationFiles::save(const LiveSession& session,
+                                   const RobotDescription& robot) const {
+  const Revision& revision = session.revision();
+  if (!anyIdentified(revision.state)) {
+    throw DataError("Nothing is calibrated yet: run calibrate_joint first.");
+  }
+  const CalibratedDescription description = session.description(revision.date);
+  const std::string yaml_path = directory_.description(revision.number);
+  const std::string yaml = renderDescription(description, yaml_path);
+  if (!robot.urdf) {
+    writeOnce(yaml_path, yaml);
+    return "Saved " + yaml_path + "; no URDF, since " + robot.source + " is missing.";
+  }
+  const std::string urdf_path = directory_.urdf(revision.number);
+  const std::string urdf = renderCalibratedUrdf(
+      *robot.urdf, robot.source, session.calibration().start().actuator, description.actuator);
+  writeOnce(yaml_path, yaml);
+  writeOnce(urdf_path, urdf);
+  return "Saved " + yaml_path + " and " + urdf_path + ".";
+}
+
+std::string CalibrationFiles::saveReport(const LiveSession& session) const {
+  const Revision& revision = session.revision();
+  std::string folder = directory_.report(revision.number);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) {
+    throw DataError(folder + ": the folder cannot be made: " + error.message() + ".");
+  }
+  // Samples may have come and gone since the last time.
+  writeFileAtomically((fs::path(folder) / "report.yaml").string(),
+                      renderReport(session.calibration(), session.origin(revision.date), {}),
+                      OverwritePolicy::kReplace);
+  return folder;
+}
+
+}  // namespace sac
