@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -22,8 +21,6 @@
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 #include "tool_main.hpp"
 
-#include <unistd.h>
-
 namespace sac {
 namespace {
 
@@ -31,16 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr int kComplete = 0;
 constexpr int kIncomplete = 1;
-
-/// Shows the share done on a terminal, and nothing anywhere else.
-std::function<void(double)> terminalProgress() {
-  if (::isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  return [](double share) {
-    std::fprintf(stderr, "\rreading %3.0f %%%s", 100.0 * share, share < 1.0 ? "" : "\n");
-  };
-}
 
 /// The robot description that is shipped for an actuator: share/ lies beside the lib/ that holds
 /// this program, in a build as in an installation.
@@ -65,13 +52,6 @@ struct Files {
   std::string report_page;  ///< the same for people
 };
 
-/// Nothing is read for a result that could not be written in the end.
-void requireNew(const std::string& path, OverwritePolicy policy) {
-  if (!path.empty() && policy == OverwritePolicy::kRefuse && fs::exists(path)) {
-    throw DataError(path + ": the file exists already; choose another name or give --force.");
-  }
-}
-
 Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) {
   Files files;
   files.description = options.output_path;
@@ -86,7 +66,7 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
   for (const std::string& path : {files.description, files.urdf, files.report, files.report_page}) {
-    requireNew(path, options.overwrite);
+    requireNewFile(path, options.overwrite);
   }
   if (options.report_folder) {
     std::error_code error;
@@ -125,7 +105,7 @@ Recording readBags(const CalibrateBagOptions& options,
   reading.ns = options.ns;
   reading.frames = config.frames;
   reading.samples = config.samples;
-  reading.progress = terminalProgress();
+  reading.progress = terminalProgress("reading");
   return readRecordings(options.bags, nominal, reading);
 }
 

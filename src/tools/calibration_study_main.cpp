@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <functional>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -8,8 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include <boost/program_options.hpp>
-
+#include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -19,12 +18,8 @@
 #include "spherical_actuator_calibration/study/study_file.hpp"
 #include "tool_main.hpp"
 
-#include <unistd.h>
-
 namespace sac {
 namespace {
-
-namespace po = boost::program_options;
 
 constexpr char kIntroduction[] =
     "Usage: calibration_study --actuator A.yaml --output STUDY.yaml [options]\n"
@@ -35,7 +30,7 @@ constexpr char kIntroduction[] =
     "the stated uncertainties. Trials split into shards, whose merge is the whole study exactly:\n"
     "  parallel calibration_study --actuator A.yaml --shard {}/4 --output {}.yaml ::: 1 2 3 4\n"
     "  calibration_study --merge --output study.yaml 1.yaml 2.yaml 3.yaml 4.yaml\n"
-    "Exit status: 0 the study is written, 2 it is not (and the reason on the standard error).\n";
+    "Exit status: 0 the study is written, 2 it is not (and the reason on the standard error).\n\n";
 
 /// Part i of n, counted from 1.
 struct Shard {
@@ -44,10 +39,10 @@ struct Shard {
 };
 
 struct Options {
-  std::string actuator_path;
-  std::string config_path;
+  std::optional<std::string> actuator_path;
+  std::optional<std::string> config_path;
   std::string output_path;
-  std::string plan_path;
+  std::optional<std::string> plan_path;
   std::vector<std::string> shard_paths;
   bool merge = false;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
@@ -68,81 +63,57 @@ std::string shortText(double value) {
   return text.str();
 }
 
-/// An option that has the target's present value as its default.
-template <typename Value>
-po::typed_value<Value>* stored(Value& target, const char* unit) {
-  std::ostringstream text;
-  text << target;
-  return po::value<Value>(&target)->default_value(target, text.str())->value_name(unit);
+void addTrialOptions(CommandLine& line, Options& options) {
+  line.beginGroup("Options");
+  line.add("actuator", options.actuator_path, "YAML", "actuator description (nominal)");
+  line.add("config", options.config_path, "YAML", "as for calibrate_bag");
+  line.addRequired("output", options.output_path, "YAML", "study to write");
+  line.addForce(options.overwrite);
+  line.addSwitch("merge", options.merge, "join the shards that are given");
+  line.add("trials", options.trials, "N", "of the whole study");
+  line.add("seed", options.seed, "N", "of the first trial; each further one counts up");
+  line.add("shard", options.shard_text, "I/N", "do only part I of N");
+  line.add("threads", options.threads, "N", "to run trials on");
 }
 
-po::options_description knownOptions(Options& options) {
-  po::options_description known("Options");
-  auto add = known.add_options();
-  add("help,h", "print this help and exit");
-  add("actuator",
-      po::value(&options.actuator_path)->value_name("YAML"),
-      "actuator description (nominal); needed");
-  add("config", po::value(&options.config_path)->value_name("YAML"), "as for calibrate_bag");
-  add("output", po::value(&options.output_path)->value_name("YAML"), "study to write; needed");
-  add("force", "replace the output if it exists");
-  add("merge", po::bool_switch(&options.merge), "join the shards that are given");
-  add("trials", stored(options.trials, "N"), "of the whole study");
-  add("seed", stored(options.seed, "N"), "of the first trial; each further one counts up");
-  add("shard", stored(options.shard_text, "I/N"), "do only part I of N");
-  add("threads", stored(options.threads, "N"), "to run trials on");
-  add("plan",
-      po::value(&options.plan_path)->value_name("YAML"),
-      "session planned by plan_session, in the place of the poses and the current below");
-  add("plan-seed", stored(options.plan_seed, "N"), "of the poses, the same in all trials");
-  add("joint-poses", stored(options.plan.joint_poses, "N"), "poses without current");
-  add("main-coil-poses", stored(options.plan.main_coil_poses, "N"), "poses with coil 1 excited");
-  add("coil-poses", stored(options.plan.coil_poses, "N"), "poses with each other coil excited");
-  add("joint-tilt", stored(options.plan.joint_tilt_share, "SHARE"), "of the tilt limit");
-  add("torque-tilt", stored(options.plan.torque_tilt_share, "SHARE"), "of the tilt limit");
-  add("current", stored(options.plan.current, "A"), "of an excited coil");
-  add("tracker", stored(options.tracker, "first|every"), "at poses without current, or at all");
-  add("orientation-noise", stored(options.noise.orientation, "RAD"), "standard deviation");
-  add("torque-noise", stored(options.noise.torque, "NM"), "standard deviation");
-  add("joint-noise", stored(options.noise.joint, "RAD"), "standard deviation");
-  add("offset-error", stored(options.errors.joint_offset, "RAD"), "half width of made offsets");
-  add("axis-error", stored(options.errors.joint_axis, "RAD"), "the same of joint axes");
-  add("pole-error", stored(options.errors.pole_angle, "RAD"), "the same of pole angles");
-  add("coil-error", stored(options.errors.coil_angle, "RAD"), "the same of coil angles");
-  return known;
+void addSessionOptions(CommandLine& line, Options& options) {
+  line.add("plan",
+           options.plan_path,
+           "YAML",
+           "session planned by plan_session, in the place of the poses and the current below");
+  line.add("plan-seed", options.plan_seed, "N", "of the poses, the same in all trials");
+  line.add("joint-poses", options.plan.joint_poses, "N", "poses without current");
+  line.add("main-coil-poses", options.plan.main_coil_poses, "N", "poses with coil 1 excited");
+  line.add("coil-poses", options.plan.coil_poses, "N", "poses with each other coil excited");
+  line.add("joint-tilt", options.plan.joint_tilt_share, "SHARE", "of the tilt limit");
+  line.add("torque-tilt", options.plan.torque_tilt_share, "SHARE", "of the tilt limit");
+  line.add("current", options.plan.current, "A", "of an excited coil");
+  line.add("tracker", options.tracker, "first|every", "at poses without current, or at all");
 }
 
-void requireOption(const std::string& value, const char* name) {
-  if (value.empty()) {
-    throw ConfigError(std::string("--") + name + " is needed; see --help.");
-  }
+void addErrorOptions(CommandLine& line, Options& options) {
+  line.add("orientation-noise", options.noise.orientation, "RAD", "standard deviation");
+  line.add("torque-noise", options.noise.torque, "NM", "standard deviation");
+  line.add("joint-noise", options.noise.joint, "RAD", "standard deviation");
+  line.add("offset-error", options.errors.joint_offset, "RAD", "half width of made offsets");
+  line.add("axis-error", options.errors.joint_axis, "RAD", "the same of joint axes");
+  line.add("pole-error", options.errors.pole_angle, "RAD", "the same of pole angles");
+  line.add("coil-error", options.errors.coil_angle, "RAD", "the same of coil angles");
 }
 
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options options;
   options.plan.validation_poses = 0;
-  const po::options_description known = knownOptions(options);
-  po::options_description all = known;
-  all.add_options()("shards", po::value(&options.shard_paths));
-  po::positional_options_description positional;
-  positional.add("shards", -1);
-  po::variables_map given;
-  try {
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(std::string(error.what()) + "; see --help.");
-  }
-  if (given.count("help") > 0) {
-    std::cout << kIntroduction << "\n" << known;
+  CommandLine line(kIntroduction);
+  addTrialOptions(line, options);
+  addSessionOptions(line, options);
+  addErrorOptions(line, options);
+  line.addOperands(options.shard_paths);
+  if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  if (given.count("force") > 0) {
-    options.overwrite = OverwritePolicy::kReplace;
-  }
-  requireOption(options.output_path, "output");
-  if (!options.merge) {
-    requireOption(options.actuator_path, "actuator");
+  if (!options.merge && !options.actuator_path) {
+    throw ConfigError("--actuator is needed; --help tells what it is.");
   }
   if (options.merge == options.shard_paths.empty()) {
     throw ConfigError("--merge takes the files of the shards, and nothing else does; see --help.");
@@ -164,23 +135,13 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-TrackerUse parseTracker(const std::string& text) {
-  if (text == "first") {
-    return TrackerUse::kPosesWithoutCurrent;
-  }
-  if (text == "every") {
-    return TrackerUse::kEveryPose;
-  }
-  throw ConfigError("--tracker: " + text + " is neither first nor every.");
-}
-
 /// What the trials depend on.
 std::vector<std::pair<std::string, std::string>> settingsOf(const Options& options,
                                                             const Actuator& nominal) {
   return {{"software", PACKAGE_VERSION},
           {"actuator", nominal.name},
           {"tracker", options.tracker},
-          {"plan", options.plan_path.empty() ? "random" : options.plan_path},
+          {"plan", options.plan_path.value_or("random")},
           {"plan seed", std::to_string(options.plan_seed)},
           {"joint poses", std::to_string(options.plan.joint_poses)},
           {"poses with coil 1", std::to_string(options.plan.main_coil_poses)},
@@ -197,27 +158,20 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const Options& optio
           {"coil error [rad]", shortText(options.errors.coil_angle)}};
 }
 
-std::function<void(double)> terminalProgress() {
-  if (::isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  return [](double share) {
-    std::fprintf(stderr, "\rtrials %3.0f %%%s", 100.0 * share, share < 1.0 ? "" : "\n");
-  };
-}
-
 StudyRecord run(const Options& options) {
   const Shard shard = parseShard(options.shard_text);
   StudyOptions study;
-  study.nominal = loadActuator(options.actuator_path);
-  study.plan = options.plan_path.empty()
-                   ? planSession(study.nominal, options.plan, options.plan_seed)
-                   : sessionOf(loadSessionPlan(options.plan_path), study.nominal);
-  study.tracker = parseTracker(options.tracker);
+  study.nominal = loadActuator(*options.actuator_path);
+  study.plan = options.plan_path ? sessionOf(loadSessionPlan(*options.plan_path), study.nominal)
+                                 : planSession(study.nominal, options.plan, options.plan_seed);
+  study.tracker = choose<TrackerUse>(
+      "tracker",
+      options.tracker,
+      {{"first", TrackerUse::kPosesWithoutCurrent}, {"every", TrackerUse::kEveryPose}});
   study.noise = options.noise;
   study.errors = options.errors;
-  if (!options.config_path.empty()) {
-    study.estimation = loadCalibrationConfig(options.config_path).estimation;
+  if (options.config_path) {
+    study.estimation = loadCalibrationConfig(*options.config_path).estimation;
   }
   StudyRecord record;
   record.settings = settingsOf(options, study.nominal);
@@ -228,7 +182,7 @@ StudyRecord run(const Options& options) {
                             options.seed + options.trials,
                             shard.count,
                             options.threads,
-                            terminalProgress());
+                            terminalProgress("trials"));
   return record;
 }
 

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
@@ -12,50 +13,41 @@ namespace {
 
 struct Options {
   std::string actuator_path;
-  std::string dimensions_path;  ///< empty: the paper's
-  std::string output_path;      ///< empty: standard output
+  std::optional<std::string> dimensions_path;  ///< nothing: the paper's
+  std::optional<std::string> output_path;      ///< nothing: standard output
   std::string frame_prefix;
-  bool force = false;
+  OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };
 
 std::optional<Options> parseOptions(int argc, char** argv) {
-  namespace po = boost::program_options;
   Options options;
-  po::options_description known("Options");
-  known.add_options()(
-      "actuator", po::value(&options.actuator_path)->required(), "actuator description (YAML)")(
-      "dimensions",
-      po::value(&options.dimensions_path),
-      "sizes, materials and limits (YAML); every key in config/actuator_dimensions.yaml")(
-      "output",
-      po::value(&options.output_path),
-      "robot description to write (URDF); without it, the standard output")(
-      "frame-prefix", po::value(&options.frame_prefix), "before the names of all links")(
-      "force", po::bool_switch(&options.force), "replace the output if it exists");
-  if (!parseCommandLine(argc,
-                        argv,
-                        known,
-                        "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
-                        "Writes the robot description of an actuator, with any number of poles and "
-                        "coils.\n")) {
-    return std::nullopt;
-  }
-  return options;
+  CommandLine line(
+      "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
+      "Writes the robot description of an actuator, with any number of poles and coils.\n\n");
+  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
+  line.add("dimensions",
+           options.dimensions_path,
+           "YAML",
+           "sizes, materials and limits; every key in config/actuator_dimensions.yaml");
+  line.add("output",
+           options.output_path,
+           "URDF",
+           "robot description to write; without it, the standard output");
+  line.add("frame-prefix", options.frame_prefix, "TEXT", "before the names of all links");
+  line.addForce(options.overwrite);
+  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
 }
 
 void writeUrdf(const Options& options) {
-  const ActuatorDimensions dimensions = options.dimensions_path.empty()
-                                            ? ActuatorDimensions{}
-                                            : loadDimensions(options.dimensions_path);
+  const ActuatorDimensions dimensions =
+      options.dimensions_path ? loadDimensions(*options.dimensions_path) : ActuatorDimensions{};
   const std::string text =
       renderUrdf(loadActuator(options.actuator_path), dimensions, options.frame_prefix);
-  if (options.output_path.empty()) {
+  if (!options.output_path) {
     std::cout << text;
     return;
   }
-  writeFileAtomically(options.output_path,
-                      text,
-                      options.force ? OverwritePolicy::kReplace : OverwritePolicy::kRefuse);
+  writeFileAtomically(*options.output_path, text, options.overwrite);
 }
 
 }  // namespace

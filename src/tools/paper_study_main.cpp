@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -33,32 +35,22 @@ struct Options {
   std::string nominal_path;
   std::string truth_path;
   std::string output_path;
-  bool force = false;
+  OverwritePolicy overwrite = OverwritePolicy::kRefuse;
   std::uint64_t seeds = 200;
 };
 
 std::optional<Options> parseOptions(int argc, char** argv) {
-  namespace po = boost::program_options;
   Options options;
-  po::options_description known("Options");
-  known.add_options()(
-      "actuator", po::value(&options.nominal_path)->required(), "the actuator as drawn (YAML)")(
-      "truth", po::value(&options.truth_path)->required(), "the actuator as made (YAML)")(
-      "output", po::value(&options.output_path)->required(), "results to write (YAML)")(
-      "seeds",
-      po::value(&options.seeds)->default_value(options.seeds),
-      "random sets of orientations per simulation")(
-      "force", po::bool_switch(&options.force), "replace the output if it exists");
-  if (!parseCommandLine(
-          argc,
-          argv,
-          known,
-          "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
-          "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
-          "study/paper_study draws tables and figures of it.\n")) {
-    return std::nullopt;
-  }
-  return options;
+  CommandLine line(
+      "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
+      "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
+      "study/paper_study draws tables and figures of it.\n\n");
+  line.addRequired("actuator", options.nominal_path, "YAML", "the actuator as drawn");
+  line.addRequired("truth", options.truth_path, "YAML", "the actuator as made");
+  line.addRequired("output", options.output_path, "YAML", "results to write");
+  line.add("seeds", options.seeds, "N", "random sets of orientations per simulation");
+  line.addForce(options.overwrite);
+  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
 }
 
 /// Quantiles of kProbabilities, "[...]".
@@ -352,9 +344,7 @@ void writeStudy(const Options& options) {
   study.truth = loadActuator(options.truth_path);
   study.seeds = options.seeds;
   validate(study);
-  writeFileAtomically(options.output_path,
-                      Study(study).text(),
-                      options.force ? OverwritePolicy::kReplace : OverwritePolicy::kRefuse);
+  writeFileAtomically(options.output_path, Study(study).text(), options.overwrite);
 }
 
 }  // namespace

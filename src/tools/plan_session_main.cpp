@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <string>
@@ -111,11 +110,7 @@ void printPlan(const PosePlan& plan) {
 }
 
 void writePlan(const PlanSessionOptions& options) {
-  if (options.overwrite == OverwritePolicy::kRefuse &&
-      std::filesystem::exists(options.output_path)) {
-    throw DataError(options.output_path +
-                    ": the file exists already; choose another name or give --force.");
-  }
+  requireNewFile(options.output_path, options.overwrite);
   const CalibrationConfig config =
       options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
   const CalibratedDescription start = loadDescription(options.actuator_path);

@@ -1,17 +1,11 @@
 #include "plan_session_options.hpp"
 
-#include <ostream>
-#include <sstream>
-
-#include <boost/program_options.hpp>
-
+#include "command_line.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
 namespace {
-
-namespace po = boost::program_options;
 
 constexpr char kIntroduction[] =
     "Usage: plan_session --actuator A.yaml --output PLAN.yaml [options] [BAG...]\n"
@@ -21,74 +15,59 @@ constexpr char kIntroduction[] =
     "the parameters. The plan holds the standard deviation that each parameter will reach.\n"
     "Recordings and samples that are given count as measured already. simulate_recording --plan\n"
     "carries a plan out. A calibrated description plans from its values.\n"
-    "Exit status: 0 the plan is written, 2 it is not (and the reason on the standard error).\n";
+    "Exit status: 0 the plan is written, 2 it is not (and the reason on the standard error).\n\n";
 
 /// Options that need a translation before they enter the structs.
 struct RawValues {
-  std::string config;
-  std::string samples;
   std::string cycle = "refine";
   std::string tracker = "on";
   std::string criterion = "worst";
-  double tilt = 0.0;
   double joint_stddev = 0.0;
 };
 
-/// An option that is stored in `target` and has the target's present value as its default.
-template <typename Value>
-po::typed_value<Value>* stored(Value& target, const char* unit) {
-  std::ostringstream text;
-  text << target;
-  return po::value<Value>(&target)->default_value(target, text.str())->value_name(unit);
+void addFileOptions(CommandLine& line, PlanSessionOptions& options) {
+  line.beginGroup("Files");
+  line.addRequired(
+      "actuator", options.actuator_path, "YAML", "actuator description, nominal or calibrated");
+  line.addRequired("output", options.output_path, "YAML", "plan to write");
+  line.addForce(options.overwrite);
+  line.add("config", options.config_path, "YAML", "as for calibrate_bag");
+  line.add("samples", options.samples_path, "YAML", "samples measured already");
+  line.add("ns", options.ns, "NAME", "namespace of the topics of recordings");
+  line.addOperands(options.bags);
 }
 
-po::options_description fileOptions(PlanSessionOptions& options, RawValues& raw) {
-  po::options_description group("Files");
-  auto add = group.add_options();
-  add("help,h", "print this help and exit");
-  add("actuator",
-      po::value(&options.actuator_path)->value_name("YAML"),
-      "actuator description, nominal or calibrated; needed");
-  add("output", po::value(&options.output_path)->value_name("YAML"), "plan to write; needed");
-  add("force", "replace the output if it exists");
-  add("config", po::value(&raw.config)->value_name("YAML"), "as for calibrate_bag");
-  add("samples", po::value(&raw.samples)->value_name("YAML"), "samples measured already");
-  add("ns", stored(options.ns, "NAME"), "namespace of the topics of recordings");
-  return group;
+void addPlanOptions(CommandLine& line, PosePlanOptions& plan, RawValues& raw) {
+  line.beginGroup("Plan");
+  line.add("cycle", raw.cycle, "CYCLE", "to plan for: refine, joint, poles:J or coil:J");
+  line.add("poses", plan.max_poses, "N", "at most");
+  line.add("torques-per-pose", plan.coils_per_pose, "N", "coils excited in turn, at most");
+  line.add("wanted-stddev",
+           plan.wanted_stddev,
+           "RAD",
+           "stop as soon as every parameter is expected to be this good; 0: use all poses");
+  line.add("tilt",
+           plan.tilt_limit,
+           "RAD",
+           "of joints 1 and 2 within ±; without it the workspace's limit");
+  line.add("spin-minimum", plan.spin_minimum, "RAD", "of joint 3");
+  line.add("spin-maximum", plan.spin_maximum, "RAD", "of joint 3");
+  line.add("spacing", plan.minimum_spacing, "RAD", "between two poses, at least");
+  line.add("current", plan.current, "A", "of an excited coil");
+  line.add("tracker", raw.tracker, "on|off", "at the poses of a refinement");
+  line.add("criterion",
+           raw.criterion,
+           "worst|information",
+           "smallest worst standard deviation, or largest information (D-optimal)");
+  line.add("candidates", plan.candidates, "N", "random poses to choose from");
+  line.add("seed", plan.seed, "N", "of these poses");
 }
 
-po::options_description planOptions(PosePlanOptions& plan, RawValues& raw) {
-  po::options_description group("Plan");
-  auto add = group.add_options();
-  add("cycle", stored(raw.cycle, "CYCLE"), "to plan for: refine, joint, poles:J or coil:J");
-  add("poses", stored(plan.max_poses, "N"), "at most");
-  add("torques-per-pose", stored(plan.coils_per_pose, "N"), "coils excited in turn, at most");
-  add("wanted-stddev",
-      stored(plan.wanted_stddev, "RAD"),
-      "stop as soon as every parameter is expected to be this good; 0: use all poses");
-  add("tilt",
-      po::value(&raw.tilt)->value_name("RAD"),
-      "of joints 1 and 2 within ±; without it the workspace's limit");
-  add("spin-minimum", stored(plan.spin_minimum, "RAD"), "of joint 3");
-  add("spin-maximum", stored(plan.spin_maximum, "RAD"), "of joint 3");
-  add("spacing", stored(plan.minimum_spacing, "RAD"), "between two poses, at least");
-  add("current", stored(plan.current, "A"), "of an excited coil");
-  add("tracker", stored(raw.tracker, "on|off"), "at the poses of a refinement");
-  add("criterion",
-      stored(raw.criterion, "worst|information"),
-      "smallest worst standard deviation, or largest information (D-optimal)");
-  add("candidates", stored(plan.candidates, "N"), "random poses to choose from");
-  add("seed", stored(plan.seed, "N"), "of these poses");
-  return group;
-}
-
-po::options_description sensorOptions(PosePlanOptions& plan, RawValues& raw) {
-  po::options_description group("Standard deviations of the mean values that samples will be");
-  auto add = group.add_options();
-  add("orientation-stddev", stored(plan.orientation_stddev, "RAD"), "per component");
-  add("torque-stddev", stored(plan.torque_stddev, "NM"), "per component");
-  add("joint-stddev", stored(raw.joint_stddev, "RAD"), "per joint");
-  return group;
+void addSensorOptions(CommandLine& line, PosePlanOptions& plan, RawValues& raw) {
+  line.beginGroup("Standard deviations of the mean values that samples will be");
+  line.add("orientation-stddev", plan.orientation_stddev, "RAD", "per component");
+  line.add("torque-stddev", plan.torque_stddev, "NM", "per component");
+  line.add("joint-stddev", raw.joint_stddev, "RAD", "per joint");
 }
 
 CycleRequest parseCycle(const std::string& text) {
@@ -100,41 +79,6 @@ CycleRequest parseCycle(const std::string& text) {
   return cycles.front();
 }
 
-/// True for the first word, false for the second.
-bool parseWord(const char* option, const std::string& text, const char* yes, const char* no) {
-  if (text != yes && text != no) {
-    throw ConfigError("--" + std::string(option) + ": \"" + text + "\" is neither " + yes +
-                      " nor " + no + ".");
-  }
-  return text == yes;
-}
-
-void apply(const RawValues& raw, const po::variables_map& given, PlanSessionOptions& options) {
-  for (const char* needed : {"actuator", "output"}) {
-    if (given.count(needed) == 0) {
-      throw ConfigError("--" + std::string(needed) + " is needed; see --help.");
-    }
-  }
-  if (given.count("config") != 0) {
-    options.config_path = raw.config;
-  }
-  if (given.count("samples") != 0) {
-    options.samples_path = raw.samples;
-  }
-  if (given.count("tilt") != 0) {
-    options.plan.tilt_limit = raw.tilt;
-  }
-  if (given.count("force") != 0) {
-    options.overwrite = OverwritePolicy::kReplace;
-  }
-  options.cycle = parseCycle(raw.cycle);
-  options.plan.tracker_on = parseWord("tracker", raw.tracker, "on", "off");
-  options.plan.criterion = parseWord("criterion", raw.criterion, "worst", "information")
-                               ? PlanCriterion::kWorstStddev
-                               : PlanCriterion::kInformation;
-  options.plan.joint_stddev.setConstant(raw.joint_stddev);
-}
-
 }  // namespace
 
 std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
@@ -142,26 +86,20 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
                                                           std::ostream& out) {
   PlanSessionOptions options;
   RawValues raw;
-  po::options_description known;
-  known.add(fileOptions(options, raw))
-      .add(planOptions(options.plan, raw))
-      .add(sensorOptions(options.plan, raw));
-  po::options_description all = known;
-  all.add_options()("bags", po::value(&options.bags));
-  po::positional_options_description positional;
-  positional.add("bags", -1);
-  po::variables_map given;
-  try {
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(std::string(error.what()) + "; see --help.");
-  }
-  if (given.count("help") != 0) {
-    out << kIntroduction << known << "\n";
+  CommandLine line(kIntroduction);
+  addFileOptions(line, options);
+  addPlanOptions(line, options.plan, raw);
+  addSensorOptions(line, options.plan, raw);
+  if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
-  apply(raw, given, options);
+  options.cycle = parseCycle(raw.cycle);
+  options.plan.tracker_on = choose<bool>("tracker", raw.tracker, {{"on", true}, {"off", false}});
+  options.plan.criterion = choose<PlanCriterion>(
+      "criterion",
+      raw.criterion,
+      {{"worst", PlanCriterion::kWorstStddev}, {"information", PlanCriterion::kInformation}});
+  options.plan.joint_stddev.setConstant(raw.joint_stddev);
   return options;
 }
 

@@ -1,13 +1,13 @@
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <optional>
 #include <string>
 
-#include <boost/program_options.hpp>
 #include <rosbag/bag.h>
 
+#include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
@@ -25,38 +25,27 @@ struct Options {
   std::string actuator_path;
   std::string samples_path;
   std::string output_path;
-  std::string ns;
-  bool force = false;
+  std::string ns = "/actuator";
+  OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };
 
 std::optional<Options> parseOptions(int argc, char** argv) {
-  namespace po = boost::program_options;
   Options options;
-  po::options_description known("Options");
-  known.add_options()(
-      "actuator", po::value(&options.actuator_path)->required(), "actuator description (YAML)")(
-      "samples", po::value(&options.samples_path)->required(), "measured samples (YAML)")(
-      "output", po::value(&options.output_path)->required(), "recording to write (bag)")(
-      "ns", po::value(&options.ns)->default_value("/actuator"), "namespace of the topics")(
-      "force", po::bool_switch(&options.force), "replace the recording if it exists");
-  if (!parseCommandLine(
-          argc,
-          argv,
-          known,
-          "Usage: samples_to_bag --actuator A.yaml --samples S.yaml --output OUT.bag\n\n"
-          "Writes measured samples as the messages that calibrate_bag reads.\n")) {
-    return std::nullopt;
-  }
-  return options;
+  CommandLine line(
+      "Usage: samples_to_bag --actuator A.yaml --samples S.yaml --output OUT.bag\n\n"
+      "Writes measured samples as the messages that calibrate_bag reads.\n\n");
+  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
+  line.addRequired("samples", options.samples_path, "YAML", "measured samples");
+  line.addRequired("output", options.output_path, "BAG", "recording to write");
+  line.add("ns", options.ns, "NAME", "namespace of the topics");
+  line.addForce(options.overwrite);
+  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
 }
 
 void writeBag(const Options& options) {
   const Actuator actuator = loadActuator(options.actuator_path);
   const std::vector<Sample> samples = loadSamples(options.samples_path, actuator.coils.size());
-  if (!options.force && std::filesystem::exists(options.output_path)) {
-    throw DataError(options.output_path +
-                    ": the file exists already; choose another name or give --force.");
-  }
+  requireNewFile(options.output_path, options.overwrite);
   const std::string active_path = options.output_path + ".active";
   rosbag::Bag bag(active_path, rosbag::bagmode::Write);
   ros::Time stamp(kFirstStamp);

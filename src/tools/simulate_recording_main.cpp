@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 
 #include "simulate_recording_options.hpp"
@@ -14,20 +13,8 @@
 #include "spherical_actuator_calibration/ros/emulation_node/session_bag_writer.hpp"
 #include "tool_main.hpp"
 
-#include <unistd.h>
-
 namespace sac {
 namespace {
-
-/// Shows the share done on a terminal, and nothing anywhere else.
-std::function<void(double)> terminalProgress() {
-  if (::isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  return [](double share) {
-    std::fprintf(stderr, "\rrecording %3.0f %%%s", 100.0 * share, share < 1.0 ? "" : "\n");
-  };
-}
 
 Actuator truthOf(const Actuator& nominal, const SimulateRecordingOptions& options) {
   if (!options.truth_in_path) {
@@ -41,13 +28,6 @@ Actuator truthOf(const Actuator& nominal, const SimulateRecordingOptions& option
 SessionPlan planOf(const Actuator& nominal, const SimulateRecordingOptions& options) {
   return options.plan_path ? sessionOf(loadSessionPlan(*options.plan_path), nominal)
                            : planSession(nominal, options.plan, options.simulation.seed);
-}
-
-/// Nothing is simulated for a file that could not be written in the end.
-void requireNewFile(const std::string& path, OverwritePolicy policy) {
-  if (policy == OverwritePolicy::kRefuse && std::filesystem::exists(path)) {
-    throw DataError(path + ": the file exists already; choose another name or give --force.");
-  }
 }
 
 void printSummary(const SimulateRecordingOptions& options,
@@ -80,7 +60,7 @@ void simulateRecording(const SimulateRecordingOptions& options) {
 
   SessionBagWriter writer(options.output_path, nominal, options.bag);
   const SimulatedSession session =
-      simulateSession(truth, plan, options.simulation, writer, terminalProgress());
+      simulateSession(truth, plan, options.simulation, writer, terminalProgress("recording"));
   saveDescription(options.truth_path, {truth}, options.bag.overwrite);
   writer.close();
   printSummary(options, session, writer.messages());

@@ -2,7 +2,12 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+
+#include <unistd.h>
 
 namespace sac {
 
@@ -17,21 +22,19 @@ int runTool(const char* name, const std::function<int()>& body) {
   }
 }
 
-std::optional<boost::program_options::variables_map> parseCommandLine(
-    int argc,
-    char** argv,
-    boost::program_options::options_description& known,
-    const std::string& usage) {
-  namespace po = boost::program_options;
-  known.add_options()("help,h", "print this help and exit");
-  po::variables_map given;
-  po::store(po::parse_command_line(argc, argv, known), given);
-  if (given.count("help") > 0) {
-    std::cout << usage << "\n" << known;
-    return std::nullopt;
+std::function<void(double)> terminalProgress(const std::string& what) {
+  if (::isatty(STDERR_FILENO) == 0) {
+    return {};
   }
-  po::notify(given);
-  return given;
+  return [what](double share) {
+    std::fprintf(stderr, "\r%s %3.0f %%%s", what.c_str(), 100.0 * share, share < 1.0 ? "" : "\n");
+  };
+}
+
+void requireNewFile(const std::string& path, OverwritePolicy policy) {
+  if (policy == OverwritePolicy::kRefuse && std::filesystem::exists(path)) {
+    throw DataError(path + ": the file exists already; choose another name or give --force.");
+  }
 }
 
 }  // namespace sac

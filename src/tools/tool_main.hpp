@@ -1,10 +1,9 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 
-#include <boost/program_options.hpp>
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
 
 namespace sac {
 
@@ -16,12 +15,11 @@ inline constexpr int kToolUnusable = 2;
 /// message" on the standard error, when it throws.
 int runTool(const char* name, const std::function<int()>& body);
 
-/// Reads a command line into the targets of `known`, to which --help is added. Nothing when help
-/// was asked for: it is printed, after `usage`. Throws boost::program_options::error.
-std::optional<boost::program_options::variables_map> parseCommandLine(
-    int argc,
-    char** argv,
-    boost::program_options::options_description& known,
-    const std::string& usage);
+/// Shows the share done on a terminal, "what  37 %", and nothing anywhere else.
+std::function<void(double)> terminalProgress(const std::string& what);
+
+/// Throws DataError when the file is there and must not be replaced: nothing is computed for a file
+/// that could not be written in the end.
+void requireNewFile(const std::string& path, OverwritePolicy policy);
 
 }  // namespace sac
