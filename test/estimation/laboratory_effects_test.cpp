@@ -1,170 +1,20 @@
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
-#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
-#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "estimation/effect_laboratory.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
-#include "support/calibration_trials.hpp"
 #include "support/error_message.hpp"
 #include "support/numeric_jacobian.hpp"
-#include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
-
-using Effect = LaboratoryEffect;
-
-constexpr double kOrientationNoise = 1e-3;
-constexpr double kTorqueNoise = 5e-4;
-
-EffectSelection only(const std::vector<Effect>& effects) {
-  EffectSelection selection;
-  for (const Effect effect : effects) {
-    selection[effect] = true;
-  }
-  return selection;
-}
-
-/// A laboratory by its physics, independent of the model that is tested.
-struct Laboratory {
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
-  Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
-  Eigen::Vector4d harmonics = Eigen::Vector4d::Zero();
-  Eigen::Matrix2d tilt = Eigen::Matrix2d::Zero();
-  Eigen::Vector3d marker = Eigen::Vector3d::Zero();  ///< rotation of the marker on the rotor
-
-  /// Joint angles when the sensors read q.
-  Eigen::Vector3d angles(const Eigen::Vector3d& q) const {
-    Eigen::Vector3d result = q;
-    result.head<2>() += tilt * q.head<2>();
-    result[2] += harmonics[0] * std::cos(q[2]) + harmonics[1] * std::sin(q[2]) +
-                 harmonics[2] * std::cos(2.0 * q[2]) + harmonics[3] * std::sin(2.0 * q[2]);
-    return result;
-  }
-};
-
-/// Measures the samples of the paper's session again, in a laboratory with effects, with the
-/// tracker on everywhere.
-std::vector<Sample> sessionIn(const Laboratory& laboratory,
-                              const Actuator& truth,
-                              scenarios::Generator& generator) {
-  std::vector<Sample> samples =
-      scenarios::paperSession(truth, scenarios::Tracker::kEveryPose, generator);
-  const JointGeometry joints = jointGeometry(truth.joints);
-  const TorqueGeometry geometry = torqueGeometry(truth);
-  const TorqueCurve curve(*truth.torque_curve);
-  for (Sample& sample : samples) {
-    const Eigen::Matrix3d R = rotorOrientation(joints, laboratory.angles(sample.joint_position));
-    sample.R_stator_rotor = rotationExp(scenarios::uniformNoise(kOrientationNoise, generator)) * R *
-                            rotationExp(laboratory.marker);
-    if (sample.has_torque) {
-      const Eigen::Vector3d gravity = R.transpose() * Eigen::Vector3d(0.0, 0.0, -1.0);
-      sample.torque = rotorTorque(curve, geometry, R, sample.current) + laboratory.bias +
-                      laboratory.unbalance.cross(gravity) +
-                      scenarios::uniformNoise(kTorqueNoise, generator);
-    }
-  }
-  return samples;
-}
-
-/// Many sessions on different units in one kind of laboratory.
-class EffectTrials {
- public:
-  explicit EffectTrials(const EffectSelection& modelled) { config_.effects = modelled; }
-
-  /// `truth` as made; `values` of the modelled effects, in the order of their layout.
-  void add(const Actuator& geometry,
-           const std::vector<Sample>& samples,
-           const std::vector<double>& values) {
-    CalibrationSession session({scenarios::paperNominal()}, samples, config_);
-    session.run({Cycle::kJoint});
-    session.run({Cycle::kPoles, 0});
-    const CycleReport refined = session.run({Cycle::kRefine});
-    chi_square_ += refined.reduced_chi_square;
-    ++trials_;
-    if (!refined.success) {
-      ++failures_;
-      return;
-    }
-    const ParameterSpace& space = session.model().space();
-    Eigen::VectorXd truth = space.coordinatesOf(geometry);
-    ASSERT_EQ(static_cast<Eigen::Index>(values.size()), space.effects().size());
-    for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
-      truth[space.effect() + e] = values[static_cast<std::size_t>(e)] / space.effects().unit(e);
-    }
-    const CycleRequest refine{Cycle::kRefine};
-    const std::vector<Eigen::Index> free =
-        selectCoordinates(space, samples, refine, config_.estimation);
-    const Eigen::MatrixXd bound = cramerRaoBound(session.model(), samples, refine, free, truth);
-    const Eigen::Index effects = space.effects().size();
-    const Eigen::Index geometry_count = bound.rows() - effects;
-    const auto split = free.end() - effects;
-    geometry_.add(session.state().belief,
-                  truth,
-                  {free.begin(), split},
-                  bound.topLeftCorner(geometry_count, geometry_count));
-    effects_.add(session.state().belief,
-                 truth,
-                 {split, free.end()},
-                 bound.bottomRightCorner(effects, effects));
-  }
-
-  int failures() const { return failures_; }
-  double meanChiSquare() const { return chi_square_ / trials_; }
-  /// Of the 73 geometric parameters, and of the effects.
-  const TrialStatistics& geometry() const { return geometry_; }
-  const TrialStatistics& effects() const { return effects_; }
-
- private:
-  CalibrationConfig config_;
-  TrialStatistics geometry_;
-  TrialStatistics effects_;
-  double chi_square_ = 0.0;
-  int trials_ = 0;
-  int failures_ = 0;
-};
-
-Actuator madeUnit(scenarios::Generator& generator) {
-  return scenarios::perturbed(scenarios::paperNominal(), 0.03, 0.02, generator);
-}
-
-/// One hundred sessions with the effect modelled reach the bound of that model with intervals that
-/// hold; with the effect ignored the result is visibly wrong.
-template <typename MakeCase>
-void expectModelledAtTheBound(const EffectSelection& effects, MakeCase make_case) {
-  constexpr int kTrials = 100;
-  constexpr int kIgnoredTrials = 10;
-  EffectTrials modelled(effects);
-  EffectTrials ignored({});
-  for (int seed = 1; seed <= kTrials; ++seed) {
-    scenarios::Generator generator(static_cast<std::uint64_t>(seed));
-    const Actuator geometry = madeUnit(generator);
-    std::vector<double> values;
-    const std::vector<Sample> samples = make_case(geometry, generator, values);
-    modelled.add(geometry, samples, values);
-    if (seed <= kIgnoredTrials) {
-      ignored.add(geometry, samples, {});
-    }
-  }
-  EXPECT_EQ(modelled.failures(), 0);
-  EXPECT_LE(modelled.geometry().errorOverBound(), 1.05);
-  EXPECT_NEAR(modelled.geometry().coverage(), 0.95, 0.02);
-  EXPECT_GE(modelled.effects().coverage(), 0.9);
-  EXPECT_LT(modelled.meanChiSquare(), 1.1);
-  const bool all_refused = ignored.failures() == kIgnoredTrials;
-  EXPECT_TRUE(all_refused ||
-              (ignored.geometry().errorOverBound() > 1.4 && ignored.meanChiSquare() > 1.2))
-      << ignored.geometry().errorOverBound() << " " << ignored.meanChiSquare();
-}
 
 TEST(LaboratoryEffects, JacobiansOfAllAgreeWithNumericOnes) {
   EffectSelection all;
@@ -208,87 +58,6 @@ TEST(LaboratoryEffects, JacobiansOfAllAgreeWithNumericOnes) {
   }
 }
 
-TEST(LaboratoryEffects, TorqueBias) {
-  expectModelledAtTheBound(
-      only({Effect::kTorqueBias}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Laboratory laboratory;
-        laboratory.bias = {2.7e-3, 0.0, 0.0};
-        values = {2.7e-3, 0.0, 0.0};
-        return sessionIn(laboratory, geometry, generator);
-      });
-}
-
-TEST(LaboratoryEffects, RotorUnbalance) {
-  expectModelledAtTheBound(
-      only({Effect::kRotorUnbalance}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Laboratory laboratory;
-        laboratory.unbalance = {3.0e-3, -2.0e-3, 4.2e-3};
-        values = {3.0e-3, -2.0e-3, 4.2e-3};
-        return sessionIn(laboratory, geometry, generator);
-      });
-}
-
-TEST(LaboratoryEffects, GainsOfPolesAndCoils) {
-  expectModelledAtTheBound(
-      only({Effect::kPoleGains, Effect::kCoilGains}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Actuator made = geometry;
-        const auto spread = [&] { return 1.0 + scenarios::uniformNoise(0.02, generator).x(); };
-        for (PoleAxis& pole : made.poles) {
-          pole.gain = spread();
-        }
-        for (CoilAxis& coil : made.coils) {
-          coil.gain = spread();
-        }
-        // Coil 1 is the reference of strength.
-        for (const PoleAxis& pole : made.poles) {
-          values.push_back(pole.gain * made.coils[0].gain - 1.0);
-        }
-        for (std::size_t j = 1; j < made.coils.size(); ++j) {
-          values.push_back(made.coils[j].gain / made.coils[0].gain - 1.0);
-        }
-        return sessionIn({}, made, generator);
-      });
-}
-
-TEST(LaboratoryEffects, StrengthScaleOfWarmMagnets) {
-  expectModelledAtTheBound(
-      only({Effect::kStrengthScale}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        constexpr double kWarm = -0.0012 * 30.0;
-        Actuator made = geometry;
-        for (PoleAxis& pole : made.poles) {
-          pole.gain = 1.0 + kWarm;
-        }
-        values = {kWarm};
-        return sessionIn({}, made, generator);
-      });
-}
-
-TEST(LaboratoryEffects, EncoderHarmonics) {
-  expectModelledAtTheBound(
-      only({Effect::kEncoderHarmonics}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Laboratory laboratory;
-        laboratory.harmonics = {0.8e-3, -0.6e-3, 0.3e-3, 0.2e-3};
-        values = {0.8e-3, -0.6e-3, 0.3e-3, 0.2e-3};
-        return sessionIn(laboratory, geometry, generator);
-      });
-}
-
-TEST(LaboratoryEffects, TiltScaleAndCrossAxis) {
-  expectModelledAtTheBound(
-      only({Effect::kTiltCrossAxis}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Laboratory laboratory;
-        laboratory.tilt << 0.01, -0.006, 0.008, -0.01;
-        values = {0.01, -0.006, 0.008, -0.01};
-        return sessionIn(laboratory, geometry, generator);
-      });
-}
-
 /// Without poles and coils, where nothing lies between the coordinates of joints and effects.
 TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
   scenarios::Generator generator(9);
@@ -314,38 +83,6 @@ TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
   const Eigen::VectorXd values = space.reportedValues(session.state().belief.x);
   EXPECT_NEAR(values[space.effect()], 0.01, 2e-3);
   EXPECT_NEAR(values[space.effect() + 3], -0.01, 2e-3);
-}
-
-TEST(LaboratoryEffects, TorqueCurve) {
-  expectModelledAtTheBound(
-      only({Effect::kTorqueCurve}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        TorqueCurveDescription curve = geometry.torque_curve.value();
-        const EffectLayout layout(geometry, only({Effect::kTorqueCurve}));
-        values = {0.01, -0.02, 0.015, 0.005, -0.005, 0.003, 0.002};
-        for (std::size_t c = 0; c < curve.coefficients.size(); ++c) {
-          for (std::size_t n = 0; n < values.size(); ++n) {
-            curve.coefficients[c] +=
-                layout.curveShapes()(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(n)) *
-                values[n];
-          }
-        }
-        Actuator made = geometry;
-        made.torque_curve = curve;
-        return sessionIn({}, made, generator);
-      });
-}
-
-/// Torques are measured in the rotor's frame, so that they tell where the marker is.
-TEST(LaboratoryEffects, MarkerRegistration) {
-  expectModelledAtTheBound(
-      only({Effect::kMarkerRegistration}),
-      [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        Laboratory laboratory;
-        laboratory.marker = {4e-3, -3e-3, 5e-3};
-        values = {4e-3, -3e-3, 5e-3};
-        return sessionIn(laboratory, geometry, generator);
-      });
 }
 
 TEST(LaboratoryEffects, ATrackerRegistrationThatNothingTellsIsRefusedByName) {
