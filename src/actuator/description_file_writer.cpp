@@ -1,4 +1,4 @@
-#include <sstream>
+#include <array>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -20,19 +20,10 @@ void addStddev(YamlLine& line, const YamlLine& stddev) {
   }
 }
 
-std::string numberList(const std::vector<double>& values) {
-  std::vector<std::string> items;
-  items.reserve(values.size());
-  for (const double value : values) {
-    items.push_back(yamlNumber(value));
-  }
-  return yamlList(items);
-}
-
 std::string jointLine(const JointAxis& joint, const JointStddev& stddev) {
   YamlLine line;
   line.add("name", yamlText(joint.name));
-  line.add("axis", numberList({joint.axis.x(), joint.axis.y(), joint.axis.z()}));
+  line.add("axis", yamlNumbers(joint.axis));
   line.add("offset", yamlNumber(joint.offset));
   YamlLine values;
   addOptional(values, "offset", stddev.offset);
@@ -74,9 +65,9 @@ std::string coilLine(const CoilAxis& coil, const AngleStddev& stddev) {
 std::string curveLine(const TorqueCurveDescription& curve) {
   YamlLine line;
   line.add("angle_unit", curve.angle_unit == AngleUnit::kDegree ? "deg" : "rad");
-  line.add("coefficients", numberList(curve.coefficients));
+  line.add("coefficients", yamlNumbers(curve.coefficients));
   line.add("blend_start", yamlNumber(curve.blend_start));
-  line.add("support", numberList({curve.support_begin, curve.support_end}));
+  line.add("support", yamlNumbers(std::array{curve.support_begin, curve.support_end}));
   return line.text();
 }
 
@@ -101,20 +92,9 @@ std::string validationLine(const ValidationRecord& record) {
   return line.text();
 }
 
-/// "key:" and one line per entry; "key: []" without entries.
-void writeList(std::ostream& text,
-               const std::string& indent,
-               const std::string& key,
-               const std::vector<std::string>& lines) {
-  text << indent << key << (lines.empty() ? ": []\n" : ":\n");
-  for (const std::string& line : lines) {
-    text << indent << "  - " << line << "\n";
-  }
-}
-
 /// Writes the axes of poles or coils, unless there are none.
 template <typename PoleOrCoil, typename LineOf>
-void writeAxes(std::ostream& text,
+void writeAxes(YamlWriter& writer,
                const std::string& key,
                const std::vector<PoleOrCoil>& axes,
                const std::vector<AngleStddev>& stddevs,
@@ -131,27 +111,26 @@ void writeAxes(std::ostream& text,
   for (std::size_t i = 0; i < axes.size(); ++i) {
     lines.push_back(line_of(axes[i], stddevs.empty() ? AngleStddev{} : stddevs[i]));
   }
-  writeList(text, "  ", key, lines);
+  writer.list(1, key, lines);
 }
 
-void writeCalibration(std::ostream& text, const CalibrationRecord& record) {
-  const std::string indent = "    ";
-  text << "  calibration:\n";
-  text << indent << "date: " << yamlText(record.date) << "\n";
-  text << indent << "revision: " << record.revision << "\n";
+void writeCalibration(YamlWriter& writer, const CalibrationRecord& record) {
+  writer.map(1, "calibration");
+  writer.entry(2, "date", yamlText(record.date));
+  writer.entry(2, "revision", std::to_string(record.revision));
   std::vector<std::string> source;
   for (const RecordingSource& item : record.source) {
     YamlLine line;
     line.add("recording", yamlText(item.recording)).add("checksum", yamlText(item.checksum));
     source.push_back(line.text());
   }
-  writeList(text, indent, "source", source);
-  text << indent << "software: " << yamlText(record.software) << "\n";
+  writer.list(2, "source", source);
+  writer.entry(2, "software", yamlText(record.software));
   std::vector<std::string> cycles;
   for (const CycleRecord& cycle : record.cycles) {
     cycles.push_back(cycleLine(cycle));
   }
-  writeList(text, indent, "cycles", cycles);
+  writer.list(2, "cycles", cycles);
   if (!record.effects.empty()) {
     std::vector<std::string> effects;
     for (const EffectRecord& effect : record.effects) {
@@ -161,54 +140,49 @@ void writeCalibration(std::ostream& text, const CalibrationRecord& record) {
                             .add("stddev", yamlNumber(effect.stddev))
                             .text());
     }
-    writeList(text, indent, "effects", effects);
+    writer.list(2, "effects", effects);
   }
   std::vector<std::string> unidentified;
   for (const std::string& name : record.unidentified) {
     unidentified.push_back(yamlText(name));
   }
-  writeList(text, indent, "unidentified", unidentified);
+  writer.list(2, "unidentified", unidentified);
   if (record.validation) {
-    text << indent << "validation: " << validationLine(*record.validation) << "\n";
+    writer.entry(2, "validation", validationLine(*record.validation));
   }
-  if (record.orientation_uncertainty) {
-    text << indent << "orientation_uncertainty: " << yamlNumber(*record.orientation_uncertainty)
-         << "\n";
-  }
-  if (record.torque_uncertainty) {
-    text << indent << "torque_uncertainty: " << yamlNumber(*record.torque_uncertainty) << "\n";
-  }
+  writer.optional(2, "orientation_uncertainty", record.orientation_uncertainty);
+  writer.optional(2, "torque_uncertainty", record.torque_uncertainty);
 }
 
 }  // namespace
 
 std::string renderDescription(const CalibratedDescription& description, const std::string& name) {
   const Actuator& actuator = description.actuator;
-  std::ostringstream text;
-  text << "actuator:\n";
-  text << "  name: " << yamlText(actuator.name) << "\n";
+  YamlWriter writer;
+  writer.map(0, "actuator");
+  writer.entry(1, "name", yamlText(actuator.name));
   if (!actuator.serial.empty()) {
-    text << "  serial: " << yamlText(actuator.serial) << "\n";
+    writer.entry(1, "serial", yamlText(actuator.serial));
   }
   std::vector<std::string> joints;
   for (std::size_t k = 0; k < kJoints; ++k) {
     joints.push_back(jointLine(actuator.joints[k], description.stddevs.joints[k]));
   }
-  writeList(text, "  ", "joints", joints);
-  writeAxes(text, "poles", actuator.poles, description.stddevs.poles, poleLine);
-  writeAxes(text, "coils", actuator.coils, description.stddevs.coils, coilLine);
+  writer.list(1, "joints", joints);
+  writeAxes(writer, "poles", actuator.poles, description.stddevs.poles, poleLine);
+  writeAxes(writer, "coils", actuator.coils, description.stddevs.coils, coilLine);
   if (actuator.torque_curve) {
-    text << "  torque_curve: " << curveLine(*actuator.torque_curve) << "\n";
+    writer.entry(1, "torque_curve", curveLine(*actuator.torque_curve));
   }
   YamlLine workspace;
   workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));
-  text << "  workspace: " << workspace.text() << "\n";
+  writer.entry(1, "workspace", workspace.text());
   if (description.calibration) {
-    writeCalibration(text, *description.calibration);
+    writeCalibration(writer, *description.calibration);
   }
   // What cannot be loaded again must not be saved: the reader is the judge.
-  parseDescription(text.str(), name);
-  return text.str();
+  parseDescription(writer.text(), name);
+  return writer.text();
 }
 
 }  // namespace sac

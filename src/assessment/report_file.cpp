@@ -14,23 +14,8 @@
 namespace sac {
 namespace {
 
-std::string truthText(bool value) {
-  return value ? "true" : "false";
-}
-
 const char* quantityName(Quantity quantity) {
   return quantity == Quantity::kOrientation ? "orientation" : "torque";
-}
-
-/// Of a vector of doubles of any kind.
-template <typename Numbers>
-std::string numberList(const Numbers& values) {
-  std::vector<std::string> items;
-  items.reserve(static_cast<std::size_t>(values.size()));
-  for (const double value : values) {
-    items.push_back(yamlNumber(value));
-  }
-  return yamlList(items);
 }
 
 std::vector<std::string> texts(const std::vector<std::string>& plain) {
@@ -46,37 +31,10 @@ std::vector<std::string> matrixLines(const Eigen::MatrixXd& matrix) {
   std::vector<std::string> lines;
   lines.reserve(static_cast<std::size_t>(matrix.rows()));
   for (const auto& row : matrix.rowwise()) {
-    lines.push_back(numberList(row));
+    lines.push_back(yamlNumbers(row));
   }
   return lines;
 }
-
-/// Writes nested maps and lists, two spaces a level.
-class ReportWriter {
- public:
-  void map(int level, const std::string& key) { line(level, key + ":"); }
-  void entry(int level, const std::string& key, const std::string& value) {
-    line(level, key + ": " + value);
-  }
-  void optional(int level, const std::string& key, const std::optional<double>& value) {
-    if (value) {
-      entry(level, key, yamlNumber(*value));
-    }
-  }
-  void list(int level, const std::string& key, const std::vector<std::string>& items) {
-    line(level, key + (items.empty() ? ": []" : ":"));
-    for (const std::string& item : items) {
-      line(level + 1, "- " + item);
-    }
-  }
-  void line(int level, const std::string& text) {
-    text_ << std::string(2 * static_cast<std::size_t>(level), ' ') << text << "\n";
-  }
-  std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_;
-};
 
 /// With `initial` and `observable` of a cycle, or with `identified` of the parameters in force.
 YamlLine estimateLine(const ParameterEstimate& estimate, bool is_of_cycle) {
@@ -86,7 +44,7 @@ YamlLine estimateLine(const ParameterEstimate& estimate, bool is_of_cycle) {
     line.add("initial", yamlNumber(estimate.initial));
   }
   line.add("value", yamlNumber(estimate.value)).add("stddev", yamlNumber(estimate.stddev));
-  line.add(is_of_cycle ? "observable" : "identified", truthText(estimate.observable));
+  line.add(is_of_cycle ? "observable" : "identified", yamlBoolean(estimate.observable));
   return line;
 }
 
@@ -116,7 +74,7 @@ const char* unitOf(const ParameterSpace& space, Eigen::Index parameter) {
   }
 }
 
-void writeParameters(ReportWriter& writer, const CalibrationSession& session) {
+void writeParameters(YamlWriter& writer, const CalibrationSession& session) {
   std::vector<std::string> lines;
   Eigen::Index parameter = 0;
   for (const ParameterEstimate& estimate : session.parameters()) {
@@ -135,7 +93,7 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
     line.add("quantity", quantityName(residual.quantity));
     line.add("residual", yamlNumber(residual.residual));
     line.add("standardized", yamlNumber(residual.standardized));
-    line.add("rejected", truthText(residual.rejected));
+    line.add("rejected", yamlBoolean(residual.rejected));
     if (residual.rejected) {
       line.add("reason", yamlText(residual.reason));
     }
@@ -144,16 +102,16 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
   return lines;
 }
 
-void writeCycle(ReportWriter& writer, const CycleReport& report) {
+void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.line(2, "- cycle: " + cycleName(report.cycle));
   writer.entry(3, "coil", std::to_string(numberOrZero(report.coil)));
-  writer.entry(3, "success", truthText(report.success));
+  writer.entry(3, "success", yamlBoolean(report.success));
   writer.entry(3, "message", yamlText(report.message));
   writer.entry(3, "samples_used", std::to_string(report.samples_used));
   writer.entry(3, "samples_rejected", std::to_string(report.samples_rejected));
   writer.entry(3, "iterations", std::to_string(report.iterations));
   writer.entry(3, "error_unit", yamlText(unitOf(report.error_measure)));
-  writer.entry(3, "error_history", numberList(report.error_history));
+  writer.entry(3, "error_history", yamlNumbers(report.error_history));
   writer.optional(3, "orientation_rms", residualRms(report, Quantity::kOrientation));
   writer.optional(3, "torque_rms", residualRms(report, Quantity::kTorque));
   writer.entry(3, "reduced_chi_square", yamlNumber(report.reduced_chi_square));
@@ -165,7 +123,7 @@ void writeCycle(ReportWriter& writer, const CycleReport& report) {
   writer.list(3, "residuals", residualLines(report.residuals));
 }
 
-void writeValidation(ReportWriter& writer, const HeldOutValidation& validation) {
+void writeValidation(YamlWriter& writer, const HeldOutValidation& validation) {
   writer.map(1, "validation");
   writer.entry(2, "samples", std::to_string(validation.samples));
   writer.entry(2, "orientations", std::to_string(validation.orientations));
@@ -178,7 +136,7 @@ void writeValidation(ReportWriter& writer, const HeldOutValidation& validation) 
   writer.list(2, "residuals", residualLines(validation.residuals));
 }
 
-void writeOrigin(ReportWriter& writer,
+void writeOrigin(YamlWriter& writer,
                  const CalibrationSession& session,
                  const CalibrationOrigin& origin) {
   const Actuator& actuator = session.model().space().nominal();
@@ -198,14 +156,14 @@ void writeOrigin(ReportWriter& writer,
   writer.list(1, "source", sources);
 }
 
-void writeVerdict(ReportWriter& writer, const CalibrationVerdict& verdict) {
+void writeVerdict(YamlWriter& writer, const CalibrationVerdict& verdict) {
   YamlLine line;
   line.add("grade", gradeName(verdict.grade)).add("sentence", yamlText(verdict.sentence));
   writer.entry(1, "verdict", line.text());
   writer.list(1, "next_steps", texts(verdict.next_steps));
 }
 
-void writeSamples(ReportWriter& writer, const CalibrationSession& session) {
+void writeSamples(YamlWriter& writer, const CalibrationSession& session) {
   const double threshold = session.config().estimation.current_threshold;
   std::vector<std::string> lines;
   for (const Sample& sample : session.samples()) {
@@ -215,17 +173,17 @@ void writeSamples(ReportWriter& writer, const CalibrationSession& session) {
     }
     YamlLine line;
     line.add("id", std::to_string(sample.id));
-    line.add("joint_position", numberList(sample.joint_position));
-    line.add("orientation", truthText(sample.has_orientation));
-    line.add("torque", truthText(sample.has_torque));
+    line.add("joint_position", yamlNumbers(sample.joint_position));
+    line.add("orientation", yamlBoolean(sample.has_orientation));
+    line.add("torque", yamlBoolean(sample.has_torque));
     line.add("coils", yamlList(coils));
-    line.add("validation", truthText(sample.validation));
+    line.add("validation", yamlBoolean(sample.validation));
     lines.push_back(line.text());
   }
   writer.list(1, "samples", lines);
 }
 
-void writeCoverage(ReportWriter& writer, const CalibrationSession& session) {
+void writeCoverage(YamlWriter& writer, const CalibrationSession& session) {
   const SampleCoverage coverage = sampleCoverage(session.model(),
                                                  session.samples(),
                                                  session.state().belief.x,
@@ -253,10 +211,10 @@ void writeCoverage(ReportWriter& writer, const CalibrationSession& session) {
   writer.entry(2, "coils", counts(coverage.coils));
 }
 
-void writeWorkspace(ReportWriter& writer, const CalibrationSession& session) {
+void writeWorkspace(YamlWriter& writer, const CalibrationSession& session) {
   const WorkspaceMap map = workspaceMap(session.model(), session.state().belief);
   writer.map(1, "workspace");
-  writer.entry(2, "tilt", numberList(map.tilt));
+  writer.entry(2, "tilt", yamlNumbers(map.tilt));
   writer.list(2, "orientation", matrixLines(map.orientation));
   writer.list(2, "torque", matrixLines(map.torque));
 }
@@ -273,7 +231,7 @@ std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
                           session.config().estimation);
 }
 
-void writeInfluences(ReportWriter& writer, const std::vector<SampleInfluence>& influences) {
+void writeInfluences(YamlWriter& writer, const std::vector<SampleInfluence>& influences) {
   std::vector<std::string> lines;
   for (const SampleInfluence& influence : influences) {
     YamlLine line;
@@ -281,19 +239,19 @@ void writeInfluences(ReportWriter& writer, const std::vector<SampleInfluence>& i
     line.add("quantity", quantityName(influence.quantity));
     line.add("leverage", yamlNumber(influence.leverage));
     line.add("largest_shift", yamlNumber(influence.largest_shift));
-    line.add("irreplaceable", truthText(influence.irreplaceable));
+    line.add("irreplaceable", yamlBoolean(influence.irreplaceable));
     line.add("parameter", influence.parameter);
     lines.push_back(line.text());
   }
   writer.list(1, "influences", lines);
 }
 
-void writeModelChoice(ReportWriter& writer, const std::vector<ModelFit>& fits) {
+void writeModelChoice(YamlWriter& writer, const std::vector<ModelFit>& fits) {
   std::vector<std::string> lines;
   for (const ModelFit& fit : fits) {
     YamlLine line;
     line.add("effects", yamlText(fit.effects));
-    line.add("converged", truthText(fit.converged));
+    line.add("converged", yamlBoolean(fit.converged));
     line.add("parameters", std::to_string(fit.parameters));
     line.add("chi_square", yamlNumber(fit.chi_square));
     line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
@@ -305,7 +263,7 @@ void writeModelChoice(ReportWriter& writer, const std::vector<ModelFit>& fits) {
   }
 }
 
-void writeConfiguration(ReportWriter& writer, const CalibrationConfig& config) {
+void writeConfiguration(YamlWriter& writer, const CalibrationConfig& config) {
   writer.map(1, "configuration");
   std::istringstream configuration(renderCalibrationConfig(config));
   for (std::string line; std::getline(configuration, line);) {
@@ -321,7 +279,7 @@ std::string renderReport(const CalibrationSession& session,
   const std::vector<SampleInfluence> influences = influencesOf(session);
   const std::vector<ModelFit> fits =
       compareEffects(session.start(), session.samples(), session.config());
-  ReportWriter writer;
+  YamlWriter writer;
   writer.map(0, "calibration_report");
   writeOrigin(writer, session, origin);
   writeVerdict(writer, judgeCalibration(session, influences, fits));

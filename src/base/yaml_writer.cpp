@@ -78,6 +78,10 @@ std::string yamlText(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string yamlBoolean(bool value) {
+  return value ? "true" : "false";
+}
+
 std::string yamlList(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) {
@@ -89,6 +93,23 @@ std::string yamlList(const std::vector<std::string>& items) {
 YamlLine& YamlLine::add(const std::string& key, const std::string& value) {
   items_ += (items_.empty() ? "" : ", ") + key + ": " + value;
   return *this;
+}
+
+void YamlWriter::optional(int level, const std::string& key, const std::optional<double>& value) {
+  if (value) {
+    entry(level, key, yamlNumber(*value));
+  }
+}
+
+void YamlWriter::list(int level, const std::string& key, const std::vector<std::string>& items) {
+  line(level, key + (items.empty() ? ": []" : ":"));
+  for (const std::string& item : items) {
+    line(level + 1, "- " + item);
+  }
+}
+
+void YamlWriter::line(int level, const std::string& text) {
+  text_ << std::string(2 * static_cast<std::size_t>(level), ' ') << text << "\n";
 }
 
 }  // namespace sac

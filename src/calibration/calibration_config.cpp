@@ -156,7 +156,7 @@ class OptionReader {
 /// Writes every option.
 class OptionWriter {
  public:
-  void section(const std::string& name) { text_ += name + ":\n"; }
+  void section(const std::string& name) { writer_.map(0, name); }
   void option(const std::string& key, double value, const ValueRange& /*range*/) {
     add(key, yamlNumber(value));
   }
@@ -164,18 +164,16 @@ class OptionWriter {
     add(key, std::to_string(value));
   }
   void option(const std::string& key, const std::string& value) { add(key, yamlText(value)); }
-  void option(const std::string& key, bool value) { add(key, value ? "true" : "false"); }
+  void option(const std::string& key, bool value) { add(key, yamlBoolean(value)); }
   void option(const std::string& key, BiasRemoval value) {
     add(key, value == BiasRemoval::kNone ? "none" : "zero_current");
   }
-  const std::string& text() const { return text_; }
+  std::string text() const { return writer_.text(); }
 
  private:
-  void add(const std::string& key, const std::string& value) {
-    text_ += "  " + key + ": " + value + "\n";
-  }
+  void add(const std::string& key, const std::string& value) { writer_.entry(1, key, value); }
 
-  std::string text_;
+  YamlWriter writer_;
 };
 
 CalibrationConfig readWholeConfig(const YamlMap& file, const std::string& name) {

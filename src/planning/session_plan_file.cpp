@@ -13,14 +13,6 @@ namespace {
 
 constexpr std::int64_t kMostOfAnything = 1'000'000;
 
-std::string yamlVector(const Eigen::Vector3d& vector) {
-  return yamlList({yamlNumber(vector[0]), yamlNumber(vector[1]), yamlNumber(vector[2])});
-}
-
-const char* yamlBoolean(bool value) {
-  return value ? "true" : "false";
-}
-
 std::string poseLine(const PlannedPose& pose) {
   std::vector<std::string> coils;
   coils.reserve(pose.coils.size());
@@ -28,7 +20,7 @@ std::string poseLine(const PlannedPose& pose) {
     coils.push_back(std::to_string(numberOf(coil)));
   }
   YamlLine line;
-  line.add("joint_position", yamlVector(pose.joint_position));
+  line.add("joint_position", yamlNumbers(pose.joint_position));
   line.add("coils", yamlList(coils));
   return line.text();
 }
@@ -100,48 +92,55 @@ void readExpectations(const YamlMap& map, PosePlan& plan) {
   }
 }
 
+void writeAssumptions(YamlWriter& writer, const SessionPlanRecord& record) {
+  writer.map(1, "assumed");
+  writer.entry(2, "current", yamlNumber(record.current));
+  writer.entry(2, "tracker_on", yamlBoolean(record.tracker_on));
+  writer.entry(2, "joint_stddev", yamlNumbers(record.joint_stddev));
+  writer.entry(2, "orientation_stddev", yamlNumber(record.orientation_stddev));
+  writer.entry(2, "torque_stddev", yamlNumber(record.torque_stddev));
+  writer.entry(2, "samples_held", std::to_string(record.samples_held));
+}
+
+void writeExpectations(YamlWriter& writer, const PosePlan& plan) {
+  std::vector<std::string> estimates;
+  for (const ParameterEstimate& estimate : plan.expected) {
+    estimates.push_back(estimateLine(estimate));
+  }
+  writer.map(1, "expected");
+  writer.entry(2, "message", yamlText(plan.message));
+  writer.entry(2, "orientation_samples", std::to_string(plan.orientation_samples));
+  writer.entry(2, "torque_samples", std::to_string(plan.torque_samples));
+  writer.entry(2, "travel", yamlNumber(plan.travel));
+  writer.entry(2, "worst_parameter", yamlText(plan.worst_parameter));
+  writer.entry(2, "worst_stddev", yamlNumber(plan.worst_stddev));
+  writer.entry(2, "orientation_uncertainty", yamlNumber(plan.orientation_uncertainty));
+  writer.entry(2, "torque_uncertainty", yamlNumber(plan.torque_uncertainty));
+  writer.entry(2, "reached_wanted", yamlBoolean(plan.reached_wanted));
+  if (plan.poses_needed) {
+    writer.entry(2, "poses_needed", std::to_string(*plan.poses_needed));
+  }
+  writer.list(2, "parameters", estimates);
+}
+
 }  // namespace
 
 std::string renderSessionPlan(const SessionPlanRecord& record) {
-  const PosePlan& plan = record.plan;
-  std::string text = "session_plan:\n";
-  const auto add = [&text](const char* indent, const char* key, const std::string& value) {
-    text += std::string(indent) + key + ": " + value + "\n";
-  };
-  add("  ", "actuator", yamlText(record.actuator));
-  add("  ", "serial", yamlText(record.serial));
-  add("  ", "software", yamlText(record.software));
-  add("  ", "cycle", yamlText(record.cycle));
-  text += "  assumed:\n";
-  add("    ", "current", yamlNumber(record.current));
-  add("    ", "tracker_on", yamlBoolean(record.tracker_on));
-  add("    ", "joint_stddev", yamlVector(record.joint_stddev));
-  add("    ", "orientation_stddev", yamlNumber(record.orientation_stddev));
-  add("    ", "torque_stddev", yamlNumber(record.torque_stddev));
-  add("    ", "samples_held", std::to_string(record.samples_held));
-  text += "  # in the order to be visited: sensor angles [rad], coils to excite in turn\n  poses:";
-  text += plan.poses.empty() ? " []\n" : "\n";
-  for (const PlannedPose& pose : plan.poses) {
-    text += "    - " + poseLine(pose) + "\n";
+  YamlWriter writer;
+  writer.map(0, "session_plan");
+  writer.entry(1, "actuator", yamlText(record.actuator));
+  writer.entry(1, "serial", yamlText(record.serial));
+  writer.entry(1, "software", yamlText(record.software));
+  writer.entry(1, "cycle", yamlText(record.cycle));
+  writeAssumptions(writer, record);
+  std::vector<std::string> poses;
+  for (const PlannedPose& pose : record.plan.poses) {
+    poses.push_back(poseLine(pose));
   }
-  text += "  expected:\n";
-  add("    ", "message", yamlText(plan.message));
-  add("    ", "orientation_samples", std::to_string(plan.orientation_samples));
-  add("    ", "torque_samples", std::to_string(plan.torque_samples));
-  add("    ", "travel", yamlNumber(plan.travel));
-  add("    ", "worst_parameter", yamlText(plan.worst_parameter));
-  add("    ", "worst_stddev", yamlNumber(plan.worst_stddev));
-  add("    ", "orientation_uncertainty", yamlNumber(plan.orientation_uncertainty));
-  add("    ", "torque_uncertainty", yamlNumber(plan.torque_uncertainty));
-  add("    ", "reached_wanted", yamlBoolean(plan.reached_wanted));
-  if (plan.poses_needed) {
-    add("    ", "poses_needed", std::to_string(*plan.poses_needed));
-  }
-  text += "    parameters:\n";
-  for (const ParameterEstimate& estimate : plan.expected) {
-    text += "      - " + estimateLine(estimate) + "\n";
-  }
-  return text;
+  writer.line(1, "# in the order to be visited: sensor angles [rad], coils to excite in turn");
+  writer.list(1, "poses", poses);
+  writeExpectations(writer, record.plan);
+  return writer.text();
 }
 
 SessionPlanRecord loadSessionPlan(const std::string& path) {

@@ -24,15 +24,11 @@ std::string text(const GroupTallies& tallies) {
   return yamlList(numbers);
 }
 
-std::string text(bool value) {
-  return value ? "true" : "false";
-}
-
 std::string trialLine(const StudyTrial& trial) {
   YamlLine line;
   line.add("seed", std::to_string(trial.seed));
-  line.add("sequence_converged", text(trial.sequence_converged));
-  line.add("refine_converged", text(trial.refine_converged));
+  line.add("sequence_converged", yamlBoolean(trial.sequence_converged));
+  line.add("refine_converged", yamlBoolean(trial.refine_converged));
   line.add("sequence", text(trial.sequence));
   line.add("refined", text(trial.refined));
   return line.text();
@@ -47,18 +43,17 @@ std::string text(const StudyErrors& errors) {
   return line.text();
 }
 
-std::string stageText(const std::string& name, const StageSummary& summary) {
-  std::string lines = "    " + name + ":\n      trials: " + std::to_string(summary.trials) +
-                      "\n      converged: " + std::to_string(summary.converged) +
-                      "\n      all: " + text(summary.all) + "\n";
+void writeStage(YamlWriter& writer, const std::string& name, const StageSummary& summary) {
+  writer.map(2, name);
+  writer.entry(3, "trials", std::to_string(summary.trials));
+  writer.entry(3, "converged", std::to_string(summary.converged));
+  writer.entry(3, "all", text(summary.all));
   for (std::size_t g = 0; g < kParameterGroups; ++g) {
     // An actuator without poles and coils has no such errors.
     if (summary.groups[g].rms_bound > 0.0) {
-      lines += std::string("      ") + groupName(static_cast<ParameterGroup>(g)) + ": " +
-               text(summary.groups[g]) + "\n";
+      writer.entry(3, groupName(static_cast<ParameterGroup>(g)), text(summary.groups[g]));
     }
   }
-  return lines;
 }
 
 GroupTallies readTallies(const YamlMap& trial, const std::string& key) {
@@ -92,23 +87,28 @@ StudyTrial readTrial(const YamlMap& map) {
 }  // namespace
 
 std::string renderStudy(const StudyRecord& study) {
-  std::string lines = "study:\n  settings:\n";
+  std::vector<std::string> settings;
   for (const auto& [name, value] : study.settings) {
-    lines += "    - {name: " + yamlText(name) + ", value: \"" + value + "\"}\n";
+    settings.push_back("{name: " + yamlText(name) + ", value: \"" + value + "\"}");
   }
-  lines += "  first_seed: " + std::to_string(study.first_seed) + "\n";
-  lines += "  trial_count: " + std::to_string(study.trial_count) + "\n";
-  lines += "  summary:\n" + stageText("sequence", summarizeSequence(study.trials)) +
-           stageText("refinement", summarizeRefinement(study.trials));
-  lines +=
-      "  # per group (offsets, joint_axes, poles, coils, effects): parameters, how many within "
-      "their\n"
-      "  # 95 % interval, sum of squared errors, sum of variances at the bound [rad^2]\n"
-      "  trials:\n";
+  std::vector<std::string> trials;
   for (const StudyTrial& trial : study.trials) {
-    lines += "    - " + trialLine(trial) + "\n";
+    trials.push_back(trialLine(trial));
   }
-  return lines;
+  YamlWriter writer;
+  writer.map(0, "study");
+  writer.list(1, "settings", settings);
+  writer.entry(1, "first_seed", std::to_string(study.first_seed));
+  writer.entry(1, "trial_count", std::to_string(study.trial_count));
+  writer.map(1, "summary");
+  writeStage(writer, "sequence", summarizeSequence(study.trials));
+  writeStage(writer, "refinement", summarizeRefinement(study.trials));
+  writer.line(1,
+              "# per group (offsets, joint_axes, poles, coils, effects): parameters, how many "
+              "within their");
+  writer.line(1, "# 95 % interval, sum of squared errors, sum of variances at the bound [rad^2]");
+  writer.list(1, "trials", trials);
+  return writer.text();
 }
 
 StudyRecord loadStudy(const std::string& path) {

@@ -130,10 +130,10 @@ class Study {
   explicit Study(const PaperStudyOptions& options) : options_(options) {}
 
   std::string text() {
-    text_ =
-        "# Results of paper_study. Spreads are minimum, 5 %, median, 95 % and maximum over the "
-        "seeds.\n";
-    text_ += "seeds: " + std::to_string(options_.seeds) + "\n";
+    writer_.line(0,
+                 "# Results of paper_study. Spreads are minimum, 5 %, median, 95 % and maximum "
+                 "over the seeds.");
+    writer_.entry(0, "seeds", std::to_string(options_.seeds));
     levelOne();
     levelOneNoise();
     tableFive();
@@ -141,7 +141,7 @@ class Study {
     situation("situation_2", Situation::kCoil, {2, 3, 4, 6, 8, 12, 20}, 4);
     control();
     torqueErrors();
-    return text_;
+    return writer_.text();
   }
 
  private:
@@ -150,35 +150,34 @@ class Study {
   void levelOne() {
     tell("level 1 without noise");
     const std::vector<LevelOneRun> runs = studyLevelOne(options_);
-    text_ += "level_1:\n";
-    text_ += "  iterations: " + iterationCounts(runs) + "\n";
-    text_ +=
-        "  initial: " +
-        valuesOf<LevelOneRun>(runs, [](const LevelOneRun& run) { return run.errors.front(); }) +
-        "\n";
-    text_ += "  epsilon_1: " + spreadPerIteration(runs, &LevelOneRun::errors) + "\n";
-    text_ += "  epsilon_1_chord: " + spreadPerIteration(runs, &LevelOneRun::errors_chord) + "\n";
-    text_ += "  axis_deviation_newton: " +
-             spreadPerIteration(runs, &LevelOneRun::axis_deviation_newton) + "\n";
-    text_ +=
-        "  axis_deviation_chord: " + spreadPerIteration(runs, &LevelOneRun::axis_deviation_chord) +
-        "\n";
-    text_ += "  offset_deviation_chord: " +
-             spreadPerIteration(runs, &LevelOneRun::offset_deviation_chord) + "\n";
+    writer_.map(0, "level_1");
+    writer_.entry(1, "iterations", iterationCounts(runs));
+    writer_.entry(1, "initial", valuesOf<LevelOneRun>(runs, [](const LevelOneRun& run) {
+                    return run.errors.front();
+                  }));
+    writer_.entry(1, "epsilon_1", spreadPerIteration(runs, &LevelOneRun::errors));
+    writer_.entry(1, "epsilon_1_chord", spreadPerIteration(runs, &LevelOneRun::errors_chord));
+    writer_.entry(
+        1, "axis_deviation_newton", spreadPerIteration(runs, &LevelOneRun::axis_deviation_newton));
+    writer_.entry(
+        1, "axis_deviation_chord", spreadPerIteration(runs, &LevelOneRun::axis_deviation_chord));
+    writer_.entry(1,
+                  "offset_deviation_chord",
+                  spreadPerIteration(runs, &LevelOneRun::offset_deviation_chord));
     tableFour(runs.front());
   }
 
   /// Differences of the identified axes from nominal, by iteration, for the first seed.
   void tableFour(const LevelOneRun& run) {
     const Eigen::Matrix3d nominal = jointGeometry(options_.nominal.joints).axes;
-    text_ += "table_4:\n";
+    writer_.map(0, "table_4");
     for (std::size_t n = 1; n <= kTableIterations; ++n) {
       std::vector<std::string> axes;
       for (Eigen::Index k = 0; k < nominal.cols(); ++k) {
         const Eigen::Vector3d difference = run.chord[n].axes.col(k) - nominal.col(k);
         axes.push_back(format("[%.6f, %.6f, %.6f]", difference[0], difference[1], difference[2]));
       }
-      text_ += "  " + std::to_string(n) + ": " + yamlList(axes) + "\n";
+      writer_.entry(1, std::to_string(n), yamlList(axes));
     }
   }
 
@@ -195,7 +194,7 @@ class Study {
     };
     const std::vector<ParameterEstimate> exact = estimates(false);
     const std::vector<ParameterEstimate> noisy = estimates(true);
-    text_ += "table_5:\n";
+    writer_.map(0, "table_5");
     for (std::size_t p = 0; p < std::min(exact.size(), noisy.size()); ++p) {
       YamlLine line;
       line.add("name", yamlText(exact[p].name));
@@ -203,13 +202,13 @@ class Study {
       line.add("without_noise", format("%.6f", exact[p].value));
       line.add("with_noise", format("%.6f", noisy[p].value));
       line.add("stddev", format("%.6f", noisy[p].stddev));
-      text_ += "  - " + line.text() + "\n";
+      writer_.line(1, "- " + line.text());
     }
   }
 
   void levelOneNoise() {
     tell("level 1 with noise");
-    text_ += "level_1_noise:\n";
+    writer_.map(0, "level_1_noise");
     constexpr std::size_t kCounts[] = {2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40};
     for (const std::size_t count : kCounts) {
       const auto runs = studyLevelOneNoise(options_, count);
@@ -224,7 +223,7 @@ class Study {
                spreadOf<Run>(runs, [](const Run& run) { return run.paper_error; }));
       line.add("true_error", spreadOf<Run>(runs, [](const Run& run) { return run.true_error; }));
       line.add("seeds_below_noise", std::to_string(below));
-      text_ += "  - " + line.text() + "\n";
+      writer_.line(1, "- " + line.text());
     }
   }
 
@@ -233,7 +232,7 @@ class Study {
                  const std::vector<std::size_t>& counts,
                  std::size_t papers_count) {
     tell(name.c_str());
-    text_ += name + ":\n";
+    writer_.map(0, name);
     using Run = LevelTwoRun;
     const auto observable = [](std::vector<Run> runs) {
       runs.erase(
@@ -243,18 +242,18 @@ class Study {
     };
     const std::vector<Run> exact =
         observable(studyLevelTwo(options_, situation, Orientations::kRandom, papers_count, false));
-    text_ += "  measurements: " + std::to_string(papers_count) + "\n";
-    text_ += "  observable_sets: " + std::to_string(exact.size()) + "\n";
+    writer_.entry(1, "measurements", std::to_string(papers_count));
+    writer_.entry(1, "observable_sets", std::to_string(exact.size()));
     if (!exact.empty()) {
-      text_ += "  iterations: " + iterationCounts(exact) + "\n";
-      text_ +=
-          "  initial: " + valuesOf<Run>(exact, [](const Run& run) { return run.errors.front(); }) +
-          "\n";
-      text_ += "  epsilon_2: " + spreadPerIteration(exact, &Run::errors) + "\n";
-      text_ += "  largest_error: " +
-               spreadOf<Run>(exact, [](const Run& run) { return run.largest_error; }) + "\n";
+      writer_.entry(1, "iterations", iterationCounts(exact));
+      writer_.entry(
+          1, "initial", valuesOf<Run>(exact, [](const Run& run) { return run.errors.front(); }));
+      writer_.entry(1, "epsilon_2", spreadPerIteration(exact, &Run::errors));
+      writer_.entry(1, "largest_error", spreadOf<Run>(exact, [](const Run& run) {
+                      return run.largest_error;
+                    }));
     }
-    text_ += "  noise:\n";
+    writer_.map(1, "noise");
     for (const std::size_t count : counts) {
       for (const Orientations orientations : {Orientations::kRandom, Orientations::kPlanned}) {
         const std::vector<Run> runs =
@@ -275,14 +274,14 @@ class Study {
                      valuesOf<Run>(runs, [](const Run& run) { return run.largest_share; }));
           }
         }
-        text_ += "    - " + line.text() + "\n";
+        writer_.line(2, "- " + line.text());
       }
     }
   }
 
   void control() {
     tell("closed loop");
-    text_ += "control:\n";
+    writer_.map(0, "control");
     for (const ControlRun& run : studyControl(options_, load())) {
       std::vector<std::string> times;
       std::vector<std::string> errors;
@@ -297,20 +296,20 @@ class Study {
           angles.push_back(yamlNumber(point.joint_position[0]));
         }
       }
-      text_ += "  - model: " + run.model + "\n";
-      text_ += std::string("    loaded: ") + (run.loaded ? "true" : "false") + "\n";
-      text_ += std::string("    completed: ") + (run.result.completed ? "true" : "false") + "\n";
-      text_ += "    final_error: " + yamlNumber(run.result.points.back().rotation_error) + "\n";
-      text_ += "    largest_error: " + yamlNumber(largest) + "\n";
-      text_ += "    time: " + yamlList(times) + "\n";
-      text_ += "    rotation_error: " + yamlList(errors) + "\n";
-      text_ += "    q_1: " + yamlList(angles) + "\n";
+      writer_.line(1, "- model: " + run.model);
+      writer_.entry(2, "loaded", yamlBoolean(run.loaded));
+      writer_.entry(2, "completed", yamlBoolean(run.result.completed));
+      writer_.entry(2, "final_error", yamlNumber(run.result.points.back().rotation_error));
+      writer_.entry(2, "largest_error", yamlNumber(largest));
+      writer_.entry(2, "time", yamlList(times));
+      writer_.entry(2, "rotation_error", yamlList(errors));
+      writer_.entry(2, "q_1", yamlList(angles));
     }
   }
 
   void torqueErrors() {
     tell("torque over the workspace");
-    text_ += "torque_errors:\n";
+    writer_.map(0, "torque_errors");
     for (const double tilt : {options_.torque_tilt, options_.joint_tilt}) {
       for (const TorqueErrorRun& run :
            studyTorqueErrors(options_, kSessions, kWorkspacePoses, tilt)) {
@@ -329,13 +328,13 @@ class Study {
                  }));
         line.add("condition_number",
                  spreadOf<Error>(run.poses, [](const Error& e) { return e.condition_number; }));
-        text_ += "  - " + line.text() + "\n";
+        writer_.line(1, "- " + line.text());
       }
     }
   }
 
   PaperStudyOptions options_;
-  std::string text_;
+  YamlWriter writer_;
 };
 
 void writeStudy(const Options& options) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -161,43 +160,6 @@ TEST(YamlReader, TellsWhyAFileCannotBeRead) {
   EXPECT_EQ(message(folder.path("")), folder.path("") + ": is a folder, not a file.");
   const std::string path = folder.write("a.yaml", "k: 1\n");
   EXPECT_EQ(YamlMap::load(path).number("k", ValueRange::finite()), 1.0);
-}
-
-TEST(YamlWriter, WritesNumbersThatYaml11TakesForNumbers) {
-  EXPECT_EQ(yamlNumber(0.0), "0.0");
-  EXPECT_EQ(yamlNumber(1e-5), "1.0e-05");
-  EXPECT_EQ(yamlNumber(-2.5e300), "-2.5e+300");
-  EXPECT_EQ(yamlNumber(1e22), "1.0e+22");
-  EXPECT_EQ(yamlNumber(0.1), "0.1");
-  EXPECT_EQ(yamlNumber(1.0 / 3.0), "0.3333333333333333");
-}
-
-TEST(YamlWriter, QuotesStringsThatCouldBeSomethingElse) {
-  EXPECT_EQ(yamlText("unit-001"), "unit-001");
-  EXPECT_EQ(yamlText("joint_3/axis_u"), "joint_3/axis_u");
-  EXPECT_EQ(yamlText("007"), "\"007\"");
-  EXPECT_EQ(yamlText("Yes"), "\"Yes\"");
-  EXPECT_EQ(yamlText(""), "\"\"");
-  EXPECT_EQ(yamlText("2024-05-31T12:00:00Z"), "\"2024-05-31T12:00:00Z\"");
-  EXPECT_EQ(yamlText("a\"b\\c\n"), "\"a\\\"b\\\\c\\x0a\"");
-}
-
-TEST(YamlWriter, StringsComeBack) {
-  for (const char* const text : {"a: b",
-                                 "#no",
-                                 "'",
-                                 "\"",
-                                 "- x",
-                                 "nan",
-                                 "INF",
-                                 "null",
-                                 "~",
-                                 "[x]",
-                                 "Prüfstand N·m",
-                                 "\t\x7f"}) {
-    const YamlMap map = YamlMap::parse("k: " + yamlText(text), "f.yaml");
-    EXPECT_EQ(map.text("k"), text);
-  }
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ std::string mapText(const XmlRpcValue& value, const std::string& key) {
 std::string yamlOfParameter(const XmlRpcValue& value, const std::string& key) {
   switch (value.getType()) {
     case XmlRpcValue::TypeBoolean:
-      return static_cast<bool>(value) ? "true" : "false";
+      return yamlBoolean(static_cast<bool>(value));
     case XmlRpcValue::TypeInt:
       return std::to_string(static_cast<int>(value));
     case XmlRpcValue::TypeDouble:
