@@ -20,4 +20,8 @@ std::string format(const char* pattern, ...) {
   return text;
 }
 
+std::string shortNumber(double value) {
+  return format("%.3g", value);
+}
+
 }  // namespace sac

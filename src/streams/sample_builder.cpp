@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "current_segments.hpp"
 #include "dwell_samples.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
@@ -16,13 +16,6 @@ namespace {
 /// A stream that is silent for longer was switched off on purpose: a tracker that is only needed
 /// for some poses [s].
 constexpr double kSwitchedOff = 30.0;
-
-std::string decimals(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
 
 std::optional<DropReason> defectOf(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return values.allFinite() ? std::nullopt : std::optional(DropReason::kNotFinite);
@@ -105,8 +98,8 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   if (!(duration >= options_.smallest_duration && duration <= options_.largest_dwell / 2.0)) {
     return {State::kRefused,
             std::nullopt,
-            "The duration must lie between " + decimals(options_.smallest_duration) + " and " +
-                decimals(options_.largest_dwell / 2.0) + " s."};
+            "The duration must lie between " + shortNumber(options_.smallest_duration) + " and " +
+                shortNumber(options_.largest_dwell / 2.0) + " s."};
   }
   const std::string silent = silentStream();
   if (!silent.empty()) {
@@ -128,7 +121,7 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
       !allPassed(span.end)) {
     return {unfinished,
             std::nullopt,
-            "Rotor and currents were not steady for " + decimals(duration) + " s."};
+            "Rotor and currents were not steady for " + shortNumber(duration) + " s."};
   }
   return captured(span);
 }
@@ -155,9 +148,9 @@ std::string SampleBuilder::silentStream() const {
     }
     const double silence = secondsBetween(*stream->horizon, *newest_);
     if (silence > options_.largest_gap && (stream == &joints_ || silence < kSwitchedOff)) {
-      return std::string("The stream ") + name + " is silent for " + decimals(silence) +
+      return std::string("The stream ") + name + " is silent for " + shortNumber(silence) +
              " s: check its node (one that is switched off on purpose counts as absent after " +
-             decimals(kSwitchedOff) + " s).";
+             shortNumber(kSwitchedOff) + " s).";
     }
   }
   return {};

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -12,6 +11,7 @@
 #include "robust_mean.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
@@ -21,13 +21,6 @@ namespace {
 constexpr double kDriftSignificance = 4.0;
 
 constexpr double kMilli = 1e3;
-
-std::string format(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
 
 std::size_t smallestCount(const SampleBuilderOptions& options) {
   return static_cast<std::size_t>(options.smallest_count);
@@ -90,8 +83,8 @@ class SegmentAverager {
 
   SegmentAverage average() {
     if (interval_.duration() < options_.smallest_duration) {
-      return refused("It lasts only " + format(std::max(interval_.duration(), 0.0)) + " s; " +
-                     format(options_.smallest_duration) + " s are needed.");
+      return refused("It lasts only " + shortNumber(std::max(interval_.duration(), 0.0)) + " s; " +
+                     shortNumber(options_.smallest_duration) + " s are needed.");
     }
     if (!averageJoints() || !averageOrientation()) {
       return std::move(result_);
@@ -136,13 +129,13 @@ class SegmentAverager {
       if (estimate.drift[k] >
           options_.largest_joint_drift + kDriftSignificance * estimate.drift_stddev[k]) {
         return refuse("joint_" + std::to_string(numberOf(k)) + " drifted by " +
-                      format(estimate.drift[k] * kMilli) + " mrad.");
+                      shortNumber(estimate.drift[k] * kMilli) + " mrad.");
       }
       // A range is at least twice the standard deviation.
       const double stddev = std::sqrt(estimate.single_variance[k]);
       if (2.0 * stddev > options_.largest_joint_spread) {
         return refuse("joint_" + std::to_string(numberOf(k)) +
-                      " was not at rest: its readings scatter by " + format(stddev * kMilli) +
+                      " was not at rest: its readings scatter by " + shortNumber(stddev * kMilli) +
                       " mrad.");
       }
     }
@@ -174,12 +167,12 @@ class SegmentAverager {
     const double drift = estimate.drift.norm();
     if (drift >
         options_.largest_orientation_motion + kDriftSignificance * estimate.drift_stddev.norm()) {
-      return refuse("The measured orientation moved by " + format(drift * kMilli) +
+      return refuse("The measured orientation moved by " + shortNumber(drift * kMilli) +
                     " mrad while the joint sensors stood still.");
     }
     const double stddev = std::sqrt(estimate.single_variance.maxCoeff());
     if (stddev > options_.largest_orientation_motion) {
-      return refuse("The measured orientation scatters by " + format(stddev * kMilli) +
+      return refuse("The measured orientation scatters by " + shortNumber(stddev * kMilli) +
                     " mrad while the joint sensors stood still.");
     }
     sample_.has_orientation = true;
@@ -223,7 +216,7 @@ class SegmentAverager {
     }
     const double hole = longestHole(buffer, range, interval_);
     if (hole > options_.largest_gap) {
-      result_.notes.push_back("The measured " + quantity + " has a hole of " + format(hole) +
+      result_.notes.push_back("The measured " + quantity + " has a hole of " + shortNumber(hole) +
                               " s; the rest of it is averaged.");
     }
     return true;

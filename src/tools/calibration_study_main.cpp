@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
@@ -56,12 +56,6 @@ struct Options {
   SampleNoise noise;
   ManufacturingErrors errors;
 };
-
-std::string shortText(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 void addTrialOptions(CommandLine& line, Options& options) {
   line.beginGroup("Options");
@@ -146,16 +140,16 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const Options& optio
           {"joint poses", std::to_string(options.plan.joint_poses)},
           {"poses with coil 1", std::to_string(options.plan.main_coil_poses)},
           {"poses with each other coil", std::to_string(options.plan.coil_poses)},
-          {"tilt of joint poses [share]", shortText(options.plan.joint_tilt_share)},
-          {"tilt of torque poses [share]", shortText(options.plan.torque_tilt_share)},
-          {"current [A]", shortText(options.plan.current)},
-          {"orientation noise [rad]", shortText(options.noise.orientation)},
-          {"torque noise [N·m]", shortText(options.noise.torque)},
-          {"joint noise [rad]", shortText(options.noise.joint)},
-          {"offset error [rad]", shortText(options.errors.joint_offset)},
-          {"axis error [rad]", shortText(options.errors.joint_axis)},
-          {"pole error [rad]", shortText(options.errors.pole_angle)},
-          {"coil error [rad]", shortText(options.errors.coil_angle)}};
+          {"tilt of joint poses [share]", format("%g", options.plan.joint_tilt_share)},
+          {"tilt of torque poses [share]", format("%g", options.plan.torque_tilt_share)},
+          {"current [A]", format("%g", options.plan.current)},
+          {"orientation noise [rad]", format("%g", options.noise.orientation)},
+          {"torque noise [N·m]", format("%g", options.noise.torque)},
+          {"joint noise [rad]", format("%g", options.noise.joint)},
+          {"offset error [rad]", format("%g", options.errors.joint_offset)},
+          {"axis error [rad]", format("%g", options.errors.joint_axis)},
+          {"pole error [rad]", format("%g", options.errors.pole_angle)},
+          {"coil error [rad]", format("%g", options.errors.coil_angle)}};
 }
 
 StudyRecord run(const Options& options) {

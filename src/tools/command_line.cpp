@@ -53,6 +53,7 @@ void CommandLine::addOperands(std::vector<std::string>& target) {
 }
 
 bool CommandLine::parse(int argc, const char* const* argv, std::ostream& out) {
+  given_.clear();
   po::options_description shown;
   for (const auto& group : groups_) {
     shown.add(*group);

@@ -7,4 +7,7 @@ namespace sac {
 /// Text as printf() writes it, of any length.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
+/// Three significant digits, for sentences.
+std::string shortNumber(double value);
+
 }  // namespace sac

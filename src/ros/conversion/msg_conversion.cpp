@@ -56,6 +56,14 @@ geometry_msgs::Vector3 vectorToRos(const Eigen::Vector3d& vector) {
   return message;
 }
 
+geometry_msgs::Point pointToRos(const Eigen::Vector3d& point) {
+  geometry_msgs::Point message;
+  message.x = point.x();
+  message.y = point.y();
+  message.z = point.z();
+  return message;
+}
+
 Eigen::Quaterniond quaternionFromRos(const geometry_msgs::Quaternion& message) {
   return {message.w, message.x, message.y, message.z};
 }

@@ -24,12 +24,6 @@ ScheduledMeasurement scheduled(bool glitch) {
   return measurement;
 }
 
-void setVector(const Eigen::Vector3d& from, geometry_msgs::Vector3& to) {
-  to.x = from.x();
-  to.y = from.y();
-  to.z = from.z();
-}
-
 }  // namespace
 
 LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
@@ -215,13 +209,8 @@ void LabEmulatorNode::publishPose(const Eigen::Matrix3d& R_stator_rotor) {
       tracker_.measure(0, R_stator_rotor, std::nullopt, scheduled(outlier_pose_));
   outlier_pose_ = false;
   pose_message_.header.stamp = ros::Time::now();
-  pose_message_.pose.position.x = pose.position.x();
-  pose_message_.pose.position.y = pose.position.y();
-  pose_message_.pose.position.z = pose.position.z();
-  pose_message_.pose.orientation.x = pose.q_tracker_marker.x();
-  pose_message_.pose.orientation.y = pose.q_tracker_marker.y();
-  pose_message_.pose.orientation.z = pose.q_tracker_marker.z();
-  pose_message_.pose.orientation.w = pose.q_tracker_marker.w();
+  pose_message_.pose.position = pointToRos(pose.position);
+  pose_message_.pose.orientation = quaternionToRos(pose.q_tracker_marker);
   pose_publisher_.publish(pose_message_);
 }
 
@@ -239,8 +228,8 @@ void LabEmulatorNode::publishWrench(const Eigen::Matrix3d& R_stator_rotor) {
                          scheduled(outlier_wrench_));
   outlier_wrench_ = false;
   wrench_message_.header.stamp = ros::Time::now();
-  setVector(wrench.force, wrench_message_.wrench.force);
-  setVector(wrench.torque, wrench_message_.wrench.torque);
+  wrench_message_.wrench.force = vectorToRos(wrench.force);
+  wrench_message_.wrench.torque = vectorToRos(wrench.torque);
   wrench_publisher_.publish(wrench_message_);
 }
 

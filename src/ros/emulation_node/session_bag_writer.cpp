@@ -19,6 +19,7 @@
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 
 namespace sac {
 namespace {
@@ -44,15 +45,6 @@ geometry_msgs::TransformStamped transformMessage(const std::string& parent,
   message.transform.translation = vectorToRos(X_parent_child.translation());
   message.transform.rotation = quaternionToRos(Eigen::Quaterniond(X_parent_child.linear()));
   return message;
-}
-
-/// "actuator/", "/actuator" → "/actuator/"; "/" → "/".
-std::string topicPrefix(const std::string& ns) {
-  const std::size_t first = ns.find_first_not_of('/');
-  if (first == std::string::npos) {
-    return "/";
-  }
-  return "/" + ns.substr(first, ns.find_last_not_of('/') + 1 - first) + "/";
 }
 
 /// A topic with its message at hand, so that only what changes is filled in anew.
@@ -95,9 +87,7 @@ class SessionBagWriter::Recording {
 
   void add(const MarkerPoseMeasurement& measurement) {
     geometry_msgs::Pose& pose = tracker_pose_.message.pose;
-    pose.position.x = measurement.position.x();
-    pose.position.y = measurement.position.y();
-    pose.position.z = measurement.position.z();
+    pose.position = pointToRos(measurement.position);
     pose.orientation = quaternionToRos(measurement.q_tracker_marker);
     write(tracker_pose_, measurement.stamp, kTrackerLatency);
     orientation_.message.quaternion = quaternionToRos(

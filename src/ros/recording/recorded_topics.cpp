@@ -16,6 +16,7 @@
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 
 namespace sac {
 namespace {
@@ -43,15 +44,6 @@ const std::array<TopicType, kTopicRoles>& topicTypes() {
       topicType<msg::ActuatorParameters>("parameters"),
   };
   return types;
-}
-
-/// "actuator", "/actuator/" → "/actuator/"; "/" → "/".
-std::string prefixOf(const std::string& ns) {
-  const std::size_t first = ns.find_first_not_of('/');
-  if (first == std::string::npos) {
-    return "/";
-  }
-  return "/" + ns.substr(first, ns.find_last_not_of('/') + 1 - first) + "/";
 }
 
 /// Namespaces below which a topic of this name and type is recorded.
@@ -84,7 +76,7 @@ std::string adviceOnNamespace(const std::set<std::string>& namespaces) {
 
 }  // namespace
 
-RecordedTopics::RecordedTopics(const std::string& ns) : prefix_(prefixOf(ns)) {
+RecordedTopics::RecordedTopics(const std::string& ns) : prefix_(topicPrefix(ns)) {
   for (std::size_t k = 0; k < kTopicRoles; ++k) {
     names_[k] = prefix_ + topicTypes()[k].name;
   }

@@ -7,6 +7,7 @@
 
 #include "marker_shapes.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
 namespace {

@@ -19,14 +19,6 @@ MarkerColor mixed(const MarkerColor& one, const MarkerColor& other, float share)
           mix(one.alpha, other.alpha)};
 }
 
-geometry_msgs::Point pointToRos(const Eigen::Vector3d& v) {
-  geometry_msgs::Point point;
-  point.x = v.x();
-  point.y = v.y();
-  point.z = v.z();
-  return point;
-}
-
 std_msgs::ColorRGBA colorToRos(const MarkerColor& color) {
   std_msgs::ColorRGBA message;
   message.r = color.red;

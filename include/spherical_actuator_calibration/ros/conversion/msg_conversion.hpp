@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <geometry_msgs/Point.h>
 #include <geometry_msgs/Quaternion.h>
 #include <geometry_msgs/QuaternionStamped.h>
 #include <geometry_msgs/Vector3.h>
@@ -36,6 +37,7 @@ namespace sac {
 
 Eigen::Vector3d vectorFromRos(const geometry_msgs::Vector3& message);
 geometry_msgs::Vector3 vectorToRos(const Eigen::Vector3d& vector);
+geometry_msgs::Point pointToRos(const Eigen::Vector3d& point);
 
 /// Component by component, not normalised.
 Eigen::Quaterniond quaternionFromRos(const geometry_msgs::Quaternion& message);
