@@ -8,6 +8,7 @@
 
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
 

@@ -7,11 +7,8 @@
 
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "travel_order.hpp"
 
@@ -29,23 +26,6 @@ constexpr int kPassesWhileGrowing = 2;
 constexpr std::size_t kMostExchanges = 300;
 /// An exchange lowers the largest standard deviation by less than this factor.
 constexpr double kExchangePromise = 1.6;
-
-void validateRequest(const PlanningProblem& problem) {
-  const Cycle cycle = problem.request.cycle;
-  if (cycle != Cycle::kPoles && cycle != Cycle::kCoil) {
-    return;
-  }
-  if (!problem.model->hasTorqueModel()) {
-    throw ConfigError(
-        "cycle: the actuator description has no poles, coils or torque curve; only the joint can "
-        "be planned for.");
-  }
-  const std::size_t coils = problem.model->space().coils();
-  if (!problem.request.coil || *problem.request.coil >= coils) {
-    throw ConfigError("coil: " + std::to_string(numberOrZero(problem.request.coil)) +
-                      " is not one of the coils 1 to " + std::to_string(coils) + ".");
-  }
-}
 
 /// Joint angles of the chosen poses, in the order of the selection.
 std::vector<Eigen::Vector3d> jointPositions(const std::vector<PoseCandidate>& candidates,
@@ -249,37 +229,6 @@ class Planner {
 };
 
 }  // namespace
-
-void validate(const PosePlanOptions& options, const PlanningProblem& problem) {
-  validateRequest(problem);
-  const auto require_count = [](const char* key, std::size_t value, std::size_t most) {
-    requireInRange(
-        key, static_cast<double>(value), ValueRange::closed(1.0, static_cast<double>(most)));
-  };
-  require_count("max_poses", options.max_poses, 1000);
-  require_count("coils_per_pose", options.coils_per_pose, 1000);
-  require_count("candidates", options.candidates, 100000);
-  requireInRange("wanted_stddev", options.wanted_stddev, ValueRange::nonNegative("rad"));
-  requireInRange("current",
-                 options.current,
-                 ValueRange{problem.estimation.current_threshold, 1e3, "A", true, false});
-  if (options.tilt_limit) {
-    requireInRange(
-        "tilt_limit",
-        *options.tilt_limit,
-        ValueRange{0.0, problem.model->space().nominal().workspace.tilt_limit, "rad", true, false});
-  }
-  requireInRange("spin_minimum", options.spin_minimum, ValueRange::closed(-100.0, 100.0, "rad"));
-  requireInRange(
-      "spin_maximum", options.spin_maximum, ValueRange::closed(options.spin_minimum, 100.0, "rad"));
-  requireInRange("minimum_spacing", options.minimum_spacing, ValueRange::closed(0.0, kPi, "rad"));
-  for (Eigen::Index k = 0; k < options.start.size(); ++k) {
-    requireInRange("start", options.start[k], ValueRange::finite("rad"));
-    requireInRange("joint_stddev", options.joint_stddev[k], ValueRange::nonNegative("rad"));
-  }
-  requireInRange("orientation_stddev", options.orientation_stddev, ValueRange::positive("rad"));
-  requireInRange("torque_stddev", options.torque_stddev, ValueRange::positive("N m"));
-}
 
 PosePlan planPoses(const PlanningProblem& problem, const PosePlanOptions& options) {
   validate(options, problem);

@@ -6,16 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/open_directions.hpp"
 
 namespace sac {
-
-/// The cycles of a calibration: level 1, level 2 situations 1 and 2, and all parameters at once.
-enum class Cycle { kJoint, kPoles, kCoil, kRefine };
-
-/// joint, poles, coil, refine: as in CalibrationReport messages.
-std::string cycleName(Cycle cycle);
 
 /// One parameter after a cycle (message ParameterEstimate). Angles in rad.
 struct ParameterEstimate {

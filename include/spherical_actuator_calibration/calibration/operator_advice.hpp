@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_request.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// What a session is planned for.
+struct PlanningProblem {
+  const CalibrationModel* model = nullptr;
+  const std::vector<Sample>* held = nullptr;  ///< measured already; they count
+  CalibrationState state;  ///< parameters in force: the models are linearised there
+  CycleRequest request{Cycle::kRefine};
+  EstimationOptions estimation;
+};
+
+/// What the poses of a plan are exchanged for.
+enum class PlanCriterion {
+  kWorstStddev,  ///< a small largest standard deviation
+  kInformation,  ///< a large determinant of the information matrix (D-optimal)
+};
+
+/// What a session may be like.
+struct PosePlanOptions {
+  std::size_t max_poses = 10;
+  /// Stop as soon as every parameter is expected to be this good [rad]; 0: use all poses.
+  double wanted_stddev = 0.0;
+  std::size_t coils_per_pose = 6;  ///< excited in turn at one pose, at most; kRefine only
+  double current = 2.0;            ///< of an excited coil [A]
+  /// The orientation is measured at every pose. For kRefine only: the joint cycle always measures
+  /// it, poles and coils never use it.
+  bool tracker_on = true;
+  PlanCriterion criterion = PlanCriterion::kWorstStddev;
+
+  std::optional<double> tilt_limit;  ///< of |q₁| and |q₂| [rad]; else the workspace's
+  double spin_minimum = -kPi;        ///< of q₃ [rad]
+  double spin_maximum = kPi;         ///< of q₃ [rad]
+  double minimum_spacing = 0.1;      ///< rotation angle between two poses [rad]
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< joint angles where the way begins [rad]
+
+  /// Expected of the sensors, per component of a mean; joints: zero is exact.
+  Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();  ///< [rad]
+  double orientation_stddev = 5.77e-4;                     ///< [rad]
+  double torque_stddev = 2.89e-4;                          ///< [N·m]
+
+  std::size_t candidates = 400;  ///< random poses to choose from
+  std::uint64_t seed = 1;        ///< of these poses
+};
+
+/// Throws ConfigError that names the option, its value and the allowed range for this problem.
+void validate(const PosePlanOptions& options, const PlanningProblem& problem);
+
+}  // namespace sac

@@ -1,0 +1,156 @@
+#include "cycle_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kFewestPoses = 3;  // nine unknowns, three equations a pose
+
+std::string cycleInWords(const CycleRequest& request) {
+  switch (request.cycle) {
+    case Cycle::kJoint:
+      return "Joint";
+    case Cycle::kPoles:
+      return "Poles and coil " + std::to_string(numberOrZero(request.coil));
+    case Cycle::kCoil:
+      return "Coil " + std::to_string(numberOrZero(request.coil));
+    case Cycle::kRefine:
+      break;
+  }
+  return "All parameters";
+}
+
+/// Names what stays open across the parameters, and what to do about it; or empty.
+std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::size_t unknowns) {
+  if (open.empty()) {
+    return {};
+  }
+  std::string words = format(
+      " %zu of %zu directions identified; held at the prior:", unknowns - open.size(), unknowns);
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    words += k == 0 ? " " : ", ";
+    words += open[k].name;
+    words += format(" (± %.2g mrad)", 1e3 * open[k].stddev);
+  }
+  return words + ". Measure the orientation at 3 or more poses.";
+}
+
+std::string errorInWords(const CycleReport& report) {
+  const double before = report.error_history.front();
+  const double after = report.error_history.back();
+  switch (report.error_measure) {
+    case ErrorMeasure::kOrientation:
+      return format("mean orientation error %.3g -> %.3g mrad", 1e3 * before, 1e3 * after);
+    case ErrorMeasure::kTorque:
+      return format("rms torque error %.3g -> %.3g mN.m", 1e3 * before, 1e3 * after);
+    case ErrorMeasure::kStandardized:
+      break;
+  }
+  return format("rms standardized error %.3g -> %.3g", before, after);
+}
+
+}  // namespace
+
+std::string refusal(const CalibrationModel& model,
+                    const CalibrationState& state,
+                    const CycleRequest& request,
+                    const std::vector<Observation>& observations) {
+  const ParameterSpace& space = model.space();
+  const bool needs_coil = request.cycle == Cycle::kPoles || request.cycle == Cycle::kCoil;
+  if (needs_coil && !model.hasTorqueModel()) {
+    return "The actuator description has no poles, coils or torque curve: only the joint can be "
+           "calibrated.";
+  }
+  if (needs_coil && (!request.coil || *request.coil >= space.coils())) {
+    return "Coil " + std::to_string(numberOrZero(request.coil)) +
+           " does not exist: coils count from 1 to " + std::to_string(space.coils()) + ".";
+  }
+  if (request.cycle == Cycle::kCoil) {
+    const auto first = state.identified.begin() + space.pole(0);
+    const auto last = state.identified.begin() + space.coil(0);
+    if (std::find(first, last, true) == last) {
+      return "No pole is calibrated yet: run the poles cycle before coil " +
+             std::to_string(numberOrZero(request.coil)) + ".";
+    }
+  }
+  if (request.cycle == Cycle::kJoint && observations.size() < kFewestPoses) {
+    return format(
+        "%zu samples have an orientation: capture at least %zu poses with the tracker on "
+        "(10 are advised).",
+        observations.size(),
+        kFewestPoses);
+  }
+  if (observations.empty()) {
+    return needs_coil ? "No sample has a torque with only coil " +
+                            std::to_string(numberOrZero(request.coil)) +
+                            " excited: capture poses with that coil on."
+                      : "No sample can serve: capture poses first.";
+  }
+  return {};
+}
+
+std::string failure(const Estimate& estimate,
+                    const CycleRequest& request,
+                    const EstimationOptions& options) {
+  const std::string cycle = cycleInWords(request);
+  switch (estimate.termination) {
+    case Termination::kTooFewObservations:
+      return cycle + ": fewer measured values remain than unknowns; capture more poses.";
+    case Termination::kNothingObservable:
+      return cycle + ": the samples tell nothing about these parameters.";
+    case Termination::kIterationLimit:
+      return cycle + format(
+                         ": no convergence within %d iterations; check the samples and the "
+                         "nominal description.",
+                         options.max_iterations);
+    case Termination::kNumericalFailure:
+      return cycle + ": the solver failed numerically; check the samples.";
+    case Termination::kConverged:
+      break;
+  }
+  const auto rejected = static_cast<double>(
+      std::count_if(estimate.residuals.begin(),
+                    estimate.residuals.end(),
+                    [](const ObservationResidual& residual) { return residual.rejected; }));
+  const double fraction = rejected / static_cast<double>(estimate.residuals.size());
+  if (fraction > options.max_rejected_fraction) {
+    return cycle + format(
+                       ": the samples contradict each other (%.0f %% would be outliers); check "
+                       "sensors, frames and currents.",
+                       100.0 * fraction);
+  }
+  if (estimate.reduced_chi_square > options.max_reduced_chi_square) {
+    return cycle + format(
+                       ": residuals are %.0f times their stated uncertainty; the samples do not "
+                       "fit the model. Check units, frames, polarity and the nominal "
+                       "description.",
+                       std::sqrt(estimate.reduced_chi_square));
+  }
+  return {};
+}
+
+std::string successInWords(const CycleRequest& request,
+                           const CycleReport& report,
+                           std::size_t unknowns,
+                           const std::vector<std::string>& advice) {
+  std::string words = cycleInWords(request) +
+                      format(" calibrated from %u samples in %u iterations: ",
+                             report.samples_used,
+                             report.iterations) +
+                      errorInWords(report) + ".";
+  if (report.samples_rejected > 0) {
+    words += format(" %u samples rejected as outliers.", report.samples_rejected);
+  }
+  words += openDirectionsInWords(report.open_directions, unknowns);
+  for (const std::string& sentence : advice) {
+    words += " " + sentence;
+  }
+  return words;
+}
+
+}  // namespace sac
