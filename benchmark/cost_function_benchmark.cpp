@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
-#include "spherical_actuator_calibration/estimation/cost_functions.hpp"
 #include "support/autodiff_costs.hpp"
+#include "support/ceres_costs.hpp"
 
 namespace sac::benchmarks {
 namespace {

@@ -33,13 +33,8 @@ void iterate(benchmark::State& state, Cycle cycle) {
   problem.prior = scenario.state.belief;
   const EstimationOptions options;
   LeastSquaresInput input;
-  input.problem = &problem;
   input.active.assign(problem.observations.size(), true);
-  input.free.assign(static_cast<std::size_t>(space.size()), false);
-  for (const Eigen::Index p :
-       selectCoordinates(space, scenario.samples, scenario.request, options)) {
-    input.free[static_cast<std::size_t>(p)] = true;
-  }
+  input.free = selectCoordinates(space, scenario.samples, scenario.request, options);
   input.start = scenario.state.belief.x;
   const std::vector<Eigen::Matrix3d> whitening(problem.observations.size(),
                                                Eigen::Matrix3d::Identity());

@@ -2,7 +2,6 @@
 # find_package(sac REQUIRED COMPONENTS core control): fails when this installation was built without one of them.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3)
-find_dependency(Ceres)
 
 # A workspace that builds the package itself has the targets already.
 if(NOT TARGET sac::core)

@@ -7,18 +7,15 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
 
-using WhitenedJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
-/// One used observation, divided by its noise.
-struct Whitened {
+/// One used observation.
+struct Used {
   std::size_t observation = 0;
-  WhitenedJacobian jacobian;  ///< in the estimated coordinates
-  Eigen::Vector3d residual;
+  WhitenedObservation whitened;
 };
 
 /// Coordinates that the cycle has estimated, at least in part.
@@ -46,11 +43,11 @@ std::vector<Eigen::Index> estimatedCoordinates(const ParameterSpace& space,
   return coordinates;
 }
 
-std::vector<Whitened> whitenedObservations(const EstimationProblem& problem,
-                                           const CycleReport& report,
-                                           const std::vector<Eigen::Index>& coordinates,
-                                           const Eigen::VectorXd& x,
-                                           const EstimationOptions& options) {
+std::vector<Used> usedObservations(const EstimationProblem& problem,
+                                   const CycleReport& report,
+                                   const ChosenCoordinates& chosen,
+                                   const Eigen::VectorXd& x,
+                                   const EstimationOptions& options) {
   std::set<std::pair<std::uint32_t, Quantity>> rejected;
   for (const SampleResidual& residual : report.residuals) {
     if (residual.rejected) {
@@ -58,11 +55,8 @@ std::vector<Whitened> whitenedObservations(const EstimationProblem& problem,
     }
   }
   const ObservationEvaluator evaluator(problem, options);
-  std::vector<bool> held(static_cast<std::size_t>(problem.model->space().size()), true);
-  for (const Eigen::Index p : coordinates) {
-    held[static_cast<std::size_t>(p)] = false;
-  }
-  std::vector<Whitened> used;
+  const std::vector<bool> held = chosen.others();
+  std::vector<Used> used;
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     const Observation& what = problem.observations[n];
@@ -70,16 +64,9 @@ std::vector<Whitened> whitenedObservations(const EstimationProblem& problem,
       continue;
     }
     evaluator.linearize(n, x, linear);
-    const Eigen::LLT<Eigen::Matrix3d> noise(evaluator.covariance(n, linear, held));
-    Whitened item;
-    item.observation = n;
-    item.residual = noise.matrixL().solve(linear.residual);
-    item.jacobian.resize(3, static_cast<Eigen::Index>(coordinates.size()));
-    for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      item.jacobian.col(static_cast<Eigen::Index>(k)) =
-          noise.matrixL().solve(linear.jacobian.col(coordinates[k]));
-    }
-    used.push_back(std::move(item));
+    used.push_back({n, {}});
+    whiten(
+        linear, whiteningOf(evaluator.covariance(n, linear, held)), chosen, used.back().whitened);
   }
   return used;
 }
@@ -147,24 +134,23 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
   problem.samples = &samples;
   problem.observations = selectObservations(samples, {report.cycle, report.coil}, options);
   problem.prior = after.belief;
-  const std::vector<Whitened> used =
-      whitenedObservations(problem, report, coordinates, after.belief.x, options);
+  const ChosenCoordinates chosen(model.space().size(), coordinates);
+  const std::vector<Used> used = usedObservations(problem, report, chosen, after.belief.x, options);
 
-  const auto count = static_cast<Eigen::Index>(coordinates.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-  for (const Whitened& item : used) {
-    information += item.jacobian.transpose() * item.jacobian;
+  InformationSum sum(priorInformation(report.open_directions, after.belief, coordinates));
+  for (const Used& item : used) {
+    sum.add(item.whitened);
   }
-  information += priorInformation(report.open_directions, after.belief, coordinates);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(information);
-  const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::LDLT<Eigen::MatrixXd> factor(sum.information());
+  const Eigen::MatrixXd covariance =
+      factor.solve(Eigen::MatrixXd::Identity(chosen.size(), chosen.size()));
   const Eigen::VectorXd stddevs = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 
   std::vector<SampleInfluence> influences;
   influences.reserve(used.size());
-  for (const Whitened& item : used) {
-    const Eigen::MatrixXd gain = covariance * item.jacobian.transpose();
-    const LeftOut left_out = leaveOut(item.jacobian * gain, item.residual);
+  for (const Used& item : used) {
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = item.whitened.timesTransposed(covariance);
+    const LeftOut left_out = leaveOut(item.whitened.times(gain), item.whitened.residual);
     const auto largest = [&stddevs](const Eigen::VectorXd& change, Eigen::Index& place) {
       return change.cwiseAbs().cwiseQuotient(stddevs).maxCoeff(&place);
     };

@@ -7,6 +7,7 @@
 #include "cycle_words.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
+#include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 

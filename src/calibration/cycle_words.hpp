@@ -8,7 +8,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
-#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/estimate.hpp"
 
 namespace sac {
 

@@ -9,7 +9,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
@@ -38,38 +38,17 @@ EstimationProblem heldOutProblem(const CalibrationModel& model,
   return problem;
 }
 
-/// Sums over observations from which the squared Mahalanobis norm of all residuals r follows. Their
-/// covariance is N + J P Jᵀ with block-diagonal noise N and P = L Lᵀ; its inverse by Woodbury's
-/// identity.
-class JointMisfit {
- public:
-  explicit JointMisfit(Eigen::Index size)
-      : information_(Eigen::MatrixXd::Zero(size, size)), gradient_(Eigen::VectorXd::Zero(size)) {}
-
-  void add(const LinearizedObservation& linear, const Eigen::Matrix3d& noise) {
-    const Eigen::LLT<Eigen::Matrix3d> factor(noise);
-    const Eigen::Vector3d weighted = factor.solve(linear.residual);
-    sum_ += linear.residual.dot(weighted);
-    gradient_ += linear.jacobian.transpose() * weighted;
-    const Eigen::MatrixXd whitened = factor.matrixL().solve(linear.jacobian);
-    information_ += whitened.transpose() * whitened;
-  }
-
-  double chiSquare(const Eigen::MatrixXd& covariance) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(covariance);
-    const Eigen::MatrixXd root =
-        spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    Eigen::MatrixXd inner = root.transpose() * information_ * root;
-    inner.diagonal().array() += 1.0;
-    const Eigen::VectorXd projected = root.transpose() * gradient_;
-    return sum_ - projected.dot(inner.llt().solve(projected));
-  }
-
- private:
-  double sum_ = 0.0;             ///< rᵀN⁻¹r
-  Eigen::MatrixXd information_;  ///< JᵀN⁻¹J
-  Eigen::VectorXd gradient_;     ///< JᵀN⁻¹r
-};
+/// Squared Mahalanobis norm of all residuals r of a sum. Their covariance is N + J P Jᵀ with
+/// block-diagonal noise N and P = L Lᵀ of the coordinates; its inverse by Woodbury's identity.
+double jointChiSquare(const InformationSum& sum, const Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(covariance);
+  const Eigen::MatrixXd root =
+      spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  Eigen::MatrixXd inner = root.transpose() * sum.information() * root;
+  inner.diagonal().array() += 1.0;
+  const Eigen::VectorXd projected = root.transpose() * sum.gradient();
+  return sum.squaredMisfit() - projected.dot(inner.llt().solve(projected));
+}
 
 SampleResidual residualOf(const Sample& sample,
                           Quantity quantity,
@@ -121,7 +100,9 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   }
   double orientation_sum = 0.0;
   double torque_sum = 0.0;
-  JointMisfit misfit(model.space().size());
+  const ChosenCoordinates all = ChosenCoordinates::all(model.space().size());
+  InformationSum misfit(all.size());
+  WhitenedObservation whitened;
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     const auto [sample, quantity] = problem.observations[n];
@@ -131,7 +112,8 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
                  model.space(),
                  state.identified,
                  options.current_threshold)) {
-      misfit.add(linear, evaluator.noise(n, linear));
+      whiten(linear, whiteningOf(evaluator.noise(n, linear)), all, whitened);
+      misfit.add(whitened);
     } else {
       ++result.unjudged_torques;
     }
@@ -148,7 +130,7 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
     return result;
   }
   const auto values = 3.0 * static_cast<double>(judged);
-  const double chi_square = std::max(misfit.chiSquare(belief.covariance), 0.0);
+  const double chi_square = std::max(jointChiSquare(misfit, belief.covariance), 0.0);
   result.reduced_chi_square = chi_square / values;
   const boost::math::chi_squared_distribution<double> distribution(values);
   result.probability = boost::math::cdf(boost::math::complement(distribution, chi_square));

@@ -4,8 +4,6 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
@@ -26,36 +24,19 @@ class Linearizer {
   Linearizer(const PlanningProblem& problem,
              const std::vector<Sample>& samples,
              const std::vector<Eigen::Index>& coordinates)
-      : held_(static_cast<std::size_t>(problem.model->space().size()), true),
-        place_(held_.size(), -1),
+      : chosen_(problem.model->space().size(), coordinates),
+        held_(chosen_.others()),
         estimation_(estimationProblem(problem, samples)),
-        evaluator_(estimation_, problem.estimation) {
-    for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      held_[static_cast<std::size_t>(coordinates[k])] = false;
-      place_[static_cast<std::size_t>(coordinates[k])] = static_cast<Eigen::Index>(k);
-    }
-  }
+        evaluator_(estimation_, problem.estimation) {}
 
   const std::vector<Observation>& observations() const { return estimation_.observations; }
 
-  CandidateObservation linearize(std::size_t observation) {
+  WhitenedObservation linearize(std::size_t observation) {
     evaluator_.linearize(observation, estimation_.prior.x, linear_);
-    const Eigen::LLT<Eigen::Matrix3d> factor(evaluator_.covariance(observation, linear_, held_));
-    CandidateObservation result;
-    for (const Eigen::Index column : linear_.columns) {
-      const Eigen::Index place = place_[static_cast<std::size_t>(column)];
-      if (place >= 0 && !linear_.jacobian.col(column).isZero(0.0)) {
-        result.columns.push_back(place);
-      }
-    }
-    result.jacobian.resize(3, static_cast<Eigen::Index>(result.columns.size()));
-    Eigen::Index next = 0;
-    for (const Eigen::Index column : linear_.columns) {
-      const Eigen::Index place = place_[static_cast<std::size_t>(column)];
-      if (place >= 0 && !linear_.jacobian.col(column).isZero(0.0)) {
-        result.jacobian.col(next++) = factor.matrixL().solve(linear_.jacobian.col(column));
-      }
-    }
+    const Eigen::Matrix3d whitening =
+        whiteningOf(evaluator_.covariance(observation, linear_, held_));
+    WhitenedObservation result;
+    whiten(linear_, whitening, chosen_, result);
     return result;
   }
 
@@ -70,8 +51,8 @@ class Linearizer {
     return result;
   }
 
-  std::vector<bool> held_;           ///< per coordinate: not estimated
-  std::vector<Eigen::Index> place_;  ///< among the coordinates to estimate, or −1
+  ChosenCoordinates chosen_;
+  std::vector<bool> held_;  ///< per coordinate: not estimated
   EstimationProblem estimation_;
   ObservationEvaluator evaluator_;
   LinearizedObservation linear_;
@@ -131,16 +112,6 @@ std::vector<PoseCandidate> drawPoses(const PlanningProblem& problem,
 
 }  // namespace
 
-void addInformation(const CandidateObservation& observation, Eigen::MatrixXd& information) {
-  const Eigen::MatrixXd product = observation.jacobian.transpose() * observation.jacobian;
-  for (Eigen::Index a = 0; a < product.rows(); ++a) {
-    for (Eigen::Index b = 0; b < product.cols(); ++b) {
-      information(observation.columns[static_cast<std::size_t>(a)],
-                  observation.columns[static_cast<std::size_t>(b)]) += product(a, b);
-    }
-  }
-}
-
 std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem) {
   const ParameterSpace& space = problem.model->space();
   if (problem.request.cycle != Cycle::kRefine) {
@@ -157,13 +128,12 @@ std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem) {
 
 Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
                                 const std::vector<Eigen::Index>& coordinates) {
-  const auto count = static_cast<Eigen::Index>(coordinates.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  InformationSum sum(static_cast<Eigen::Index>(coordinates.size()));
   Linearizer linearizer(problem, *problem.held, coordinates);
   for (std::size_t n = 0; n < linearizer.observations().size(); ++n) {
-    addInformation(linearizer.linearize(n), information);
+    sum.add(linearizer.linearize(n));
   }
-  return information;
+  return sum.information();
 }
 
 std::vector<Sample> visitSamples(const PlanningProblem& problem,

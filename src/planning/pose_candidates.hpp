@@ -6,27 +6,19 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
-
-/// One observation that could be made, linearised in the F coordinates to estimate.
-struct CandidateObservation {
-  std::vector<Eigen::Index> columns;  ///< coordinates it depends on, 0…F−1, ascending
-  Eigen::Matrix3Xd jacobian;          ///< of these columns, in units of the observation's noise
-};
 
 /// One pose that could be visited, and what could be observed there.
 struct PoseCandidate {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();      ///< [rad]
   Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();  ///< at the belief
-  std::optional<CandidateObservation> orientation;
-  std::vector<std::size_t> coils;             ///< that may be excited here, counted from 0
-  std::vector<CandidateObservation> torques;  ///< along with `coils`
+  std::optional<WhitenedObservation> orientation;                ///< in the coordinates to estimate
+  std::vector<std::size_t> coils;            ///< that may be excited here, counted from 0
+  std::vector<WhitenedObservation> torques;  ///< along with `coils`
 };
-
-/// Information matrix JᵀS⁻¹J of one observation is added to `information` (F×F).
-void addInformation(const CandidateObservation& observation, Eigen::MatrixXd& information);
 
 /// Coordinates that a plan is to determine: all for kRefine (without poles and coils where there is
 /// no torque model), else those of the cycle.

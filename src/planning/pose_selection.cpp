@@ -30,7 +30,7 @@ class Update {
     if (candidate.orientation) {
       add(*candidate.orientation, covariance);
     }
-    for (const CandidateObservation& torque : candidate.torques) {
+    for (const WhitenedObservation& torque : candidate.torques) {
       add(torque, covariance);
     }
   }
@@ -59,7 +59,7 @@ class Update {
     taken.is_taken = true;
     for (Item& item : items_) {
       if (!item.is_taken) {
-        const Eigen::Matrix3d shared = timesRows(*item.observation, gain);
+        const Eigen::Matrix3d shared = item.observation->times(gain);
         item.effect.noalias() -= gain * shared.transpose();
         item.innovation.noalias() -= shared * shared.transpose();
       }
@@ -70,31 +70,17 @@ class Update {
 
  private:
   struct Item {
-    const CandidateObservation* observation = nullptr;
+    const WhitenedObservation* observation = nullptr;
     Factor effect;               ///< C Jᵀ
     Eigen::Matrix3d innovation;  ///< J C Jᵀ + 1
     bool is_taken = false;
   };
 
-  /// J M for a matrix M of F rows.
-  static Eigen::Matrix3d timesRows(const CandidateObservation& observation, const Factor& M) {
-    Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < observation.columns.size(); ++k) {
-      product.noalias() +=
-          observation.jacobian.col(static_cast<Eigen::Index>(k)) * M.row(observation.columns[k]);
-    }
-    return product;
-  }
-
-  void add(const CandidateObservation& observation, const Eigen::MatrixXd& covariance) {
+  void add(const WhitenedObservation& observation, const Eigen::MatrixXd& covariance) {
     Item item;
     item.observation = &observation;
-    item.effect.setZero(covariance.rows(), 3);
-    for (std::size_t k = 0; k < observation.columns.size(); ++k) {
-      item.effect.noalias() += covariance.col(observation.columns[k]) *
-                               observation.jacobian.col(static_cast<Eigen::Index>(k)).transpose();
-    }
-    item.innovation = Eigen::Matrix3d::Identity() + timesRows(observation, item.effect);
+    item.effect = observation.timesTransposed(covariance);
+    item.innovation = Eigen::Matrix3d::Identity() + observation.times(item.effect);
     items_.push_back(std::move(item));
   }
 
@@ -129,12 +115,12 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& information) {
 
 void addPose(const PoseCandidate& candidate,
              const std::vector<std::size_t>& torques,
-             Eigen::MatrixXd& information) {
+             InformationSum& sum) {
   if (candidate.orientation) {
-    addInformation(*candidate.orientation, information);
+    sum.add(*candidate.orientation);
   }
   for (const std::size_t torque : torques) {
-    addInformation(candidate.torques[torque], information);
+    sum.add(candidate.torques[torque]);
   }
 }
 
@@ -250,11 +236,11 @@ PoseSelection::Choice PoseSelection::best(const Eigen::MatrixXd& covariance,
 }
 
 Eigen::MatrixXd PoseSelection::covariance() const {
-  Eigen::MatrixXd information = known_;
+  InformationSum sum(known_);
   for (const SelectedPose& pose : poses_) {
-    addPose(candidates_[pose.candidate], pose.torques, information);
+    addPose(candidates_[pose.candidate], pose.torques, sum);
   }
-  return inverse(information);
+  return inverse(sum.information());
 }
 
 }  // namespace sac

@@ -1,9 +1,8 @@
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
@@ -20,18 +19,16 @@ Eigen::MatrixXd cramerRaoBound(const CalibrationModel& model,
   problem.prior.x = truth;
   problem.prior.covariance = Eigen::MatrixXd::Zero(truth.size(), truth.size());
   const ObservationEvaluator evaluator(problem, options);
-  const auto count = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixXd J(3, count);
+  const ChosenCoordinates chosen(truth.size(), free);
+  InformationSum sum(chosen.size());
   LinearizedObservation linear;
+  WhitenedObservation whitened;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     evaluator.linearize(n, truth, linear);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      J.col(k) = linear.jacobian.col(free[static_cast<std::size_t>(k)]);
-    }
-    information += J.transpose() * evaluator.noise(n, linear).llt().solve(J);
+    whiten(linear, whiteningOf(evaluator.noise(n, linear)), chosen, whitened);
+    sum.add(whitened);
   }
-  return information.inverse();
+  return sum.information().inverse();
 }
 
 }  // namespace sac

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/estimation/cost_functions.hpp"
 #include "support/autodiff_costs.hpp"
+#include "support/ceres_costs.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {

@@ -1,9 +1,8 @@
-#include "spherical_actuator_calibration/estimation/cost_functions.hpp"
-
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "support/ceres_costs.hpp"
 #include "support/numeric_jacobian.hpp"
 #include "support/scenarios.hpp"
 

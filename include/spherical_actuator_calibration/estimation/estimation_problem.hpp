@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,6 +23,11 @@ struct Observation {
   std::size_t sample = 0;  ///< index into the samples of the problem
   Quantity quantity = Quantity::kOrientation;
 };
+
+/// ε of a set of residuals: mean norm for orientations (paper (16)), root of the mean square norm
+/// for torques (paper (29)), root mean square standardised norm for a mixture.
+enum class ErrorMeasure { kOrientation, kTorque, kStandardized };
+ErrorMeasure errorMeasure(const std::vector<Observation>& observations);
 
 /// The one estimation problem of this package. Cycles differ only in which coordinates are free and
 /// which observations serve. Coordinates that are not free stay at the prior; their uncertainty
@@ -59,53 +63,5 @@ struct EstimationOptions {
 
 /// Throws ConfigError that names the option and its range.
 void validate(const EstimationOptions& options);
-
-enum class Termination {
-  kConverged,
-  kIterationLimit,    ///< max_iterations reached before convergence
-  kNumericalFailure,  ///< the solver could not evaluate or factorise
-  kTooFewObservations,
-  kNothingObservable,
-};
-
-/// One observation after the solution.
-struct ObservationResidual {
-  Observation observation;
-  Eigen::Vector3d residual = Eigen::Vector3d::Zero();  ///< [rad] stator frame or [N·m] rotor frame
-  /// Mahalanobis norm over √3 with the residual's own covariance: about 1 when it fits.
-  double standardized = 0.0;
-  bool rejected = false;
-};
-
-/// Result of estimate().
-struct Estimate {
-  Termination termination = Termination::kNumericalFailure;
-  ParameterBelief belief;                  ///< all coordinates, full covariance
-  std::vector<Eigen::Index> unobservable;  ///< free coordinates held at the prior for want of data
-  /// P×d, orthonormal columns: directions across many coordinates, held at the prior likewise.
-  /// Their prior uncertainty is in `belief`.
-  Eigen::MatrixXd open_directions;
-  int iterations = 0;
-  std::vector<double> error_history;  ///< ε before the first and after each iteration
-  int degrees_of_freedom = 0;
-  double reduced_chi_square = 0.0;  ///< 0 without degrees of freedom
-  /// Factor ≥ 1 on standard deviations where the residuals exceed their stated noise significantly.
-  double covariance_scale = 1.0;
-  double condition_number = 0.0;  ///< of the whitened Jacobian of what was identified
-  std::vector<ObservationResidual> residuals;
-  double solve_time = 0.0;  ///< [s]
-};
-
-/// ε of a set of residuals: mean norm for orientations (paper (16)), root of the mean square norm
-/// for torques (paper (29)), root mean square standardised norm for a mixture.
-enum class ErrorMeasure { kOrientation, kTorque, kStandardized };
-ErrorMeasure errorMeasure(const std::vector<Observation>& observations);
-
-/// Solves the problem: weighted least squares by Levenberg–Marquardt (Ceres) on the manifold. Where
-/// the first solution shows misfits, a robust pass finds outliers and a final solution runs without
-/// them. What the data cannot tell keeps its prior: see unidentified_part.hpp. Never throws for
-/// poor data: see termination. Throws DataError on inconsistent input (index out of range, torque
-/// without a torque model).
-Estimate estimate(const EstimationProblem& problem, const EstimationOptions& options);
 
 }  // namespace sac

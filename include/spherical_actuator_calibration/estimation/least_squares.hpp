@@ -4,10 +4,18 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 
 namespace sac {
+
+/// How a solution ended.
+enum class Termination {
+  kConverged,
+  kIterationLimit,    ///< max_iterations reached before convergence
+  kNumericalFailure,  ///< the solver could not evaluate or factorise
+  kTooFewObservations,
+  kNothingObservable,
+};
 
 /// How much a misfit counts.
 enum class Loss {
@@ -25,31 +33,31 @@ struct LinearPrior {
 
 /// One nonlinear least-squares solution over chosen observations and coordinates.
 struct LeastSquaresInput {
-  const EstimationProblem* problem = nullptr;
   const ObservationEvaluator* evaluator = nullptr;
-  const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< per observation
+  const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< W per observation
   std::vector<bool> active;                                 ///< per observation
-  std::vector<bool> free;                                   ///< per coordinate
+  std::vector<Eigen::Index> free;                           ///< coordinates to find, ascending
   Eigen::VectorXd start;                                    ///< all coordinates
   LinearPrior prior;                                        ///< counts beside the observations
   Loss loss = Loss::kSquared;
   double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
   int max_iterations = 50;
-  double parameter_tolerance = 1e-12;  ///< of a step, relative to the norm of the coordinates
+  double parameter_tolerance = 1e-12;  ///< of what is left to go, relative to the coordinates
 };
 
 struct LeastSquaresResult {
   Termination termination = Termination::kNumericalFailure;
-  std::vector<Eigen::VectorXd>
-      path;                 ///< coordinates at the start and after each accepted iteration
-  double solve_time = 0.0;  ///< [s]
+  std::vector<Eigen::VectorXd> path;  ///< coordinates at the start and after each iteration
+  double solve_time = 0.0;            ///< [s]
 
   const Eigen::VectorXd& solution() const { return path.back(); }
 };
 
-/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt, by Ceres or, for many observations,
-/// as in accumulated_least_squares.hpp. Analytic Jacobians, one thread, so that the same input
-/// gives the same bits.
+/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt on normal equations, which are summed
+/// up observation by observation: memory does not grow with their number. Normal equations square
+/// the condition number, but in each step only: steps go on with fresh residuals until the next one
+/// would change nothing, so that the solution keeps the digits of an orthogonal factorisation.
+/// Analytic Jacobians, one thread, so that the same input gives the same bits.
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
 
 }  // namespace sac

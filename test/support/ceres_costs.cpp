@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/estimation/cost_functions.hpp"
+#include "support/ceres_costs.hpp"
 
 #include <cstdint>
 

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+
+namespace sac {
+
+/// F coordinates chosen out of P.
+class ChosenCoordinates {
+ public:
+  /// `chosen`: ascending, each below `all`.
+  ChosenCoordinates(Eigen::Index all, const std::vector<Eigen::Index>& chosen);
+  static ChosenCoordinates all(Eigen::Index size);
+
+  Eigen::Index size() const { return size_; }
+  /// Place of a coordinate among the chosen ones, or −1.
+  Eigen::Index place(Eigen::Index coordinate) const {
+    return places_[static_cast<std::size_t>(coordinate)];
+  }
+  /// Per coordinate: it is not chosen.
+  std::vector<bool> others() const;
+
+ private:
+  std::vector<Eigen::Index> places_;
+  Eigen::Index size_;
+};
+
+/// W with WᵀW = S⁻¹ for the covariance S of an observation.
+Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance);
+
+/// One observation in units of its noise, linearised in chosen coordinates: W r(x + δ) ≈ residual +
+/// Σ jacobian.col(k) δ[columns[k]].
+struct WhitenedObservation {
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Index> columns;  ///< places among the chosen coordinates, ascending
+  Eigen::Matrix3Xd jacobian;          ///< of these columns; the others are zero
+
+  /// M Jᵀ (rows × 3) for a matrix of F columns.
+  Eigen::Matrix<double, Eigen::Dynamic, 3> timesTransposed(const Eigen::MatrixXd& M) const;
+  /// J M for a matrix of F rows.
+  Eigen::Matrix3d times(const Eigen::Matrix<double, Eigen::Dynamic, 3>& M) const;
+};
+
+/// Fills `out`, whose storage is reused. `whitening`: W.
+void whiten(const LinearizedObservation& linear,
+            const Eigen::Matrix3d& whitening,
+            const ChosenCoordinates& chosen,
+            WhitenedObservation& out);
+
+/// Sums over independent observations: their information, gradient and squared misfit.
+class InformationSum {
+ public:
+  explicit InformationSum(Eigen::Index size);
+  /// Starts with what is known already, F×F.
+  explicit InformationSum(Eigen::MatrixXd known);
+
+  /// `weight`: of the observation beside its noise.
+  void add(const WhitenedObservation& observation, double weight = 1.0);
+
+  /// Σ JᵀS⁻¹J, F×F.
+  Eigen::MatrixXd information() const;
+  /// Σ JᵀS⁻¹r, half the derivative of Σ rᵀS⁻¹r.
+  const Eigen::VectorXd& gradient() const { return gradient_; }
+  /// Σ rᵀS⁻¹r.
+  double squaredMisfit() const { return squared_misfit_; }
+
+ private:
+  Eigen::MatrixXd upper_;  ///< of the information: the lower triangle is not summed up
+  Eigen::VectorXd gradient_;
+  double squared_misfit_ = 0.0;
+};
+
+}  // namespace sac

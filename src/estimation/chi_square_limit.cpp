@@ -1,0 +1,12 @@
+#include "chi_square_limit.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace sac {
+
+double chiSquareLimit(double degrees_of_freedom, double probability) {
+  const boost::math::chi_squared_distribution<double> distribution(degrees_of_freedom);
+  return boost::math::quantile(boost::math::complement(distribution, probability));
+}
+
+}  // namespace sac

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace sac {
+
+/// Value that a χ² variable of so many degrees of freedom exceeds with the given probability.
+double chiSquareLimit(double degrees_of_freedom, double probability);
+
+}  // namespace sac

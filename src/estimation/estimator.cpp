@@ -1,0 +1,269 @@
+#include "spherical_actuator_calibration/estimation/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "chi_square_limit.hpp"
+#include "estimate_conclusion.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/estimation/least_squares.hpp"
+#include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
+#include "weighted_observations.hpp"
+
+namespace sac {
+namespace {
+
+constexpr int kComponents = 3;  // of one observation
+
+void checkProblem(const EstimationProblem& problem) {
+  const ParameterSpace& space = problem.model->space();
+  const Eigen::Index size = space.size();
+  if (problem.prior.x.size() != size || problem.prior.covariance.rows() != size ||
+      problem.prior.covariance.cols() != size) {
+    throw DataError("The prior does not have one entry for each of the " + std::to_string(size) +
+                    " parameters.");
+  }
+  for (const Eigen::Index parameter : problem.free) {
+    if (parameter < 0 || parameter >= size) {
+      throw DataError("Parameter " + std::to_string(parameter) + " does not exist.");
+    }
+  }
+  for (const Observation& observation : problem.observations) {
+    if (observation.sample >= problem.samples->size()) {
+      throw DataError("Sample " + std::to_string(observation.sample) + " does not exist.");
+    }
+    if (observation.quantity == Quantity::kTorque && !problem.model->hasTorqueModel()) {
+      throw DataError(
+          "Torque samples need poles, coils and a torque curve in the actuator description.");
+    }
+    validate((*problem.samples)[observation.sample], space.coils());
+  }
+}
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The steps of one estimation. Invariant: the weights belong to the last call of updateWeights().
+class Estimator {
+ public:
+  Estimator(const EstimationProblem& problem, const EstimationOptions& options)
+      : problem_(problem), options_(options), observations_(problem, options) {
+    solution_.problem = &problem;
+    solution_.options = &options;
+    solution_.observations = &observations_;
+  }
+
+  Estimate run();
+
+ private:
+  void setFree(const UnidentifiedPart& part);
+  bool updateWeights(const Eigen::VectorXd& x) { return observations_.updateWeights(x, held_); }
+  UnidentifiedPart unidentifiedAt(const Eigen::VectorXd& x) const;
+  bool refineOpen(int round, UnidentifiedPart& open) const;
+  void solve(const Eigen::VectorXd& start, Loss loss, double transition);
+  bool solveReweighted();
+  bool solveRobustly(double transition);
+  bool solveWithoutOutliers();
+  double outlierLimit() const;
+  bool rejectOutliers();
+  bool hasEnoughObservations();
+
+  const EstimationProblem& problem_;
+  const EstimationOptions& options_;
+  WeightedObservations observations_;
+  std::vector<bool> held_;  ///< per coordinate: not estimated
+  Solution solution_;
+  Estimate result_;
+};
+
+/// Chooses the coordinates to estimate, the free ones of the problem without those held whole, and
+/// the prior of the directions that are held.
+void Estimator::setFree(const UnidentifiedPart& part) {
+  solution_.estimated.clear();
+  std::set_difference(problem_.free.begin(),
+                      problem_.free.end(),
+                      part.coordinates.begin(),
+                      part.coordinates.end(),
+                      std::back_inserter(solution_.estimated));
+  held_.assign(static_cast<std::size_t>(problem_.prior.x.size()), true);
+  for (const Eigen::Index parameter : solution_.estimated) {
+    held_[static_cast<std::size_t>(parameter)] = false;
+  }
+  solution_.prior.directions = part.directions;
+  solution_.prior.mean = part.directions.transpose() * problem_.prior.x;
+  solution_.prior.covariance =
+      part.directions.transpose() * problem_.prior.covariance * part.directions;
+}
+
+/// What the active observations leave open of the free coordinates of the problem, at x.
+UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x) const {
+  return unidentifiedPart(observations_.information(x, problem_.free),
+                          problem_.free,
+                          problem_.model->space(),
+                          options_.unobservable_stddev);
+}
+
+/// One least-squares solution over the active observations; its path is kept for the error history.
+void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition) {
+  LeastSquaresInput input;
+  input.evaluator = &observations_.evaluator();
+  input.whitening = &observations_.whitening();
+  input.active = observations_.active();
+  input.free = solution_.estimated;
+  input.start = start;
+  input.prior = solution_.prior;
+  input.loss = loss;
+  input.loss_transition = transition;
+  input.max_iterations = options_.max_iterations;
+  // A robust pass only sorts the observations: the last digits are the plain solution's.
+  input.parameter_tolerance = loss == Loss::kSquared ? 1e-12 : 1e-6;
+  const LeastSquaresResult result = solveLeastSquares(input);
+  result_.solve_time += result.solve_time;
+  result_.termination = result.termination;
+  std::vector<Eigen::VectorXd>& path = solution_.path;
+  path.insert(path.end(), result.path.begin() + (path.empty() ? 0 : 1), result.path.end());
+}
+
+/// Solves on from where the path is, and once more with the weights at the solution where they
+/// depend on it.
+bool Estimator::solveReweighted() {
+  const auto solveOn = [this] {
+    const Eigen::VectorXd start = solution_.path.empty() ? problem_.prior.x : solution_.x();
+    solve(start, Loss::kSquared, 0.0);
+  };
+  solveOn();
+  if (result_.termination == Termination::kConverged && updateWeights(solution_.x())) {
+    solveOn();
+  }
+  return result_.termination == Termination::kConverged;
+}
+
+/// Squared whitened norm beyond which an observation is an outlier.
+double Estimator::outlierLimit() const {
+  return chiSquareLimit(
+      kComponents, options_.false_alarm_probability / static_cast<double>(observations_.size()));
+}
+
+/// Marks as inactive what does not fit the present solution, and as active again what does. Returns
+/// whether the set changed.
+bool Estimator::rejectOutliers() {
+  constexpr double kMedianOfThree = 2.366;  // of the χ² distribution with three degrees of freedom
+  const std::vector<double> squares = observations_.squares(solution_.x());
+  // Where the stated noise is too small for most observations, outliers stand out of the actual
+  // scatter; the misfit itself is told by the reduced χ².
+  const double limit = outlierLimit() * std::max(1.0, medianOf(squares) / kMedianOfThree);
+  bool changed = false;
+  for (std::size_t n = 0; n < squares.size(); ++n) {
+    changed = observations_.setActive(n, squares[n] <= limit) || changed;
+  }
+  return changed;
+}
+
+bool Estimator::hasEnoughObservations() {
+  if (static_cast<std::size_t>(kComponents) * observations_.activeCount() >=
+      solution_.estimated.size()) {
+    return true;
+  }
+  result_.termination = Termination::kTooFewObservations;
+  return false;
+}
+
+/// A robust pass from the prior finds the outliers, and a plain solution runs without them.
+bool Estimator::solveRobustly(double transition) {
+  constexpr int kMaxRounds = 5;
+  solution_.path.clear();
+  solve(problem_.prior.x, Loss::kHuber, transition);
+  updateWeights(solution_.x());
+  const double median = medianOf(observations_.squares(solution_.x()));
+  const double scatter = std::max(1.0, std::sqrt(median / kComponents));
+  solve(solution_.x(), Loss::kCauchy, transition * scatter);
+  for (int round = 0; round < kMaxRounds && (rejectOutliers() || round == 0); ++round) {
+    if (!hasEnoughObservations() || !solveReweighted()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A plain solution where all observations fit it, a robust one otherwise. Returns whether it
+/// converged.
+bool Estimator::solveWithoutOutliers() {
+  // The robust losses take over somewhat below the limit, where faultless observations are rare.
+  constexpr double kTransitionShare = 0.75;
+  const double transition = std::sqrt(kTransitionShare * outlierLimit());
+  observations_.activateAll();
+  solution_.path.clear();
+  updateWeights(problem_.prior.x);
+  if (!hasEnoughObservations()) {
+    return false;
+  }
+  if (solveReweighted()) {
+    const std::vector<double> squares = observations_.squares(solution_.x());
+    if (*std::max_element(squares.begin(), squares.end()) <= transition * transition) {
+      return true;  // within the quadratic part of the robust loss: it has the same minimum
+    }
+  }
+  return solveRobustly(transition);
+}
+
+/// Looks from the solution at what is open: it may see what the prior did not, and the other way
+/// round. Should the two views not agree soon, what either calls weak stays at the prior, and the
+/// set can only grow. Returns whether `open` changed.
+bool Estimator::refineOpen(int round, UnidentifiedPart& open) const {
+  constexpr int kFreeRounds = 2;
+  UnidentifiedPart seen = unidentifiedAt(solution_.x());
+  const bool same_directions = seen.directions.cols() == open.directions.cols();
+  if (round >= kFreeRounds) {
+    std::vector<Eigen::Index> either;
+    std::set_union(seen.coordinates.begin(),
+                   seen.coordinates.end(),
+                   open.coordinates.begin(),
+                   open.coordinates.end(),
+                   std::back_inserter(either));
+    seen.coordinates = std::move(either);
+  }
+  if (seen.coordinates == open.coordinates && (same_directions || round >= kFreeRounds)) {
+    return false;
+  }
+  open = std::move(seen);
+  return true;
+}
+
+Estimate Estimator::run() {
+  result_.belief = problem_.prior;
+  UnidentifiedPart open;
+  open.directions.resize(problem_.prior.x.size(), 0);
+  setFree(open);
+  updateWeights(problem_.prior.x);
+  open = unidentifiedAt(problem_.prior.x);
+  int round = 0;
+  do {
+    setFree(open);
+    result_.unobservable = open.coordinates;
+    result_.open_directions = open.directions;
+    if (solution_.estimated.empty()) {
+      result_.termination = Termination::kNothingObservable;
+      return result_;
+    }
+    if (!solveWithoutOutliers()) {
+      return result_;
+    }
+  } while (refineOpen(round++, open));
+  conclude(solution_, result_);
+  return result_;
+}
+
+}  // namespace
+
+Estimate estimate(const EstimationProblem& problem, const EstimationOptions& options) {
+  checkProblem(problem);
+  return Estimator(problem, options).run();
+}
+
+}  // namespace sac

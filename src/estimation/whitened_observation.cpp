@@ -1,0 +1,98 @@
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+namespace sac {
+
+ChosenCoordinates::ChosenCoordinates(Eigen::Index all, const std::vector<Eigen::Index>& chosen)
+    : places_(static_cast<std::size_t>(all), -1), size_(static_cast<Eigen::Index>(chosen.size())) {
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    places_[static_cast<std::size_t>(chosen[k])] = static_cast<Eigen::Index>(k);
+  }
+}
+
+ChosenCoordinates ChosenCoordinates::all(Eigen::Index size) {
+  std::vector<Eigen::Index> every(static_cast<std::size_t>(size));
+  std::iota(every.begin(), every.end(), 0);
+  return {size, every};
+}
+
+std::vector<bool> ChosenCoordinates::others() const {
+  std::vector<bool> others;
+  others.reserve(places_.size());
+  for (const Eigen::Index place : places_) {
+    others.push_back(place < 0);
+  }
+  return others;
+}
+
+Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d lower = covariance.llt().matrixL();
+  return lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedObservation::timesTransposed(
+    const Eigen::MatrixXd& M) const {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> product(M.rows(), 3);
+  product.setZero();
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    product.noalias() += M.col(columns[k]) * jacobian.col(static_cast<Eigen::Index>(k)).transpose();
+  }
+  return product;
+}
+
+Eigen::Matrix3d WhitenedObservation::times(
+    const Eigen::Matrix<double, Eigen::Dynamic, 3>& M) const {
+  Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    product.noalias() += jacobian.col(static_cast<Eigen::Index>(k)) * M.row(columns[k]);
+  }
+  return product;
+}
+
+void whiten(const LinearizedObservation& linear,
+            const Eigen::Matrix3d& whitening,
+            const ChosenCoordinates& chosen,
+            WhitenedObservation& out) {
+  out.residual = whitening * linear.residual;
+  out.columns.clear();
+  out.jacobian.resize(3, static_cast<Eigen::Index>(linear.columns.size()));
+  for (const Eigen::Index p : linear.columns) {
+    const Eigen::Index place = chosen.place(p);
+    // Most poles are out of reach of a coil: their columns are zero.
+    if (place >= 0 && !linear.jacobian.col(p).isZero(0.0)) {
+      out.jacobian.col(static_cast<Eigen::Index>(out.columns.size())) =
+          whitening * linear.jacobian.col(p);
+      out.columns.push_back(place);
+    }
+  }
+  out.jacobian.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(out.columns.size()));
+}
+
+InformationSum::InformationSum(Eigen::Index size)
+    : InformationSum(Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size))) {}
+
+InformationSum::InformationSum(Eigen::MatrixXd known)
+    : upper_(std::move(known)), gradient_(Eigen::VectorXd::Zero(upper_.rows())) {}
+
+void InformationSum::add(const WhitenedObservation& observation, double weight) {
+  const std::vector<Eigen::Index>& columns = observation.columns;
+  squared_misfit_ += weight * observation.residual.squaredNorm();
+  for (std::size_t b = 0; b < columns.size(); ++b) {
+    const Eigen::Vector3d column = weight * observation.jacobian.col(static_cast<Eigen::Index>(b));
+    gradient_[columns[b]] += column.dot(observation.residual);
+    for (std::size_t a = 0; a <= b; ++a) {
+      upper_(columns[a], columns[b]) +=
+          observation.jacobian.col(static_cast<Eigen::Index>(a)).dot(column);
+    }
+  }
+}
+
+Eigen::MatrixXd InformationSum::information() const {
+  return upper_.selfadjointView<Eigen::Upper>();
+}
+
+}  // namespace sac
