@@ -19,6 +19,8 @@ struct MarkerColor {
 /// `share` (0 to 1) of the way from one colour to the other.
 MarkerColor mixed(const MarkerColor& one, const MarkerColor& other, float share);
 
+std_msgs::ColorRGBA colorToRos(const MarkerColor& color);
+
 /// A marker without a shape that stays with its frame.
 visualization_msgs::Marker emptyMarker(const std::string& frame,
                                        const std::string& group,
