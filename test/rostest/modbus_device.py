@@ -1,6 +1,5 @@
 """Modbus devices by an independent implementation (pymodbus), over TCP or a pair of serial lines."""
 
-import asyncio
 import os
 import socket
 import subprocess
@@ -9,8 +8,7 @@ import threading
 
 from calibration_client import wait_for
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
-from pymodbus.transaction import ModbusRtuFramer, ModbusSocketFramer
+from pymodbus_servers import serve_serial, serve_tcp
 
 REGISTERS = 200
 
@@ -33,68 +31,41 @@ class Block(ModbusSequentialDataBlock):
         super().setValues(address, values)
 
 
+class Registers(ModbusSlaveContext):
+    """Blocks that begin at address 0 of a request; pymodbus 3.8 has no zero_mode any more, and adds one."""
+
+    def validate(self, function, address, count=1):
+        return super().validate(function, address - 1, count)
+
+    def getValues(self, function, address, count=1):  # noqa: N802, pylint: disable=invalid-name
+        return super().getValues(function, address - 1, count)
+
+    def setValues(self, function, address, values):  # noqa: N802, pylint: disable=invalid-name
+        super().setValues(function, address - 1, values)
+
+
 class ModbusDevice:
     """One unit with input and holding registers; lives in a thread of the test."""
 
     def __init__(self, unit):
         self.input = Block()
         self.holding = Block()
-        slave = ModbusSlaveContext(ir=self.input, hr=self.holding, zero_mode=True)
+        slave = Registers(ir=self.input, hr=self.holding)
         self._context = ModbusServerContext(slaves={unit: slave}, single=False)
-        self._loop = None
-        self._thread = None
         self._server = None
-        self._ended = None
 
     def start_tcp(self, port):
-        self._start(
-            lambda: ModbusTcpServer(
-                self._context,
-                ModbusSocketFramer,
-                address=("127.0.0.1", port),
-                allow_reuse_address=True,
-            )
-        )
+        self._server = serve_tcp(self._context, port)
 
     def start_serial(self, line):
-        async def serial():
-            server = ModbusSerialServer(
-                self._context, ModbusRtuFramer, port=line, baudrate=115200, timeout=0.005
-            )
-            await server.start()
-            return server
-
-        self._start(serial)
-
-    def _start(self, make):
-        ready = threading.Event()
-
-        async def serve():
-            made = make()
-            self._server = await made if asyncio.iscoroutine(made) else made
-            self._ended = asyncio.Event()
-            ready.set()
-            serving = asyncio.ensure_future(self._server.serve_forever())
-            await self._ended.wait()
-            await self._server.shutdown()
-            serving.cancel()
-
-        def run():
-            self._loop = asyncio.new_event_loop()
-            asyncio.set_event_loop(self._loop)
-            self._loop.run_until_complete(serve())
-
-        self._thread = threading.Thread(target=run, daemon=True)
-        self._thread.start()
-        ready.wait()
+        self._server = serve_serial(self._context, line)
 
     def stop(self):
         """The device vanishes, and with it every link to it."""
-        if self._thread is None:
+        if self._server is None:
             return
-        self._loop.call_soon_threadsafe(self._ended.set)
-        self._thread.join()
-        self._thread = None
+        self._server.stop()
+        self._server = None
 
     def holding_at(self, address, count=1):
         return self.holding.getValues(address, count)
