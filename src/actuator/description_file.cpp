@@ -47,13 +47,15 @@ JointStddev readJointStddev(const YamlMap& joint) {
           optionalNumber(map, "axis_v", range)};
 }
 
-AngleStddev readAngleStddev(const YamlMap& pole_or_coil) {
+AxisStddev readAxisStddev(const YamlMap& pole_or_coil) {
   if (!pole_or_coil.has("stddev")) {
     return {};
   }
   const YamlMap map = pole_or_coil.map("stddev");
   const ValueRange range = ValueRange::nonNegative("rad");
-  return {optionalNumber(map, "polar", range), optionalNumber(map, "azimuth", range)};
+  return {optionalNumber(map, "polar", range),
+          optionalNumber(map, "azimuth", range),
+          optionalNumber(map, "gain", ValueRange::nonNegative())};
 }
 
 void readJoints(const YamlMap& map, CalibratedDescription& description) {
@@ -108,14 +110,14 @@ void readPoles(const YamlMap& map, CalibratedDescription& description) {
     PoleAxis pole = readAngles<PoleAxis>(item);
     pole.polarity = readPolarity(item);
     description.actuator.poles.push_back(pole);
-    description.stddevs.poles.push_back(readAngleStddev(item));
+    description.stddevs.poles.push_back(readAxisStddev(item));
   }
 }
 
 void readCoils(const YamlMap& map, CalibratedDescription& description) {
   for (const YamlMap& item : map.maps("coils")) {
     description.actuator.coils.push_back(readAngles<CoilAxis>(item));
-    description.stddevs.coils.push_back(readAngleStddev(item));
+    description.stddevs.coils.push_back(readAxisStddev(item));
   }
 }
 

@@ -35,17 +35,18 @@ std::string jointLine(const JointAxis& joint, const JointStddev& stddev) {
 
 /// What follows the angles of poles and coils: gains other than 1, standard deviations.
 template <typename PoleOrCoil>
-void addGainAndStddev(YamlLine& line, const PoleOrCoil& axis, const AngleStddev& stddev) {
+void addGainAndStddev(YamlLine& line, const PoleOrCoil& axis, const AxisStddev& stddev) {
   if (axis.gain != 1.0) {
     line.add("gain", yamlNumber(axis.gain));
   }
   YamlLine values;
   addOptional(values, "polar", stddev.polar);
   addOptional(values, "azimuth", stddev.azimuth);
+  addOptional(values, "gain", stddev.gain);
   addStddev(line, values);
 }
 
-std::string poleLine(const PoleAxis& pole, const AngleStddev& stddev) {
+std::string poleLine(const PoleAxis& pole, const AxisStddev& stddev) {
   YamlLine line;
   line.add("polar", yamlNumber(pole.polar));
   line.add("azimuth", yamlNumber(pole.azimuth));
@@ -54,7 +55,7 @@ std::string poleLine(const PoleAxis& pole, const AngleStddev& stddev) {
   return line.text();
 }
 
-std::string coilLine(const CoilAxis& coil, const AngleStddev& stddev) {
+std::string coilLine(const CoilAxis& coil, const AxisStddev& stddev) {
   YamlLine line;
   line.add("polar", yamlNumber(coil.polar));
   line.add("azimuth", yamlNumber(coil.azimuth));
@@ -97,7 +98,7 @@ template <typename PoleOrCoil, typename LineOf>
 void writeAxes(YamlWriter& writer,
                const std::string& key,
                const std::vector<PoleOrCoil>& axes,
-               const std::vector<AngleStddev>& stddevs,
+               const std::vector<AxisStddev>& stddevs,
                LineOf line_of) {
   if (!stddevs.empty() && stddevs.size() != axes.size()) {
     throw ConfigError(key + ": " + std::to_string(stddevs.size()) +
@@ -109,7 +110,7 @@ void writeAxes(YamlWriter& writer,
   }
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    lines.push_back(line_of(axes[i], stddevs.empty() ? AngleStddev{} : stddevs[i]));
+    lines.push_back(line_of(axes[i], stddevs.empty() ? AxisStddev{} : stddevs[i]));
   }
   writer.list(1, key, lines);
 }

@@ -41,7 +41,7 @@ class Judge {
       : session_(session),
         influences_(influences),
         fits_(fits),
-        validation_(session.validation()),
+        graded_(gradeCalibration(session)),
         open_(session.openParameters()) {
     for (const CycleReport& report : session.reports()) {
       last_success_ = report.success ? &report : last_success_;
@@ -50,75 +50,14 @@ class Judge {
 
   CalibrationVerdict verdict() const {
     CalibrationVerdict verdict;
-    verdict.grade = grade();
-    verdict.sentence = sentence(verdict.grade);
+    verdict.graded = graded_;
     collectSteps(verdict.next_steps);
     return verdict;
   }
 
  private:
-  bool isContradicted() const {
-    return validation_ && validation_->hasVerdict() && validation_->probability < kLeastProbability;
-  }
-
-  CalibrationGrade grade() const {
-    if (last_success_ == nullptr) {
-      return CalibrationGrade::kFailed;
-    }
-    if (isContradicted()) {
-      return CalibrationGrade::kContradicted;
-    }
-    return session_.isComplete() ? CalibrationGrade::kComplete : CalibrationGrade::kIncomplete;
-  }
-
-  std::string sentence(CalibrationGrade grade) const {
-    switch (grade) {
-      case CalibrationGrade::kFailed:
-        return session_.reports().empty() ? "Nothing is calibrated: no cycle was run."
-                                          : "Nothing is calibrated: no cycle succeeded.";
-      case CalibrationGrade::kContradicted:
-        return "Do not use this calibration yet: " + identified() +
-               ", but the held-out samples contradict them.";
-      case CalibrationGrade::kIncomplete:
-        return "The calibration can be used as far as it goes: " + identified() + openInWords() +
-               ". " + expectedErrors();
-      case CalibrationGrade::kComplete:
-        break;
-    }
-    return "The calibration is good to use: " + identified() +
-           (validation_ && validation_->hasVerdict() ? ", and held-out samples agree" : "") + ". " +
-           expectedErrors();
-  }
-
-  std::string identified() const {
-    const std::vector<ParameterEstimate> all = session_.parameters();
-    const auto count = static_cast<std::size_t>(
-        std::count_if(all.begin(), all.end(), [](const ParameterEstimate& parameter) {
-          return parameter.observable;
-        }));
-    return count == all.size()
-               ? "all " + number(count) + " parameters are identified"
-               : number(count) + " of " + number(all.size()) + " parameters are identified";
-  }
-
-  std::string openInWords() const {
-    if (open_.empty()) {
-      return ", but a cycle failed";
-    }
-    return ", " + number(open_.size()) + " that were asked for are not";
-  }
-
-  std::string expectedErrors() const {
-    std::string text = format("Expected error over the workspace: orientation %.2g mrad",
-                              1e3 * last_success_->orientation_uncertainty);
-    if (session_.model().hasTorqueModel()) {
-      text += format(", torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
-    }
-    return text + " (1 sigma, 95 % of all poses are better).";
-  }
-
   void collectSteps(std::vector<std::string>& steps) const {
-    if (isContradicted()) {
+    if (graded_.grade == Grade::kContradicted) {
       steps.emplace_back(
           "Find out why the held-out samples differ: compare their residuals with those of the "
           "samples in use, and check that nothing was moved in between.");
@@ -167,13 +106,14 @@ class Judge {
       }
     }
     const EstimationOptions& estimation = session_.config().estimation;
-    const std::vector<std::string> advice =
-        adviceForUnobservable(session_.model(),
-                              session_.samples(),
-                              selectObservations(session_.samples(), {Cycle::kRefine}, estimation),
-                              {Cycle::kPoles, polesCoil()},
-                              session_.state().belief.x,
-                              coordinates);
+    const std::vector<std::string> advice = adviceForUnobservable(
+        session_.model(),
+        session_.samples(),
+        selectObservations(session_.samples(), {Cycle::kRefine}, estimation),
+        {Cycle::kPoles, polesCoil()},
+        session_.state().belief.x,
+        estimation.current_threshold,
+        coordinates);
     steps.insert(steps.end(), advice.begin(), advice.end());
   }
 
@@ -255,19 +195,22 @@ class Judge {
   }
 
   void addValidation(std::vector<std::string>& steps) const {
-    if (last_success_ != nullptr && (!validation_ || !validation_->hasVerdict())) {
+    if (graded_.grade == Grade::kNotValidated) {
       steps.emplace_back(
           "Hold out samples, so that the calibration is judged by what it has not seen: capture a "
           "few poses for validation, or set validation.hold_out_every.");
     }
   }
 
+  /// Angles only: what has another unit does not compare with them.
   void addWeakest(std::vector<std::string>& steps) const {
     const std::vector<ParameterEstimate> all = session_.parameters();
-    const auto weakest = std::max_element(
-        all.begin(), all.end(), [](const ParameterEstimate& a, const ParameterEstimate& b) {
-          return a.stddev < b.stddev;
-        });
+    const ParameterEstimate* weakest = nullptr;
+    for (const ParameterEstimate& one : all) {
+      if (one.unit == "rad" && (weakest == nullptr || one.stddev > weakest->stddev)) {
+        weakest = &one;
+      }
+    }
     steps.push_back(
         format("Nothing needs to be done. The least certain parameter is %s "
                "(± %.2g mrad); further poses, planned by plan_session or plan_poses, "
@@ -279,26 +222,12 @@ class Judge {
   const CalibrationSession& session_;
   const std::vector<SampleInfluence>& influences_;
   const std::vector<ModelFit>& fits_;
-  const std::optional<HeldOutValidation> validation_;
+  const GradedCalibration graded_;
   const std::vector<std::string> open_;
   const CycleReport* last_success_ = nullptr;
 };
 
 }  // namespace
-
-std::string gradeName(CalibrationGrade grade) {
-  switch (grade) {
-    case CalibrationGrade::kComplete:
-      return "complete";
-    case CalibrationGrade::kIncomplete:
-      return "incomplete";
-    case CalibrationGrade::kContradicted:
-      return "contradicted";
-    case CalibrationGrade::kFailed:
-      break;
-  }
-  return "failed";
-}
 
 CalibrationVerdict judgeCalibration(const CalibrationSession& session,
                                     const std::vector<SampleInfluence>& influences,

@@ -5,10 +5,10 @@
 
 #include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
-#include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 
 namespace sac {
@@ -45,6 +45,7 @@ YamlLine estimateLine(const ParameterEstimate& estimate, bool is_of_cycle) {
   }
   line.add("value", yamlNumber(estimate.value)).add("stddev", yamlNumber(estimate.stddev));
   line.add(is_of_cycle ? "observable" : "identified", yamlBoolean(estimate.observable));
+  line.add("unit", yamlText(estimate.unit));
   return line;
 }
 
@@ -57,30 +58,10 @@ std::vector<std::string> estimateLines(const std::vector<ParameterEstimate>& est
   return lines;
 }
 
-const char* unitOf(const ParameterSpace& space, Eigen::Index parameter) {
-  if (parameter < space.effect()) {
-    return "rad";
-  }
-  switch (space.effects().effect(parameter - space.effect())) {
-    case LaboratoryEffect::kTorqueBias:
-    case LaboratoryEffect::kRotorUnbalance:
-      return "N·m";
-    case LaboratoryEffect::kEncoderHarmonics:
-    case LaboratoryEffect::kMarkerRegistration:
-    case LaboratoryEffect::kTrackerRegistration:
-      return "rad";
-    default:
-      return "1";
-  }
-}
-
 void writeParameters(YamlWriter& writer, const CalibrationSession& session) {
   std::vector<std::string> lines;
-  Eigen::Index parameter = 0;
   for (const ParameterEstimate& estimate : session.parameters()) {
-    YamlLine line = estimateLine(estimate, false);
-    line.add("unit", yamlText(unitOf(session.model().space(), parameter++)));
-    lines.push_back(line.text());
+    lines.push_back(estimateLine(estimate, false).text());
   }
   writer.list(1, "parameters", lines);
 }
@@ -158,7 +139,8 @@ void writeOrigin(YamlWriter& writer,
 
 void writeVerdict(YamlWriter& writer, const CalibrationVerdict& verdict) {
   YamlLine line;
-  line.add("grade", gradeName(verdict.grade)).add("sentence", yamlText(verdict.sentence));
+  line.add("grade", gradeName(verdict.graded.grade));
+  line.add("sentence", yamlText(verdict.graded.reason));
   writer.entry(1, "verdict", line.text());
   writer.list(1, "next_steps", texts(verdict.next_steps));
 }

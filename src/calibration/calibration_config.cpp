@@ -107,6 +107,9 @@ void visitOptions(Config& c, Visitor& visit) {
   }
   visit.section("validation");
   visit.option("hold_out_every", c.hold_out_every, 0);
+  visit.section("wanted_accuracy");
+  visit.option("orientation", c.wanted.orientation, ValueRange::nonNegative("rad"));
+  visit.option("torque", c.wanted.torque, ValueRange::nonNegative("N·m/A"));
 }
 
 /// Reads the options that a file gives; the others keep their values.
@@ -188,6 +191,9 @@ void validate(const CalibrationConfig& config) {
   validate(config.samples);
   validate(config.estimation);
   validate(config.tolerance);
+  requireInRange(
+      "wanted_accuracy.orientation", config.wanted.orientation, ValueRange::nonNegative("rad"));
+  requireInRange("wanted_accuracy.torque", config.wanted.torque, ValueRange::nonNegative("N·m/A"));
   requireInRange("hold_out_every",
                  config.hold_out_every,
                  ValueRange::closed(0.0, static_cast<double>(kLargestCount)));

@@ -55,6 +55,7 @@ std::vector<ParameterEstimate> parameterEstimates(const ParameterSpace& space,
     estimate.initial = initial[p];
     estimate.value = values[p];
     estimate.stddev = stddevs[p];
+    estimate.unit = space.unit(p);
     estimate.observable = !std::binary_search(unobservable.begin(), unobservable.end(), p);
     estimates.push_back(estimate);
   }
@@ -198,8 +199,13 @@ CycleOutcome runCycle(const CalibrationModel& model,
                  coordinates.unexcited.begin(),
                  coordinates.unexcited.end(),
                  std::back_inserter(coordinates.unobservable));
-  const std::vector<std::string> advice = adviceForUnobservable(
-      model, samples, problem.observations, request, state.belief.x, coordinates.unobservable);
+  const std::vector<std::string> advice = adviceForUnobservable(model,
+                                                                samples,
+                                                                problem.observations,
+                                                                request,
+                                                                state.belief.x,
+                                                                options.current_threshold,
+                                                                coordinates.unobservable);
   if (!report.message.empty()) {
     for (const std::string& sentence : advice) {
       report.message += " " + sentence;

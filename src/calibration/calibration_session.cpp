@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 
 namespace sac {
 namespace {
@@ -54,7 +55,7 @@ class StatedUncertainty {
 
  private:
   // Coordinate v of an axis is cos(polar) times the azimuth (AxisChart::aroundAngles).
-  void enterAngles(Eigen::Index at, const AngleStddev& stddev, double polar) const {
+  void enterAngles(Eigen::Index at, const AxisStddev& stddev, double polar) const {
     enter(at, stddev.polar, 1.0);
     enter(at + 1, stddev.azimuth, std::cos(polar));
   }
@@ -209,7 +210,8 @@ std::vector<ParameterEstimate> CalibrationSession::parameters() const {
                           nominal[p],
                           values[p],
                           stddevs[p],
-                          state_.identified[static_cast<std::size_t>(p)]});
+                          state_.identified[static_cast<std::size_t>(p)],
+                          space.unit(p)});
   }
   return parameters;
 }
@@ -223,6 +225,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   const ParameterSpace& space = model_.space();
   const Actuator calibrated = space.actuatorAt(state_.belief.x);
   const std::vector<ParameterEstimate> values = parameters();
+  const ParameterStddevs identified = identifiedStddevs(space, state_);
   const auto moved = [this](Eigen::Index first, Eigen::Index count) {
     return !state_.belief.x.segment(first, count).isZero(0.0);
   };
@@ -249,7 +252,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
       result.actuator.poles[i] = calibrated.poles[i];
     }
     result.actuator.poles[i].gain = calibrated.poles[i].gain;
-    result.stddevs.poles[i] = {stddev(at), stddev(at + 1)};
+    result.stddevs.poles[i] = {stddev(at), stddev(at + 1), identified.poles[i].gain};
   }
   result.stddevs.coils.resize(space.coils());
   for (std::size_t j = 0; j < space.coils(); ++j) {
@@ -258,7 +261,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
       result.actuator.coils[j] = calibrated.coils[j];
     }
     result.actuator.coils[j].gain = calibrated.coils[j].gain;
-    result.stddevs.coils[j] = {stddev(at), stddev(at + 1)};
+    result.stddevs.coils[j] = {stddev(at), stddev(at + 1), identified.coils[j].gain};
   }
   result.actuator.torque_curve = calibrated.torque_curve;
   result.calibration = record(origin);

@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {
@@ -64,6 +65,28 @@ std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
     }
   }
   return counts;
+}
+
+/// Poses with an orientation that differ by the least motion in some joint, up to a number of them.
+std::size_t differentPoses(const std::vector<Sample>& samples,
+                           double least_motion,
+                           std::size_t enough) {
+  std::vector<Eigen::Vector3d> poses;
+  for (const Sample& sample : samples) {
+    if (sample.validation || !sample.has_orientation) {
+      continue;
+    }
+    const bool is_new = std::all_of(poses.begin(), poses.end(), [&](const Eigen::Vector3d& pose) {
+      return (pose - sample.joint_position).cwiseAbs().maxCoeff() >= least_motion;
+    });
+    if (is_new) {
+      poses.push_back(sample.joint_position);
+    }
+    if (poses.size() == enough) {
+      break;
+    }
+  }
+  return poses.size();
 }
 
 }  // namespace
@@ -127,6 +150,37 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
     requests.push_back({Cycle::kRefine});
   }
   return expandCoils(requests, model, samples, options);
+}
+
+std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
+                                     const std::vector<Sample>& samples,
+                                     const EstimationOptions& options) {
+  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
+  const auto has_samples = [&](const CycleRequest& request) {
+    const std::size_t needed = demandOf(request.cycle, model.space().poles()).needed;
+    switch (request.cycle) {
+      case Cycle::kJoint:
+        return differentPoses(samples, options.min_joint_motion, needed) == needed;
+      case Cycle::kPoles:
+      case Cycle::kCoil:
+        return counts.at(request.coil.value()) >= needed;
+      case Cycle::kRefine:
+        break;
+    }
+    return true;
+  };
+  std::vector<CycleRequest> cycles;
+  bool has_poles = false;
+  for (const CycleRequest& request : possibleCycles(model, samples, options)) {
+    if (!has_samples(request)) {
+      continue;
+    }
+    has_poles = has_poles || request.cycle == Cycle::kPoles;
+    if (request.cycle != Cycle::kCoil || has_poles) {
+      cycles.push_back(request);
+    }
+  }
+  return cycles;
 }
 
 std::string cycleText(const CycleRequest& request) {

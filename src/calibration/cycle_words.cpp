@@ -5,11 +5,10 @@
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {
-
-constexpr std::size_t kFewestPoses = 3;  // nine unknowns, three equations a pose
 
 std::string cycleInWords(const CycleRequest& request) {
   switch (request.cycle) {
@@ -78,12 +77,14 @@ std::string refusal(const CalibrationModel& model,
              std::to_string(numberOrZero(request.coil)) + ".";
     }
   }
-  if (request.cycle == Cycle::kJoint && observations.size() < kFewestPoses) {
+  const CycleDemand demand = demandOf(request.cycle, space.poles());
+  if (request.cycle == Cycle::kJoint && observations.size() < demand.needed) {
     return format(
         "%zu samples have an orientation: capture at least %zu poses with the tracker on "
-        "(10 are advised).",
+        "(%zu are advised).",
         observations.size(),
-        kFewestPoses);
+        demand.needed,
+        demand.advised);
   }
   if (observations.empty()) {
     return needs_coil ? "No sample has a torque with only coil " +

@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 
 namespace sac {
 namespace {
@@ -117,39 +118,6 @@ std::string poseInWords(const CalibrationModel& model, const Eigen::Vector3d& q)
   return words;
 }
 
-/// Whether any torque observation has this pole within reach of an excited coil (or this coil of a
-/// pole) at x.
-bool isSeen(const CalibrationModel& model,
-            const std::vector<Sample>& samples,
-            const std::vector<Observation>& observations,
-            const Eigen::VectorXd& x,
-            Part part,
-            std::size_t index) {
-  const Actuator actuator = model.space().actuatorAt(x);
-  const TorqueGeometry geometry = torqueGeometry(actuator);
-  const JointGeometry joints = jointGeometry(actuator.joints);
-  for (const Observation& observation : observations) {
-    const Sample& sample = samples[observation.sample];
-    const Eigen::Matrix3d R = rotorOrientation(joints, sample.joint_position);
-    for (Eigen::Index j = 0; j < sample.current.size(); ++j) {
-      if (sample.current[j] == 0.0 ||
-          (part == Part::kCoil && j != static_cast<Eigen::Index>(index))) {
-        continue;
-      }
-      const Eigen::Vector3d coil_rotor = R.transpose() * geometry.coils_stator.col(j);
-      for (Eigen::Index i = 0; i < geometry.poles_rotor.cols(); ++i) {
-        if (part == Part::kPole && i != static_cast<Eigen::Index>(index)) {
-          continue;
-        }
-        if (interacts(model.curve(), geometry.poles_rotor.col(i), coil_rotor)) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
-}
-
 std::string adviceForJoint(const CalibrationModel& model, Part part, std::size_t index) {
   const std::string& name = model.space().nominal().joints[index].name;
   if (part == Part::kJointOffset) {
@@ -168,18 +136,17 @@ std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinat
 }
 
 std::string adviceForTorque(const CalibrationModel& model,
-                            const std::vector<Sample>& samples,
-                            const std::vector<Observation>& observations,
                             const CycleRequest& request,
                             const Eigen::VectorXd& x,
+                            const SampleCoverage& coverage,
                             Part part,
                             std::size_t index) {
   const bool is_pole = part == Part::kPole;
+  const bool is_seen = (is_pole ? coverage.poles : coverage.coils).at(index) > 0;
   const std::size_t coil = is_pole ? request.coil.value_or(0) : index;
   std::string words = (is_pole ? "Pole " : "Coil ") + std::to_string(numberOf(index));
-  words += isSeen(model, samples, observations, x, part, index)
-               ? " is seen too weakly: "
-               : (is_pole ? " is seen by no sample: " : " sees no pole in any sample: ");
+  words += is_seen ? " is seen too weakly: "
+                   : (is_pole ? " is seen by no sample: " : " sees no pole in any sample: ");
   const auto pose =
       bestPose(model, x, coil, is_pole ? std::optional<std::size_t>(index) : std::nullopt);
   if (!pose) {
@@ -197,7 +164,13 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
                                                const std::vector<Observation>& observations,
                                                const CycleRequest& request,
                                                const Eigen::VectorXd& x,
+                                               double current_threshold,
                                                const std::vector<Eigen::Index>& unobservable) {
+  if (unobservable.empty()) {
+    return {};
+  }
+  const SampleCoverage coverage =
+      sampleCoverage(model, samples, observations, x, current_threshold);
   std::vector<std::string> advice;
   std::map<std::pair<Part, std::size_t>, bool> told;
   for (const Eigen::Index parameter : unobservable) {
@@ -210,10 +183,9 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
       advice.push_back(adviceForEffect(model, id.index));
       continue;
     }
-    advice.push_back(
-        part == Part::kJointOffset || part == Part::kJointAxis
-            ? adviceForJoint(model, part, id.index)
-            : adviceForTorque(model, samples, observations, request, x, part, id.index));
+    advice.push_back(part == Part::kJointOffset || part == Part::kJointAxis
+                         ? adviceForJoint(model, part, id.index)
+                         : adviceForTorque(model, request, x, coverage, part, id.index));
   }
   return advice;
 }

@@ -5,15 +5,17 @@
 #include <optional>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 
 namespace sac {
 namespace {
 
-// With fewer samples a cycle may run, but its result would be poor (paper, sections 4.1 and 4.2).
-constexpr std::size_t kAdvisedPoses = 10;
-constexpr std::size_t kAdvisedTorquesPerPole = 3;
-constexpr std::size_t kAdvisedTorquesPerCoil = 4;
+bool allIdentified(const CalibrationState& state, Eigen::Index first, Eigen::Index last) {
+  const auto begin = state.identified.begin();
+  return std::find(begin + first, begin + last, false) == begin + last;
+}
 
 bool anyIdentified(const CalibrationState& state, Eigen::Index first, Eigen::Index last) {
   const auto begin = state.identified.begin();
@@ -61,13 +63,15 @@ class Guide {
     return selectObservations(samples_, request, options_).size();
   }
 
+  std::size_t advised(Cycle cycle) const { return demandOf(cycle, model_.space().poles()).advised; }
+
   std::string jointStep() const {
     const std::size_t held = serving({Cycle::kJoint});
-    if (held >= kAdvisedPoses) {
+    if (held >= advised(Cycle::kJoint)) {
       return "Call calibrate_joint: " + number(held) + " samples have an orientation.";
     }
     return "Move the rotor to a new pose with each joint turned, let it rest, and call capture: " +
-           missing(held, kAdvisedPoses) + " with an orientation.";
+           missing(held, advised(Cycle::kJoint)) + " with an orientation.";
   }
 
   /// Coil that was excited alone most often; the first when none was.
@@ -87,14 +91,13 @@ class Guide {
   std::string polesStep() const {
     const std::size_t coil = referenceCoil();
     const std::size_t held = serving({Cycle::kPoles, coil});
-    const std::size_t advised = kAdvisedTorquesPerPole * model_.space().poles();
-    if (held >= advised) {
+    if (held >= advised(Cycle::kPoles)) {
       return "Call calibrate_poles with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
     }
     return "Excite coil " + number(numberOf(coil)) +
-           " alone and capture at poses that bring each pole near it: " + missing(held, advised) +
-           ".";
+           " alone and capture at poses that bring each pole near it: " +
+           missing(held, advised(Cycle::kPoles)) + ".";
   }
 
   std::optional<std::size_t> firstOpenCoil() const {
@@ -108,13 +111,13 @@ class Guide {
 
   std::string coilStep(std::size_t coil) const {
     const std::size_t held = serving({Cycle::kCoil, coil});
-    if (held >= kAdvisedTorquesPerCoil) {
+    if (held >= advised(Cycle::kCoil)) {
       return "Call calibrate_coil with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
     }
     return "Excite coil " + number(numberOf(coil)) +
            " alone and capture at poses that bring poles near it: " +
-           missing(held, kAdvisedTorquesPerCoil) + ".";
+           missing(held, advised(Cycle::kCoil)) + ".";
   }
 
   std::string closingStep() const {
@@ -132,6 +135,30 @@ class Guide {
   const SessionProgress& progress_;
   const EstimationOptions& options_;
 };
+
+std::uint32_t count(std::size_t value) {
+  return static_cast<std::uint32_t>(value);
+}
+
+void addCoverage(const CalibrationModel& model,
+                 const SampleCoverage& seen,
+                 const CalibrationState& state,
+                 SessionProgress& progress) {
+  const ParameterSpace& space = model.space();
+  progress.joint = {seen.orientations,
+                    count(demandOf(Cycle::kJoint, space.poles()).advised),
+                    allIdentified(state, space.joint(0), space.pole(0))};
+  for (std::size_t i = 0; i < seen.poles.size(); ++i) {
+    progress.poles.push_back({seen.poles[i],
+                              count(kAdvisedTorquesPerPole),
+                              allIdentified(state, space.pole(i), space.pole(i + 1))});
+  }
+  for (std::size_t j = 0; j < seen.coils.size(); ++j) {
+    progress.coils.push_back({seen.coils[j],
+                              count(kAdvisedTorquesPerCoil),
+                              allIdentified(state, space.coil(j), space.coil(j + 1))});
+  }
+}
 
 }  // namespace
 
@@ -157,6 +184,11 @@ SessionProgress progressOf(const CalibrationModel& model,
   for (std::size_t j = 0; j < space.coils(); ++j) {
     progress.coil_done.push_back(anyIdentified(state, space.coil(j), space.coil(j + 1)));
   }
+  addCoverage(model,
+              sampleCoverage(model, samples, state.belief.x, options.current_threshold),
+              state,
+              progress);
+  progress.next_cycles = nextCycles(model, samples, options);
   return progress;
 }
 

@@ -81,6 +81,20 @@ const char* effectName(LaboratoryEffect effect) {
   return kNames[static_cast<std::size_t>(effect)];
 }
 
+const char* effectUnit(LaboratoryEffect effect) {
+  switch (effect) {
+    case LaboratoryEffect::kTorqueBias:
+    case LaboratoryEffect::kRotorUnbalance:
+      return "N·m";
+    case LaboratoryEffect::kEncoderHarmonics:
+    case LaboratoryEffect::kMarkerRegistration:
+    case LaboratoryEffect::kTrackerRegistration:
+      return "rad";
+    default:
+      return "1";
+  }
+}
+
 std::string describe(const EffectSelection& selection) {
   std::string names;
   for (std::size_t e = 0; e < kLaboratoryEffects; ++e) {

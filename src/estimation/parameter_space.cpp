@@ -132,6 +132,10 @@ std::string ParameterSpace::name(Eigen::Index parameter) const {
   throw DataError("Parameter " + std::to_string(parameter) + " does not exist.");
 }
 
+std::string ParameterSpace::unit(Eigen::Index parameter) const {
+  return parameter < effect() ? "rad" : effectUnit(effects_.effect(parameter - effect()));
+}
+
 Actuator ParameterSpace::actuatorAt(const Eigen::VectorXd& x) const {
   Actuator actuator = nominal_;
   for (std::size_t k = 0; k < kJoints; ++k) {

@@ -58,7 +58,7 @@ auto values(const JointAxis& joint, const JointStddev& stddev) {
 }
 
 template <typename PoleOrCoil>
-auto values(const PoleOrCoil& axis, const AngleStddev& stddev) {
+auto values(const PoleOrCoil& axis, const AxisStddev& stddev) {
   return std::make_tuple(axis.polar, axis.azimuth, axis.gain, stddev.polar, stddev.azimuth);
 }
 

@@ -47,20 +47,22 @@ CalibrationVerdict verdictOf(const CalibrationSession& session) {
 }
 
 TEST(CalibrationVerdict, NothingWorksWithoutASuccessfulCycle) {
-  EXPECT_EQ(verdictOf(sessionWith({}, {})).grade, CalibrationGrade::kFailed);
+  EXPECT_EQ(verdictOf(sessionWith({}, {})).graded.grade, Grade::kFailed);
   const CalibrationVerdict verdict = verdictOf(sessionWith({}, {{Cycle::kJoint}}));
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kFailed);
+  EXPECT_EQ(verdict.graded.grade, Grade::kFailed);
   EXPECT_NE(stepsOf(verdict).find("capture at least 3 poses"), std::string::npos)
       << stepsOf(verdict);
 }
 
-TEST(CalibrationVerdict, CompleteWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
+TEST(CalibrationVerdict, GoodWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
   const std::vector<Sample> samples = sessionSamples();
   const CalibrationVerdict verdict =
       verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
-  EXPECT_NE(verdict.sentence.find("held-out samples agree"), std::string::npos) << verdict.sentence;
-  EXPECT_NE(verdict.sentence.find("orientation 0."), std::string::npos) << verdict.sentence;
+  EXPECT_EQ(verdict.graded.grade, Grade::kGood);
+  EXPECT_NE(verdict.graded.reason.find("held-out samples agree"), std::string::npos)
+      << verdict.graded.reason;
+  EXPECT_NE(verdict.graded.reason.find("orientation 0."), std::string::npos)
+      << verdict.graded.reason;
   ASSERT_EQ(verdict.next_steps.size(), 1U) << stepsOf(verdict);
   EXPECT_EQ(verdict.next_steps[0].find("Nothing needs to be done."), 0U);
 }
@@ -74,8 +76,8 @@ TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
   }
   const CalibrationVerdict verdict =
       verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kContradicted);
-  EXPECT_EQ(verdict.sentence.find("Do not use this calibration yet"), 0U);
+  EXPECT_EQ(verdict.graded.grade, Grade::kContradicted);
+  EXPECT_EQ(verdict.graded.reason.find("Do not use this calibration yet"), 0U);
   EXPECT_EQ(verdict.next_steps[0].find("Find out why the held-out samples differ"), 0U);
 }
 
@@ -97,9 +99,10 @@ TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {
   }
   const CalibrationVerdict verdict =
       verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kPoles, 0}}));
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kIncomplete);
-  EXPECT_NE(verdict.sentence.find("2 that were asked for are not"), std::string::npos)
-      << verdict.sentence;
+  // Only orientations are held out: nothing judges the poles.
+  EXPECT_EQ(verdict.graded.grade, Grade::kNotValidated);
+  EXPECT_NE(verdict.graded.reason.find("2 that were asked for are not"), std::string::npos)
+      << verdict.graded.reason;
   EXPECT_NE(stepsOf(verdict).find("Pole 5 is seen by no sample: excite coil 1"), std::string::npos)
       << stepsOf(verdict);
 }
@@ -110,8 +113,9 @@ TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
     sample.validation = false;
   }
   const CalibrationVerdict verdict = verdictOf(sessionWith(samples, {{Cycle::kJoint}}));
-  EXPECT_EQ(verdict.grade, CalibrationGrade::kComplete);
-  EXPECT_NE(verdict.sentence.find("9 of 73 parameters"), std::string::npos) << verdict.sentence;
+  EXPECT_EQ(verdict.graded.grade, Grade::kNotValidated);
+  EXPECT_NE(verdict.graded.reason.find("9 of 73 parameters"), std::string::npos)
+      << verdict.graded.reason;
   EXPECT_NE(stepsOf(verdict).find("Call calibrate_poles with coil 1"), std::string::npos)
       << stepsOf(verdict);
 }

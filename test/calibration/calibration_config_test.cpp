@@ -78,6 +78,7 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
   config.tolerance = {0.01, 0.02, 0.04, 0.05, 0.06};
   config.effects.modelled.fill(true);
   config.hold_out_every = 5;
+  config.wanted = {1e-3, 2e-3};
 
   const std::string text = renderCalibrationConfig(config);
   const CalibrationConfig back = parseCalibrationConfig(text, "c.yaml");

@@ -39,6 +39,21 @@ Sample orientationSample() {
   return sample;
 }
 
+/// At different poses.
+std::vector<Sample> orientationSamples(int count) {
+  std::vector<Sample> samples;
+  for (int n = 0; n < count; ++n) {
+    samples.push_back(orientationSample());
+    samples.back().joint_position[n % 3] = 0.2 * (n + 1);
+  }
+  return samples;
+}
+
+std::vector<Sample> joined(std::vector<Sample> one, const std::vector<Sample>& other) {
+  one.insert(one.end(), other.begin(), other.end());
+  return one;
+}
+
 CalibrationModel paperModel() {
   return CalibrationModel(ParameterSpace(scenarios::paperNominal()));
 }
@@ -84,6 +99,27 @@ TEST(CycleSelection, PolesGoWithTheCoilThatHasMostSamples) {
   samples.push_back(orientationSample());
   EXPECT_EQ(textOf(possibleCycles(paperModel(), samples, {})),
             "joint,poles:3,coil:2,coil:5,refine");
+}
+
+TEST(CycleSelection, APlannedSessionGoesFromTheJointToTheRefinement) {
+  const std::vector<Sample> samples =
+      joined(samplesWithCoils({2, 2, 3, 3, 3}), orientationSamples(3));
+  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,refine");
+}
+
+TEST(CycleSelection, PolesAndOtherCoilsFollowWhereOneCoilCanTellEveryPole) {
+  std::vector<Sample> samples =
+      joined(samplesWithCoils({1, 4, 4, 2, 2, 2, 2, 2, 2, 2, 2, 2}), orientationSamples(3));
+  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,poles:2,coil:1,coil:4,refine");
+  samples.erase(samples.begin() + 3);
+  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,refine");
+}
+
+TEST(CycleSelection, TheJointNeedsThreeOrientationsAtDifferentPoses) {
+  EXPECT_EQ(textOf(nextCycles(paperModel(), orientationSamples(2), {})), "");
+  EXPECT_EQ(textOf(nextCycles(paperModel(), orientationSamples(3), {})), "joint");
+  const std::vector<Sample> still(20, orientationSample());
+  EXPECT_EQ(textOf(nextCycles(paperModel(), still, {})), "");
 }
 
 TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {

@@ -157,6 +157,27 @@ TEST_F(PoleCalibration, ItsAdviceMakesTheMissedPoleObservable) {
   EXPECT_TRUE(better.state.identified[static_cast<std::size_t>(space_.pole(4))]);
 }
 
+TEST_F(PoleCalibration, CurrentsBelowTheThresholdShowNoPole) {
+  scenarios::Generator generator(17);
+  std::vector<Eigen::Vector3d> poses;
+  for (const Eigen::Vector3d& q : scenarios::posesThatSeeEveryPole(truth_, 0, 60, 0.1, generator)) {
+    if (std::abs(std::remainder(q[2] - kPi, 2.0 * kPi)) > 0.75) {
+      poses.push_back(q);
+    }
+  }
+  std::vector<Sample> data = samples(poses, kNoise, 1);
+  int sign = 1;
+  for (Sample& sample : data) {
+    for (Eigen::Index j = 1; j < sample.current.size(); ++j) {
+      sample.current[j] = 1e-3 * sign;  // what an amplifier measures of a coil that is off
+      sign = -sign;
+    }
+  }
+  const CycleOutcome outcome = run(data);
+  EXPECT_TRUE(tells(outcome, "Pole 5 is seen by no sample")) << outcome.report.message;
+  EXPECT_FALSE(tells(outcome, "Pole 5 is seen too weakly")) << outcome.report.message;
+}
+
 TEST_F(PoleCalibration, UsesOnlySamplesWithItsCoilAlone) {
   scenarios::Generator generator(18);
   const auto poses = scenarios::posesThatSeeEveryPole(truth_, 0, 30, 0.3, generator);

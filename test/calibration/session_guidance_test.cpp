@@ -91,6 +91,40 @@ TEST(SessionGuidance, CountsTorquesPerCoil) {
   EXPECT_FALSE(progress.coil_done[0]);
 }
 
+TEST(SessionGuidance, TellsHowWellEachPoleAndCoilIsSeen) {
+  CalibrationSession session = paperSession();
+  const SessionProgress before = progressOf(session);
+  EXPECT_EQ(before.joint.samples, 10U);
+  EXPECT_TRUE(before.joint.isSeenWell());
+  EXPECT_FALSE(before.joint.identified);
+  ASSERT_EQ(before.poles.size(), 8U);
+  ASSERT_EQ(before.coils.size(), 24U);
+  EXPECT_EQ(before.coils[0].samples, 30U);
+  EXPECT_TRUE(before.coils[23].isSeenWell());
+  session.run({Cycle::kJoint});
+  session.run({Cycle::kPoles, 0});
+  const SessionProgress after = progressOf(session);
+  EXPECT_TRUE(after.joint.identified);
+  EXPECT_TRUE(after.poles[4].identified);
+  EXPECT_TRUE(after.coils[0].identified);
+  EXPECT_FALSE(after.coils[1].identified);
+}
+
+TEST(SessionGuidance, HeldOutSamplesCoverNothing) {
+  scenarios::Generator generator(1);
+  std::vector<Sample> samples = scenarios::paperSession(
+      scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator);
+  for (Sample& sample : samples) {
+    sample.validation = true;
+  }
+  const SessionProgress progress =
+      progressOf(CalibrationSession({scenarios::paperNominal()}, samples, {}));
+  EXPECT_EQ(progress.joint.samples, 0U);
+  EXPECT_EQ(progress.poles[0].samples, 0U);
+  EXPECT_FALSE(progress.coils[0].isSeenWell());
+  EXPECT_TRUE(progress.next_cycles.empty());
+}
+
 TEST(SessionGuidance, AJointAloneIsDoneAfterItsCycle) {
   Actuator joint_only = scenarios::paperNominal();
   joint_only.poles.clear();

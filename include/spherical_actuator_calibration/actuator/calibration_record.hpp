@@ -17,17 +17,18 @@ struct JointStddev {
   std::optional<double> axis_v;  ///< along e_v
 };
 
-/// Standard deviations [rad] of the angles of one pole or coil; absent where not identified.
-struct AngleStddev {
-  std::optional<double> polar;
-  std::optional<double> azimuth;
+/// Standard deviations of one pole or coil; absent where not identified.
+struct AxisStddev {
+  std::optional<double> polar;                ///< [rad]
+  std::optional<double> azimuth;              ///< [rad]
+  std::optional<double> gain = std::nullopt;  ///< [1]
 };
 
 /// Standard deviations of an actuator's parameters, entry by entry as in the Actuator.
 struct ParameterStddevs {
   std::array<JointStddev, kJoints> joints;
-  std::vector<AngleStddev> poles;
-  std::vector<AngleStddev> coils;
+  std::vector<AxisStddev> poles;
+  std::vector<AxisStddev> coils;
 };
 
 /// A recording that a calibration rests on.

@@ -15,6 +15,13 @@ struct MeasurementFrames {
   std::string rotor = "rotor";    ///< of measured_torque
 };
 
+/// Expected errors over the workspace (1 sigma, 95th percentile) from which on a calibration is
+/// only usable; 0: any will do.
+struct WantedAccuracy {
+  double orientation = 0.0;  ///< [rad]
+  double torque = 0.0;       ///< [N·m/A]
+};
+
 /// Everything about a calibration that is a matter of choice. The defaults are those of the members
 /// and of the shipped config/calibration.yaml.
 struct CalibrationConfig {
@@ -27,6 +34,7 @@ struct CalibrationConfig {
   EffectSelection effects;
   /// Every so manieth sample is held out for validation; 0: none but those recorded so.
   int hold_out_every = 0;
+  WantedAccuracy wanted;
 };
 
 /// Throws ConfigError that names the option, its value and the allowed range.

@@ -12,7 +12,7 @@
 
 namespace sac {
 
-/// One parameter after a cycle (message ParameterEstimate). Angles in rad.
+/// One parameter after a cycle (message ParameterEstimate), in its unit.
 struct ParameterEstimate {
   std::string name;
   double nominal = 0.0;
@@ -22,6 +22,7 @@ struct ParameterEstimate {
   /// False: the value is the initial one, or, where the parameter takes part in an open direction,
   /// differs from it by no more than what the data tell.
   bool observable = false;
+  std::string unit = "rad";  ///< of all its numbers: rad, N·m, or 1
 };
 
 /// One observation after a cycle (message SampleResidual).

@@ -29,6 +29,13 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
                                          const std::vector<Sample>& samples,
                                          const EstimationOptions& options);
 
+/// Those of the possible cycles that have as many samples as they need (CycleDemand; for the joint,
+/// at different poses), in their order. Each presumes that those before it have run: other coils
+/// need the poles.
+std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
+                                     const std::vector<Sample>& samples,
+                                     const EstimationOptions& options);
+
 /// "joint", "poles:1", "coil:3", "refine": inverse of parseCycles() for one request.
 std::string cycleText(const CycleRequest& request);
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
@@ -11,8 +12,21 @@
 
 namespace sac {
 
+/// How well the samples in use look at the joint, a pole or a coil (message Coverage).
+struct Coverage {
+  std::uint32_t samples = 0;  ///< that tell something about it; held-out ones never count
+  std::uint32_t wanted = 1;   ///< samples from which on it is seen well enough
+  bool identified = false;    ///< all its parameters are
+
+  bool isSeenWell() const { return samples >= wanted; }
+};
+
 /// How far a calibration session has come (message CalibrationStatus).
 struct SessionProgress {
+  Coverage joint;               ///< samples with an orientation
+  std::vector<Coverage> poles;  ///< torque samples in which an excited coil reaches the pole
+  std::vector<Coverage> coils;  ///< torque samples in which the excited coil reaches some pole
+  std::vector<CycleRequest> next_cycles;      ///< see nextCycles()
   std::uint32_t orientation_samples = 0;      ///< that carry an orientation
   std::vector<std::uint32_t> torque_samples;  ///< that carry a torque, per coil that they excite
   std::uint32_t validation_samples = 0;       ///< held out

@@ -29,6 +29,9 @@ inline constexpr std::size_t kLaboratoryEffects = 10;
 /// torque_bias, rotor_unbalance and so on: as in configurations and parameter names.
 const char* effectName(LaboratoryEffect effect);
 
+/// Unit of an effect's values: rad, N·m, or 1.
+const char* effectUnit(LaboratoryEffect effect);
+
 /// Effects that a calibration models; the others are taken to be absent.
 struct EffectSelection {
   std::array<bool, kLaboratoryEffects> modelled = {};

@@ -74,6 +74,8 @@ class ParameterSpace {
   /// Name as in ParameterEstimate messages: joint_1/offset, joint_1/axis_u, pole_3/polar,
   /// coil_7/azimuth, torque_bias/x.
   std::string name(Eigen::Index parameter) const;
+  /// Unit of its value for people: rad, N·m, or 1.
+  std::string unit(Eigen::Index parameter) const;
 
   /// Actuator at the coordinates: what they do not hold is as in the nominal one. Of the effects,
   /// those of strength are in its gains and its torque curve.

@@ -7,8 +7,9 @@ from . import figures
 from .numbers import change_of, plus_minus, signed, significant, with_unit
 
 GRADES = {
-    "complete": "Complete",
-    "incomplete": "Incomplete",
+    "good": "Good",
+    "usable": "Usable",
+    "not_validated": "Not validated",
     "contradicted": "Contradicted",
     "failed": "Failed",
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
@@ -20,6 +21,7 @@ struct SampleCoverage {
     double highest = 0.0;
   };
   std::array<Motion, kJoints> joints;
+  std::uint32_t orientations = 0;  ///< samples with an orientation
   /// Torque samples in which some excited coil reaches the pole.
   std::vector<std::uint32_t> poles;
   /// Torque samples in which the coil is excited and reaches some pole.
@@ -30,6 +32,13 @@ struct SampleCoverage {
 /// current from which on a coil counts as excited [A].
 SampleCoverage sampleCoverage(const CalibrationModel& model,
                               const std::vector<Sample>& samples,
+                              const Eigen::VectorXd& x,
+                              double threshold);
+
+/// The same over what serves one cycle: torques count where they are among the observations.
+SampleCoverage sampleCoverage(const CalibrationModel& model,
+                              const std::vector<Sample>& samples,
+                              const std::vector<Observation>& observations,
                               const Eigen::VectorXd& x,
                               double threshold);
 

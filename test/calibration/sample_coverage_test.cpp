@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
+#include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 
 #include <cstddef>
 #include <vector>

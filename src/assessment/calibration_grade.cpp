@@ -1,0 +1,172 @@
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "spherical_actuator_calibration/base/text_format.hpp"
+
+namespace sac {
+namespace {
+
+std::string number(std::size_t value) {
+  return std::to_string(value);
+}
+
+/// Collects what speaks for and against one session.
+class Examiner {
+ public:
+  explicit Examiner(const CalibrationSession& session)
+      : session_(session), parameters_(session.parameters()), validation_(session.validation()) {
+    identified_ = static_cast<std::size_t>(
+        std::count_if(parameters_.begin(), parameters_.end(), [](const ParameterEstimate& one) {
+          return one.observable;
+        }));
+    for (const CycleReport& report : session.reports()) {
+      last_success_ = report.success ? &report : last_success_;
+    }
+  }
+
+  GradedCalibration graded() const {
+    const Grade grade = this->grade();
+    return {grade, reason(grade)};
+  }
+
+ private:
+  Grade grade() const {
+    if (identified_ == 0) {
+      return Grade::kFailed;
+    }
+    if (isContradicted()) {
+      return Grade::kContradicted;
+    }
+    if (!isValidated()) {
+      return Grade::kNotValidated;
+    }
+    return shortcoming().empty() ? Grade::kGood : Grade::kUsable;
+  }
+
+  bool isContradicted() const {
+    return validation_ && validation_->hasVerdict() && validation_->probability < kLeastProbability;
+  }
+
+  /// Torques judge everything, orientations the joint only.
+  bool isValidated() const {
+    if (!validation_ || !validation_->hasVerdict()) {
+      return false;
+    }
+    return !isTorqueIdentified() || validation_->torques > validation_->unjudged_torques;
+  }
+
+  bool isTorqueIdentified() const {
+    const ParameterSpace& space = session_.model().space();
+    const auto first = session_.state().identified.begin();
+    const auto last = first + space.effect();
+    return std::find(first + space.pole(0), last, true) != last;
+  }
+
+  /// What keeps a calibration that held-out samples agree with from being good; empty: nothing.
+  std::string shortcoming() const {
+    const std::vector<std::string> open = session_.openParameters();
+    if (!open.empty()) {
+      return ", " + number(open.size()) + " that were asked for are not";
+    }
+    if (identified_ < parameters_.size()) {
+      return ", the others are not";
+    }
+    return missedAccuracy();
+  }
+
+  std::string missedAccuracy() const {
+    const WantedAccuracy& wanted = session_.config().wanted;
+    if (last_success_ == nullptr) {
+      return {};
+    }
+    if (wanted.orientation > 0.0 && last_success_->orientation_uncertainty > wanted.orientation) {
+      return format(", but the expected orientation error is above the wanted %.2g mrad",
+                    1e3 * wanted.orientation);
+    }
+    if (wanted.torque > 0.0 && last_success_->torque_uncertainty > wanted.torque) {
+      return format(", but the expected torque error is above the wanted %.2g mN.m per ampere",
+                    1e3 * wanted.torque);
+    }
+    return {};
+  }
+
+  std::string reason(Grade grade) const {
+    switch (grade) {
+      case Grade::kFailed:
+        return session_.reports().empty() ? "Nothing is calibrated: no cycle was run."
+                                          : "Nothing is calibrated: no cycle succeeded.";
+      case Grade::kContradicted:
+        return "Do not use this calibration yet: " + identified() +
+               ", but the held-out samples contradict them.";
+      case Grade::kNotValidated:
+        return "The calibration is not validated: " + identified() + shortcoming() + unjudged() +
+               expectedErrors();
+      case Grade::kUsable:
+        return "The calibration can be used as far as it goes: " + identified() + shortcoming() +
+               "; held-out samples agree." + expectedErrors();
+      case Grade::kGood:
+        break;
+    }
+    return "The calibration is good to use: " + identified() + ", and held-out samples agree." +
+           expectedErrors();
+  }
+
+  std::string unjudged() const {
+    return validation_ && validation_->hasVerdict() ? "; no held-out torque judges poles and coils."
+                                                    : "; no held-out sample judges them.";
+  }
+
+  std::string identified() const {
+    return identified_ == parameters_.size()
+               ? "all " + number(parameters_.size()) + " parameters are identified"
+               : number(identified_) + " of " + number(parameters_.size()) +
+                     " parameters are identified";
+  }
+
+  /// Of the last successful cycle; a description that was calibrated before tells none.
+  std::string expectedErrors() const {
+    if (last_success_ == nullptr) {
+      return {};
+    }
+    std::string text = format(" Expected error over the workspace: orientation %.2g mrad",
+                              1e3 * last_success_->orientation_uncertainty);
+    if (session_.model().hasTorqueModel()) {
+      text += format(", torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
+    }
+    return text + " (1 sigma, 95 % of all poses are better).";
+  }
+
+  const CalibrationSession& session_;
+  const std::vector<ParameterEstimate> parameters_;
+  const std::optional<HeldOutValidation> validation_;
+  std::size_t identified_ = 0;
+  const CycleReport* last_success_ = nullptr;
+};
+
+}  // namespace
+
+std::string gradeName(Grade grade) {
+  switch (grade) {
+    case Grade::kGood:
+      return "good";
+    case Grade::kUsable:
+      return "usable";
+    case Grade::kNotValidated:
+      return "not_validated";
+    case Grade::kContradicted:
+      return "contradicted";
+    case Grade::kFailed:
+      break;
+  }
+  return "failed";
+}
+
+GradedCalibration gradeCalibration(const CalibrationSession& session) {
+  return Examiner(session).graded();
+}
+
+}  // namespace sac

@@ -1,0 +1,21 @@
+#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
+
+namespace sac {
+
+CycleDemand demandOf(Cycle cycle, std::size_t poles) {
+  switch (cycle) {
+    case Cycle::kJoint:
+      return {3, 10};  // nine unknowns, three equations a pose
+    case Cycle::kPoles:
+      // Two unknowns for each pole and for the coil, three equations a torque, of which a good
+      // choice of poses tells every pole.
+      return {poles + 1, kAdvisedTorquesPerPole * poles};
+    case Cycle::kCoil:
+      return {1, kAdvisedTorquesPerCoil};
+    case Cycle::kRefine:
+      break;
+  }
+  return {1, 1};
+}
+
+}  // namespace sac

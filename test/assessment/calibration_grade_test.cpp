@@ -1,0 +1,115 @@
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+const std::vector<CycleRequest> kWholeCalibration = {{Cycle::kJoint}, {Cycle::kRefine}};
+
+/// The paper's session; every tenth sample is held out.
+std::vector<Sample> sessionSamples() {
+  scenarios::Generator generator(4);
+  std::vector<Sample> samples =
+      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
+  for (std::size_t n = 9; n < samples.size(); n += 10) {
+    samples[n].validation = true;
+  }
+  return samples;
+}
+
+GradedCalibration gradeOf(const std::vector<Sample>& samples,
+                          const std::vector<CycleRequest>& requests,
+                          const CalibrationConfig& config = {}) {
+  CalibrationSession session({scenarios::paperNominal()}, samples, config);
+  for (const CycleRequest& request : requests) {
+    session.run(request);
+  }
+  return gradeCalibration(session);
+}
+
+bool tells(const GradedCalibration& graded, const std::string& words) {
+  return graded.reason.find(words) != std::string::npos;
+}
+
+TEST(CalibrationGrade, HasOneNamePerGrade) {
+  EXPECT_EQ(gradeName(Grade::kGood), "good");
+  EXPECT_EQ(gradeName(Grade::kUsable), "usable");
+  EXPECT_EQ(gradeName(Grade::kNotValidated), "not_validated");
+  EXPECT_EQ(gradeName(Grade::kContradicted), "contradicted");
+  EXPECT_EQ(gradeName(Grade::kFailed), "failed");
+}
+
+TEST(CalibrationGrade, GoodNeedsEveryParameterAndHeldOutSamplesThatAgree) {
+  const GradedCalibration graded = gradeOf(sessionSamples(), kWholeCalibration);
+  EXPECT_EQ(graded.grade, Grade::kGood) << graded.reason;
+  EXPECT_TRUE(tells(graded, "all 73 parameters are identified")) << graded.reason;
+}
+
+TEST(CalibrationGrade, NothingIsGoodThatWasNotJudged) {
+  std::vector<Sample> samples = sessionSamples();
+  for (Sample& sample : samples) {
+    sample.validation = false;
+  }
+  const GradedCalibration graded = gradeOf(samples, kWholeCalibration);
+  EXPECT_EQ(graded.grade, Grade::kNotValidated);
+  EXPECT_TRUE(tells(graded, "no held-out sample judges them")) << graded.reason;
+}
+
+TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
+  std::vector<Sample> samples = sessionSamples();
+  for (Sample& sample : samples) {
+    sample.has_torque = sample.has_torque && !sample.validation;
+  }
+  const GradedCalibration graded = gradeOf(samples, kWholeCalibration);
+  EXPECT_EQ(graded.grade, Grade::kNotValidated);
+  EXPECT_TRUE(tells(graded, "no held-out torque judges poles and coils")) << graded.reason;
+}
+
+TEST(CalibrationGrade, UsableWherePartsAreMissing) {
+  const GradedCalibration graded = gradeOf(sessionSamples(), {{Cycle::kJoint}});
+  EXPECT_EQ(graded.grade, Grade::kUsable);
+  EXPECT_TRUE(tells(graded, "9 of 73 parameters are identified")) << graded.reason;
+}
+
+TEST(CalibrationGrade, UsableWhereTheWantedAccuracyIsMissed) {
+  CalibrationConfig config;
+  config.wanted.orientation = 1e-7;
+  const GradedCalibration one = gradeOf(sessionSamples(), kWholeCalibration, config);
+  EXPECT_EQ(one.grade, Grade::kUsable);
+  EXPECT_TRUE(tells(one, "above the wanted 0.0001 mrad")) << one.reason;
+  config.wanted = {1.0, 1e-9};
+  EXPECT_EQ(gradeOf(sessionSamples(), kWholeCalibration, config).grade, Grade::kUsable);
+  config.wanted = {1.0, 1.0};
+  EXPECT_EQ(gradeOf(sessionSamples(), kWholeCalibration, config).grade, Grade::kGood);
+}
+
+TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
+  std::vector<Sample> samples = sessionSamples();
+  for (Sample& sample : samples) {
+    if (sample.validation) {
+      sample.R_stator_rotor = rotationExp({0.01, 0.0, 0.0}) * sample.R_stator_rotor;
+    }
+  }
+  EXPECT_EQ(gradeOf(samples, kWholeCalibration).grade, Grade::kContradicted);
+}
+
+TEST(CalibrationGrade, ACycleThatFailedSpoilsNothing) {
+  std::vector<CycleRequest> requests = kWholeCalibration;
+  requests.push_back({Cycle::kCoil, 24});
+  EXPECT_EQ(gradeOf(sessionSamples(), requests).grade, Grade::kGood);
+}
+
+TEST(CalibrationGrade, FailedWhereNothingIsIdentified) {
+  EXPECT_EQ(gradeOf({}, {}).grade, Grade::kFailed);
+  EXPECT_EQ(gradeOf({}, {{Cycle::kJoint}}).grade, Grade::kFailed);
+}
+
+}  // namespace
+}  // namespace sac

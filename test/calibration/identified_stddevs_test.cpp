@@ -1,0 +1,76 @@
+#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+ParameterSpace spaceWith(const std::vector<LaboratoryEffect>& effects) {
+  EffectSelection selection;
+  for (const LaboratoryEffect effect : effects) {
+    selection[effect] = true;
+  }
+  return ParameterSpace(scenarios::paperNominal(), selection);
+}
+
+void identify(CalibrationState& state, Eigen::Index p, double stddev) {
+  state.identified[static_cast<std::size_t>(p)] = true;
+  state.belief.covariance(p, p) = stddev * stddev;
+}
+
+TEST(IdentifiedStddevs, OfWhatIsNotIdentifiedThereIsNone) {
+  const ParameterSpace space = spaceWith({});
+  const ParameterStddevs stddevs = identifiedStddevs(space, nominalState(space, {}));
+  ASSERT_EQ(stddevs.poles.size(), 8U);
+  ASSERT_EQ(stddevs.coils.size(), 24U);
+  EXPECT_FALSE(stddevs.joints[0].offset);
+  EXPECT_FALSE(stddevs.poles[3].polar);
+  EXPECT_FALSE(stddevs.coils[23].azimuth);
+  EXPECT_FALSE(stddevs.coils[23].gain);
+}
+
+TEST(IdentifiedStddevs, StandAtTheirValues) {
+  const ParameterSpace space = spaceWith({});
+  CalibrationState state = nominalState(space, {});
+  identify(state, space.joint(1) + 2, 1e-4);
+  identify(state, space.pole(2), 2e-4);
+  identify(state, space.coil(5) + 1, 3e-4);
+  const ParameterStddevs stddevs = identifiedStddevs(space, state);
+  EXPECT_NEAR(stddevs.joints[1].axis_v.value_or(0.0), 1e-4, 1e-12);
+  EXPECT_FALSE(stddevs.joints[1].axis_u);
+  EXPECT_NEAR(stddevs.poles[2].polar.value_or(0.0), 2e-4, 1e-9);
+  EXPECT_FALSE(stddevs.poles[2].azimuth);
+  // The second coordinate of an axis is cos(polar) times its azimuth.
+  EXPECT_NEAR(stddevs.coils[5].azimuth.value_or(0.0),
+              3e-4 / std::cos(space.nominal().coils[5].polar),
+              1e-9);
+}
+
+TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {
+  using Effect = LaboratoryEffect;
+  const ParameterSpace space =
+      spaceWith({Effect::kStrengthScale, Effect::kPoleGains, Effect::kCoilGains});
+  const EffectLayout& effects = space.effects();
+  const Eigen::Index common = space.effect() + effects.first(Effect::kStrengthScale);
+  const Eigen::Index pole = space.effect() + effects.first(Effect::kPoleGains) + 4;
+  const Eigen::Index coil = space.effect() + effects.first(Effect::kCoilGains);
+  CalibrationState state = nominalState(space, {});
+  identify(state, pole, 3e-3);
+  EXPECT_FALSE(identifiedStddevs(space, state).poles[4].gain);
+  identify(state, common, 4e-3);
+  identify(state, coil, 1e-3);
+  state.belief.x[common] = 0.1;
+  const ParameterStddevs stddevs = identifiedStddevs(space, state);
+  EXPECT_NEAR(stddevs.poles[4].gain.value_or(0.0), std::hypot(1.1 * 3e-3, 4e-3), 1e-12);
+  EXPECT_FALSE(stddevs.poles[3].gain);
+  // Coil 1 is the reference of strength.
+  EXPECT_FALSE(stddevs.coils[0].gain);
+  EXPECT_NEAR(stddevs.coils[1].gain.value_or(0.0), 1e-3, 1e-12);
+}
+
+}  // namespace
+}  // namespace sac
