@@ -1,11 +1,38 @@
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
+namespace {
+
+/// The database keeps no units: they are those of the model.
+CycleReport withUnits(CycleReport report, const ParameterSpace& space) {
+  std::map<std::string, Eigen::Index> places;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    places[space.name(p)] = p;
+  }
+  for (ParameterEstimate& estimate : report.estimates) {
+    const auto place = places.find(estimate.name);
+    if (place != places.end()) {
+      estimate.unit = space.unit(place->second);
+    }
+  }
+  return report;
+}
+
+std::vector<CycleReport> withUnits(std::vector<CycleReport> reports, const ParameterSpace& space) {
+  for (CycleReport& report : reports) {
+    report = withUnits(std::move(report), space);
+  }
+  return reports;
+}
+
+}  // namespace
 
 LiveSession::LiveSession(const CalibratedDescription& start,
                          const CalibrationConfig& config,
@@ -18,7 +45,8 @@ LiveSession::LiveSession(const CalibratedDescription& start,
                database_.samplesInUse(),
                config,
                revision_.state,
-               database_.cyclesOfRevision(revision_.number)) {}
+               withUnits(database_.cyclesOfRevision(revision_.number),
+                         ParameterSpace(start.actuator, config.effects))) {}
 
 Actuator LiveSession::actuator() const {
   return session_.model().space().actuatorAt(session_.state().belief.x);
@@ -61,6 +89,11 @@ CycleReport LiveSession::run(const CycleRequest& request, const std::string& dat
   return report;
 }
 
+std::optional<CycleReport> LiveSession::lastReport() const {
+  const std::optional<CycleReport> report = database_.lastCycle();
+  return report ? std::optional(withUnits(*report, session_.model().space())) : std::nullopt;
+}
+
 void LiveSession::reset(const std::string& date) {
   putInForce(database_.addRevision(session_.startState(), "nominal", "reset", false, date));
 }
@@ -99,7 +132,8 @@ CalibrationOrigin LiveSession::origin(const std::string& date) const {
 }
 
 void LiveSession::putInForce(const Revision& revision) {
-  session_.resume(revision.state, database_.cyclesOfRevision(revision.number));
+  session_.resume(revision.state,
+                  withUnits(database_.cyclesOfRevision(revision.number), session_.model().space()));
   revision_ = revision;
 }
 

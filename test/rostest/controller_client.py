@@ -26,9 +26,10 @@ def parameters_of(actuator):
         joint.axis.x, joint.axis.y, joint.axis.z = item["axis"]
         joint.offset = item["offset"]
     for pole in actuator["poles"]:
-        message.poles.append(PoleAxis(pole["polar"], pole["azimuth"], pole["polarity"], 1.0))
+        axis = PoleAxis(polar=pole["polar"], azimuth=pole["azimuth"], polarity=pole["polarity"], gain=1.0)
+        message.poles.append(axis)
     for coil in actuator["coils"]:
-        message.coils.append(CoilAxis(coil["polar"], coil["azimuth"], 1.0))
+        message.coils.append(CoilAxis(polar=coil["polar"], azimuth=coil["azimuth"], gain=1.0))
     return message
 
 

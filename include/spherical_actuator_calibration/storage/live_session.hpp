@@ -45,7 +45,7 @@ class LiveSession {
   /// force.
   CycleReport run(const CycleRequest& request, const std::string& date);
   /// Report of the last cycle ever run.
-  std::optional<CycleReport> lastReport() const { return database_.lastCycle(); }
+  std::optional<CycleReport> lastReport() const;
 
   /// Puts the parameters of the description at the start in force, as a new revision.
   void reset(const std::string& date);

@@ -5,6 +5,7 @@
 
 #include <ros/console.h>
 
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -48,7 +49,8 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   const std::lock_guard<std::mutex> lock(session_mutex_);
   topics_.publishParameters(session_);
   if (const auto report = session_.lastReport()) {
-    topics_.publishReport(topics_.stamped(reportToRos(*report)));
+    topics_.publishReport(
+        topics_.stamped(reportToRos(*report, gradeCalibration(session_.calibration()))));
   }
   publishStatus();
 
@@ -182,13 +184,16 @@ void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response&
   answer(response, [&] {
     storeWaitingSamples();
     const CycleReport report = session_.run(request, utcDate());
-    response.report = topics_.stamped(reportToRos(report));
+    response.report =
+        topics_.stamped(reportToRos(report, gradeCalibration(session_.calibration())));
     topics_.publishReport(response.report);
+    if (report.success) {
+      topics_.publishParameters(session_);
+    }
+    publishStatus();
     if (!report.success) {
       throw DataError(report.message);
     }
-    topics_.publishParameters(session_);
-    publishStatus();
     return report.message;
   });
 }
@@ -198,7 +203,7 @@ bool CalibrationNode::validate(msg::Calibrate::Request& /*request*/,
   const std::lock_guard<std::mutex> lock(session_mutex_);
   const CalibrationSession& calibration = session_.calibration();
   const HeldOutValidation validation = calibration.validation().value_or(HeldOutValidation{});
-  response.report = topics_.stamped(validationToRos(validation));
+  response.report = topics_.stamped(validationToRos(validation, gradeCalibration(calibration)));
   response.success = response.report.success;
   response.message = response.report.message;
   return true;
@@ -261,10 +266,11 @@ bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
                            std_srvs::Trigger::Response& response) {
   std::string report_folder;
   answer(response, [&] {
-    std::string message = files_.save(session_, robotDescription());
+    const std::string message = files_.save(session_, robotDescription());
     report_folder = files_.saveReport(session_);
     publishStatus();
-    return message;
+    const GradedCalibration graded = gradeCalibration(session_.calibration());
+    return message + " Grade: " + gradeName(graded.grade) + ". " + graded.reason;
   });
   // Nothing waits for the page: the session is free again.
   if (response.success != 0 && options_.report_page) {
@@ -330,14 +336,9 @@ Sample CalibrationNode::store(const Sample& sample) {
 }
 
 void CalibrationNode::publishStatus() {
-  const CalibrationSession& calibration = session_.calibration();
   SessionProgress progress = session_.progress();
   progress.saved = files_.isSaved(session_.revision().number);
-  topics_.publishStatus(
-      session_,
-      progress,
-      nextStep(
-          calibration.model(), calibration.samples(), progress, calibration.config().estimation));
+  topics_.publishStatus(session_, progress, gradeCalibration(session_.calibration()));
 }
 
 void CalibrationNode::diagnose(DiagnosticStatus& status) {

@@ -4,6 +4,8 @@
 
 #include <spherical_actuator_calibration/CalibrationStatus.h>
 
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
@@ -12,6 +14,16 @@ namespace {
 
 constexpr bool kLatched = true;
 constexpr std::uint32_t kQueueLength = 1000;
+
+void fillCoverage(const SessionProgress& progress, msg::CalibrationStatus& message) {
+  message.joint = coverageToRos(progress.joint);
+  for (const Coverage& pole : progress.poles) {
+    message.poles.push_back(coverageToRos(pole));
+  }
+  for (const Coverage& coil : progress.coils) {
+    message.coils.push_back(coverageToRos(coil));
+  }
+}
 
 }  // namespace
 
@@ -23,7 +35,9 @@ CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
       samples_(node.advertise<msg::CalibrationSample>("samples", kQueueLength)) {}
 
 void CalibrationTopics::publishParameters(const LiveSession& session) {
-  msg::ActuatorParameters message = parametersToRos(session.actuator());
+  const CalibrationSession& calibration = session.calibration();
+  msg::ActuatorParameters message = parametersToRos(
+      session.actuator(), identifiedStddevs(calibration.model().space(), calibration.state()));
   message.header = header();
   message.revision = session.revision().number;
   message.source = session.revision().source;
@@ -36,8 +50,10 @@ void CalibrationTopics::publishReport(const msg::CalibrationReport& report) {
 
 void CalibrationTopics::publishStatus(const LiveSession& session,
                                       const SessionProgress& progress,
-                                      const std::string& next_step) {
-  const Actuator& nominal = session.calibration().model().space().nominal();
+                                      const GradedCalibration& graded) {
+  const CalibrationSession& calibration = session.calibration();
+  const EstimationOptions& estimation = calibration.config().estimation;
+  const Actuator& nominal = calibration.model().space().nominal();
   msg::CalibrationStatus message;
   message.header = header();
   message.actuator = nominal.name;
@@ -49,7 +65,14 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.poles_done = static_cast<std::uint8_t>(progress.poles_done);
   message.coil_done.assign(progress.coil_done.begin(), progress.coil_done.end());
   message.refined = static_cast<std::uint8_t>(progress.refined);
-  message.next_step = next_step;
+  fillCoverage(progress, message);
+  message.current_threshold = estimation.current_threshold;
+  for (const CycleRequest& request : progress.next_cycles) {
+    message.next_cycles.push_back(cycleText(request));
+  }
+  message.grade = gradeName(graded.grade);
+  message.grade_reason = graded.reason;
+  message.next_step = nextStep(calibration.model(), calibration.samples(), progress, estimation);
   status_.publish(message);
 }
 

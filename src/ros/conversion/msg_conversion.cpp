@@ -13,6 +13,9 @@
 namespace sac {
 namespace {
 
+/// Standard deviation of what is not identified.
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
 Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::uint32_t id) {
   const Eigen::Quaterniond q = quaternionFromRos(message);
   if (!isUnit(q)) {
@@ -24,10 +27,11 @@ Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::u
 msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
   msg::ParameterEstimate message;
   message.name = estimate.name;
+  message.unit = estimate.unit;
   message.nominal = estimate.nominal;
   message.initial = estimate.initial;
   message.value = estimate.value;
-  message.stddev = estimate.observable ? estimate.stddev : std::numeric_limits<double>::infinity();
+  message.stddev = estimate.observable ? estimate.stddev : kUnknown;
   message.observable = static_cast<std::uint8_t>(estimate.observable);
   return message;
 }
@@ -40,6 +44,22 @@ msg::SampleResidual residualToRos(const SampleResidual& residual) {
   message.rejected = static_cast<std::uint8_t>(residual.rejected);
   message.reason = residual.reason;
   return message;
+}
+
+/// Angles and strength of a pole or coil.
+template <typename Axis, typename Message>
+void fillAxis(const Axis& axis, const AxisStddev& stddev, Message& message) {
+  message.polar = axis.polar;
+  message.polar_stddev = stddev.polar.value_or(kUnknown);
+  message.azimuth = axis.azimuth;
+  message.azimuth_stddev = stddev.azimuth.value_or(kUnknown);
+  message.gain = axis.gain;
+  message.gain_stddev = stddev.gain.value_or(kUnknown);
+}
+
+void fillGrade(const GradedCalibration& graded, msg::CalibrationReport& message) {
+  message.grade = gradeName(graded.grade);
+  message.grade_reason = graded.reason;
 }
 
 }  // namespace
@@ -161,26 +181,26 @@ msg::CalibrationSample sampleToRos(const Sample& sample) {
   return message;
 }
 
-msg::ActuatorParameters parametersToRos(const Actuator& actuator) {
+msg::ActuatorParameters parametersToRos(const Actuator& actuator, const ParameterStddevs& stddevs) {
   msg::ActuatorParameters message;
   message.actuator = actuator.name;
   message.serial = actuator.serial;
   for (std::size_t k = 0; k < kJoints; ++k) {
+    const JointStddev& stddev = stddevs.joints[k];
     message.joints[k].axis = vectorToRos(actuator.joints[k].axis);
+    message.joints[k].axis_stddev = {stddev.axis_u.value_or(kUnknown),
+                                     stddev.axis_v.value_or(kUnknown)};
     message.joints[k].offset = actuator.joints[k].offset;
+    message.joints[k].offset_stddev = stddev.offset.value_or(kUnknown);
   }
-  for (const PoleAxis& pole : actuator.poles) {
+  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
     msg::PoleAxis& item = message.poles.emplace_back();
-    item.polar = pole.polar;
-    item.azimuth = pole.azimuth;
-    item.polarity = static_cast<std::int8_t>(pole.polarity);
-    item.gain = pole.gain;
+    item.polarity = static_cast<std::int8_t>(actuator.poles[i].polarity);
+    fillAxis(actuator.poles[i], stddevs.poles.empty() ? AxisStddev{} : stddevs.poles.at(i), item);
   }
-  for (const CoilAxis& coil : actuator.coils) {
+  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
     msg::CoilAxis& item = message.coils.emplace_back();
-    item.polar = coil.polar;
-    item.azimuth = coil.azimuth;
-    item.gain = coil.gain;
+    fillAxis(actuator.coils[j], stddevs.coils.empty() ? AxisStddev{} : stddevs.coils.at(j), item);
   }
   return message;
 }
@@ -208,7 +228,7 @@ std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
   return actuator;
 }
 
-msg::CalibrationReport reportToRos(const CycleReport& report) {
+msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibration& graded) {
   msg::CalibrationReport message;
   message.cycle = cycleName(report.cycle);
   message.coil = numberOrZero(report.coil);
@@ -218,6 +238,7 @@ msg::CalibrationReport reportToRos(const CycleReport& report) {
   message.samples_rejected = report.samples_rejected;
   message.iterations = report.iterations;
   message.error_history = report.error_history;
+  message.error_unit = unitOf(report.error_measure);
   message.reduced_chi_square = report.reduced_chi_square;
   message.condition_number = report.condition_number;
   message.solve_time = report.solve_time;
@@ -231,12 +252,14 @@ msg::CalibrationReport reportToRos(const CycleReport& report) {
                  residualToRos);
   message.orientation_uncertainty = report.orientation_uncertainty;
   message.torque_uncertainty = report.torque_uncertainty;
+  fillGrade(graded, message);
   return message;
 }
 
-msg::CalibrationReport validationToRos(const HeldOutValidation& validation) {
+msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
+                                       const GradedCalibration& graded) {
   msg::CalibrationReport message;
-  message.cycle = "validate";
+  message.cycle = msg::CalibrationReport::VALIDATE;
   message.success = static_cast<std::uint8_t>(validation.hasVerdict() &&
                                               validation.probability >= kLeastProbability);
   message.message = verdict(validation);
@@ -246,6 +269,16 @@ msg::CalibrationReport validationToRos(const HeldOutValidation& validation) {
                  validation.residuals.end(),
                  std::back_inserter(message.residuals),
                  residualToRos);
+  fillGrade(graded, message);
+  return message;
+}
+
+msg::Coverage coverageToRos(const Coverage& coverage) {
+  msg::Coverage message;
+  message.samples = coverage.samples;
+  message.wanted = coverage.wanted;
+  message.seen_well = static_cast<std::uint8_t>(coverage.isSeenWell());
+  message.identified = static_cast<std::uint8_t>(coverage.identified);
   return message;
 }
 

@@ -12,7 +12,7 @@
 #include "bag_files.hpp"
 #include "recorded_samples.hpp"
 #include "recorded_topics.hpp"
-#include "spherical_actuator_calibration/ActuatorParameters.h"
+#include "recorded_unit.hpp"
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
@@ -156,7 +156,7 @@ class Reader {
     }
   }
 
-  void requireSameUnit(const msg::ActuatorParameters& parameters) {
+  void requireSameUnit(const RecordedUnit& parameters) {
     if (!parameters.actuator.empty() && parameters.actuator != nominal_.name) {
       throw DataError(reading_ + ": was recorded with the actuator " + parameters.actuator +
                       ", but the description is of " + nominal_.name + ".");
@@ -223,7 +223,7 @@ class Reader {
   geometry_msgs::Vector3Stamped torque_;
   msg::CoilCurrents currents_;
   msg::CalibrationSample sample_;
-  msg::ActuatorParameters parameters_;
+  RecordedUnit parameters_;
 };
 
 }  // namespace

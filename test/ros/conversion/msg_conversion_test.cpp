@@ -154,6 +154,54 @@ TEST(MsgConversion, ParametersTellTheActuator) {
   EXPECT_EQ(message.coils[13].polar, actuator.coils[13].polar);
 }
 
+TEST(MsgConversion, ParametersTellHowWellEachIsIdentified) {
+  ParameterStddevs stddevs;
+  stddevs.joints[2] = {1e-4, 2e-4, std::nullopt};
+  stddevs.poles.resize(8);
+  stddevs.coils.resize(24);
+  stddevs.poles[3] = {3e-4, 4e-4, 5e-4};
+  stddevs.coils[9].azimuth = 6e-4;
+  const msg::ActuatorParameters message = parametersToRos(scenarios::paperNominal(), stddevs);
+  EXPECT_EQ(message.joints[2].offset_stddev, 1e-4);
+  EXPECT_EQ(message.joints[2].axis_stddev[0], 2e-4);
+  EXPECT_TRUE(std::isinf(message.joints[2].axis_stddev[1]));
+  EXPECT_EQ(message.poles[3].polar_stddev, 3e-4);
+  EXPECT_EQ(message.poles[3].azimuth_stddev, 4e-4);
+  EXPECT_EQ(message.poles[3].gain_stddev, 5e-4);
+  EXPECT_EQ(message.coils[9].azimuth_stddev, 6e-4);
+  EXPECT_TRUE(std::isinf(message.coils[9].polar_stddev));
+}
+
+TEST(MsgConversion, NothingLooksIdentifiedThatIsNot) {
+  const msg::ActuatorParameters message = parametersToRos(scenarios::paperNominal());
+  for (const auto& joint : message.joints) {
+    EXPECT_TRUE(std::isinf(joint.offset_stddev));
+    EXPECT_TRUE(std::isinf(joint.axis_stddev[0]));
+    EXPECT_TRUE(std::isinf(joint.axis_stddev[1]));
+  }
+  for (const auto& pole : message.poles) {
+    EXPECT_TRUE(std::isinf(pole.polar_stddev));
+    EXPECT_TRUE(std::isinf(pole.azimuth_stddev));
+    EXPECT_TRUE(std::isinf(pole.gain_stddev));
+  }
+  for (const auto& coil : message.coils) {
+    EXPECT_TRUE(std::isinf(coil.polar_stddev));
+    EXPECT_TRUE(std::isinf(coil.azimuth_stddev));
+    EXPECT_TRUE(std::isinf(coil.gain_stddev));
+  }
+}
+
+TEST(MsgConversion, CoverageTellsWhetherItIsEnough) {
+  const msg::Coverage few = coverageToRos({2, 3, false});
+  EXPECT_EQ(few.samples, 2U);
+  EXPECT_EQ(few.wanted, 3U);
+  EXPECT_FALSE(few.seen_well);
+  EXPECT_FALSE(few.identified);
+  const msg::Coverage enough = coverageToRos({3, 3, true});
+  EXPECT_TRUE(enough.seen_well);
+  EXPECT_TRUE(enough.identified);
+}
+
 TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
   CycleReport report;
   report.cycle = Cycle::kPoles;
@@ -161,16 +209,22 @@ TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
   report.success = true;
   report.message = "Done.";
   report.error_history = {2.0, 1.0};
-  report.estimates = {{"pole_1/polar", 0.1, 0.2, 0.3, 1e-4, true},
-                      {"pole_2/polar", 0.1, 0.1, 0.1, 0.03, false}};
+  report.estimates = {{"pole_1/polar", 0.1, 0.2, 0.3, 1e-4, true, "rad"},
+                      {"torque_bias/x", 0.1, 0.1, 0.1, 0.03, false, "N·m"}};
   report.residuals = {{9, Quantity::kTorque, 0.5, 6.0, true, "misfit"}};
-  const msg::CalibrationReport message = reportToRos(report);
+  report.error_measure = ErrorMeasure::kTorque;
+  const msg::CalibrationReport message = reportToRos(report, {Grade::kUsable, "Because."});
+  EXPECT_EQ(message.grade, msg::CalibrationReport::USABLE);
+  EXPECT_EQ(message.grade_reason, "Because.");
+  EXPECT_EQ(message.error_unit, "N·m");
   EXPECT_EQ(message.cycle, msg::CalibrationReport::POLES);
   EXPECT_EQ(message.coil, 3U);
   EXPECT_TRUE(message.success);
   EXPECT_EQ(message.error_history, report.error_history);
   ASSERT_EQ(message.estimates.size(), 2U);
   EXPECT_EQ(message.estimates[0].value, 0.3);
+  EXPECT_EQ(message.estimates[0].unit, "rad");
+  EXPECT_EQ(message.estimates[1].unit, "N·m");
   EXPECT_EQ(message.estimates[0].stddev, 1e-4);
   EXPECT_TRUE(std::isinf(message.estimates[1].stddev));
   EXPECT_FALSE(message.estimates[1].observable);

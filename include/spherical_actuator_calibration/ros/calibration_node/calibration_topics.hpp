@@ -5,6 +5,7 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
@@ -23,7 +24,7 @@ class CalibrationTopics {
   void publishReport(const msg::CalibrationReport& report);
   void publishStatus(const LiveSession& session,
                      const SessionProgress& progress,
-                     const std::string& next_step);
+                     const GradedCalibration& graded);
   void publishSample(const msg::CalibrationSample& sample);
 
   /// Messages with their header, stamped now where they have no time of their own.

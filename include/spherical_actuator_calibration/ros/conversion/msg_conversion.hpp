@@ -21,10 +21,14 @@
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
+#include "spherical_actuator_calibration/Coverage.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/calibration_record.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
@@ -71,20 +75,26 @@ Sample sampleFromRos(const msg::CalibrationSample& message);
 /// frame_id stays empty.
 msg::CalibrationSample sampleToRos(const Sample& sample);
 
-/// Name, serial number and geometry of an actuator; header, revision and source stay empty.
-msg::ActuatorParameters parametersToRos(const Actuator& actuator);
+/// Name, serial number and geometry of an actuator; header, revision and source stay empty. What
+/// has no standard deviation has an infinite one, as everything has by default.
+msg::ActuatorParameters parametersToRos(const Actuator& actuator,
+                                        const ParameterStddevs& stddevs = {});
 
 /// `design` with the identified geometry and gains of a message; nothing when the message has other
 /// numbers of poles or coils.
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design);
 
-/// The header stays empty. The standard deviation of what is not observable is infinite.
-msg::CalibrationReport reportToRos(const CycleReport& report);
+/// `graded`: what is in force after the cycle. The header stays empty. The standard deviation of
+/// what is not observable is infinite.
+msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibration& graded);
 
 /// A validation in the form of a report: cycle "validate", residuals of the held-out samples.
 /// `success` tells whether they agree. The header stays empty.
-msg::CalibrationReport validationToRos(const HeldOutValidation& validation);
+msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
+                                       const GradedCalibration& graded);
+
+msg::Coverage coverageToRos(const Coverage& coverage);
 
 /// Answer of the service plan_poses.
 msg::PlanPoses::Response planToRos(const PosePlan& plan);
