@@ -20,6 +20,17 @@ bool isVisibleChange(const Eigen::VectorXd& before, const Eigen::VectorXd& now) 
   return before.size() != now.size() || !((before - now).cwiseAbs().maxCoeff() < kVisibleCurrent);
 }
 
+/// Of the worse direction of each axis; none where an angle is not identified.
+template <typename Axes>
+std::vector<std::optional<double>> stddevsOf(const Axes& axes) {
+  std::vector<std::optional<double>> stddevs;
+  for (const auto& axis : axes) {
+    const double stddev = std::max(axis.polar_stddev, std::cos(axis.polar) * axis.azimuth_stddev);
+    stddevs.push_back(std::isfinite(stddev) ? std::optional(stddev) : std::nullopt);
+  }
+  return stddevs;
+}
+
 }  // namespace
 
 LiveScene::LiveScene(CalibrationScene start) : scene_(std::move(start)) {
@@ -32,27 +43,15 @@ void LiveScene::receive(const msg::ActuatorParameters& message) {
     return;
   }
   scene_.identified = *actuator;
-  is_identified_ = message.source == "identified";
-  // Of values that were restored the topics tell no uncertainty. A report may come before the
-  // parameters that it led to, hence not at every change.
-  if (!is_identified_) {
-    stddevs_.clear();
-  }
+  scene_.pole_stddevs = stddevsOf(message.poles);
+  scene_.coil_stddevs = stddevsOf(message.coils);
   changed_ = true;
 }
 
 void LiveScene::receive(const msg::CalibrationReport& message) {
+  residuals_.clear();
   for (const auto& residual : message.residuals) {
     residuals_[residual.id] = {residual.standardized, residual.rejected != 0};
-  }
-  if (message.success != 0) {
-    for (const auto& estimate : message.estimates) {
-      if (estimate.observable != 0 && std::isfinite(estimate.stddev)) {
-        stddevs_[estimate.name] = estimate.stddev;
-      } else {
-        stddevs_.erase(estimate.name);
-      }
-    }
   }
   changed_ = true;
 }
@@ -80,15 +79,6 @@ bool LiveScene::takeChange() {
   return std::exchange(changed_, false) || have_samples_changed;
 }
 
-std::optional<double> LiveScene::stddevOf(const std::string& axis, double polar) const {
-  const auto elevation = stddevs_.find(axis + "/polar");
-  const auto azimuth = stddevs_.find(axis + "/azimuth");
-  if (!is_identified_ || elevation == stddevs_.end() || azimuth == stddevs_.end()) {
-    return std::nullopt;
-  }
-  return std::max(elevation->second, std::cos(polar) * azimuth->second);
-}
-
 SampledDirection LiveScene::directionOf(const msg::CalibrationSample& sample) const {
   SampledDirection direction;
   if (sample.has_orientation != 0) {
@@ -109,14 +99,6 @@ SampledDirection LiveScene::directionOf(const msg::CalibrationSample& sample) co
 
 CalibrationScene LiveScene::scene() const {
   CalibrationScene scene = scene_;
-  for (std::size_t i = 0; i < scene.identified.poles.size(); ++i) {
-    scene.pole_stddevs.push_back(
-        stddevOf("pole_" + std::to_string(i + 1), scene.identified.poles[i].polar));
-  }
-  for (std::size_t j = 0; j < scene.identified.coils.size(); ++j) {
-    scene.coil_stddevs.push_back(
-        stddevOf("coil_" + std::to_string(j + 1), scene.identified.coils[j].polar));
-  }
   for (const auto& [id, sample] : samples_.samples()) {
     const SampledDirection direction = directionOf(sample);
     if (direction.direction_stator.allFinite()) {

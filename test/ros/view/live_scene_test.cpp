@@ -23,22 +23,20 @@ msg::ActuatorParameters parametersOf(const Actuator& actuator, const std::string
   return message;
 }
 
-/// A report of one axis.
-msg::CalibrationReport reportOf(const std::string& axis,
-                                double polar_stddev,
-                                double azimuth_stddev) {
+/// Parameters of which one pole and one coil, both counted from 0, are identified.
+msg::ActuatorParameters parametersWith(std::size_t pole, std::size_t coil) {
+  ParameterStddevs stddevs;
+  stddevs.poles.resize(8);
+  stddevs.coils.resize(24);
+  stddevs.poles[pole] = {1e-3, 2e-3};
+  stddevs.coils[coil] = {4e-3, 1e-3};
+  return parametersToRos(scenarios::paperTruth(), stddevs);
+}
+
+msg::CalibrationReport reportOf(std::uint32_t sample, double standardized, bool rejected) {
   CycleReport report;
-  report.cycle = Cycle::kPoles;
-  report.success = true;
-  report.estimates.resize(2);
-  report.estimates[0].name = axis + "/polar";
-  report.estimates[0].stddev = polar_stddev;
-  report.estimates[1].name = axis + "/azimuth";
-  report.estimates[1].stddev = azimuth_stddev;
-  for (ParameterEstimate& estimate : report.estimates) {
-    estimate.observable = true;
-  }
-  return reportToRos(report);
+  report.residuals.push_back({sample, Quantity::kTorque, 1e-3, standardized, rejected, ""});
+  return reportToRos(report, {});
 }
 
 msg::CalibrationSample sampleOf(std::uint32_t id) {
@@ -72,57 +70,53 @@ TEST(LiveScene, AnotherDesignChangesNothing) {
 
 TEST(LiveScene, OnlyIdentifiedAxesHaveAnUncertainty) {
   LiveScene scene = paperScene();
-  scene.receive(reportOf("pole_2", 1e-3, 2e-3));
-  // Parameters and report come in any order.
-  EXPECT_FALSE(scene.scene().pole_stddevs[1]);
-  scene.receive(parametersOf(scenarios::paperTruth(), "identified"));
-  ASSERT_TRUE(scene.scene().pole_stddevs[1]);
-  EXPECT_NEAR(*scene.scene().pole_stddevs[1], 2e-3, 1e-6);
-  EXPECT_FALSE(scene.scene().pole_stddevs[0]);
-  EXPECT_FALSE(scene.scene().coil_stddevs[1]);
-
-  msg::CalibrationReport lost = reportOf("pole_2", 1e-3, 2e-3);
-  lost.estimates[1].observable = 0;
-  scene.receive(lost);
-  EXPECT_FALSE(scene.scene().pole_stddevs[1]);
+  scene.receive(parametersWith(1, 6));
+  const CalibrationScene shown = scene.scene();
+  EXPECT_NEAR(shown.pole_stddevs.at(1).value_or(0.0), 2e-3, 1e-6);
+  EXPECT_FALSE(shown.pole_stddevs.at(0));
+  EXPECT_NEAR(shown.coil_stddevs.at(6).value_or(0.0), 4e-3, 1e-6);
+  EXPECT_FALSE(shown.coil_stddevs.at(1));
 }
 
-TEST(LiveScene, AFailedCycleLeavesTheUncertainty) {
+TEST(LiveScene, AnAxisWithOneAngleIsNotIdentified) {
   LiveScene scene = paperScene();
-  scene.receive(parametersOf(scenarios::paperTruth(), "identified"));
-  scene.receive(reportOf("coil_7", 1e-3, 1e-3));
-  msg::CalibrationReport failed = reportOf("coil_7", 0.5, 0.5);
-  failed.success = 0;
-  scene.receive(failed);
-  EXPECT_NEAR(scene.scene().coil_stddevs[6].value_or(0.0), 1e-3, 1e-9);
+  ParameterStddevs stddevs;
+  stddevs.poles.resize(8);
+  stddevs.coils.resize(24);
+  stddevs.poles[1].polar = 1e-3;
+  scene.receive(parametersToRos(scenarios::paperTruth(), stddevs));
+  EXPECT_FALSE(scene.scene().pole_stddevs.at(1));
+}
+
+TEST(LiveScene, ReportsLeaveTheUncertainty) {
+  LiveScene scene = paperScene();
+  scene.receive(parametersWith(1, 6));
+  scene.receive(reportOf(1, 1.0, false));
+  EXPECT_NEAR(scene.scene().coil_stddevs.at(6).value_or(0.0), 4e-3, 1e-6);
 }
 
 TEST(LiveScene, NominalParametersHaveNoUncertainty) {
   LiveScene scene = paperScene();
-  scene.receive(parametersOf(scenarios::paperTruth(), "identified"));
-  scene.receive(reportOf("pole_2", 1e-3, 2e-3));
+  scene.receive(parametersWith(1, 6));
   scene.receive(parametersOf(scenarios::paperNominal(), "nominal"));
-  EXPECT_FALSE(scene.scene().pole_stddevs[1]);
-  // And none comes back with the next cycle's parameters.
-  scene.receive(parametersOf(scenarios::paperTruth(), "identified"));
-  EXPECT_FALSE(scene.scene().pole_stddevs[1]);
+  EXPECT_FALSE(scene.scene().pole_stddevs.at(1));
 }
 
-TEST(LiveScene, ResidualsGoToTheirSamples) {
+TEST(LiveScene, ResidualsOfTheLastReportGoToTheirSamples) {
   LiveScene scene = paperScene();
   scene.receive(sampleOf(3));
   scene.receive(sampleOf(4));
-  CycleReport report;
-  report.residuals.resize(1);
-  report.residuals[0].id = 4;
-  report.residuals[0].standardized = 3.5;
-  report.residuals[0].rejected = true;
-  scene.receive(reportToRos(report));
-  const auto samples = scene.scene().samples;
+  scene.receive(reportOf(4, 3.5, true));
+  auto samples = scene.scene().samples;
   ASSERT_EQ(samples.size(), 2U);
   EXPECT_FALSE(samples[0].standardized);
   EXPECT_EQ(samples[1].standardized.value_or(0.0), 3.5);
   EXPECT_TRUE(samples[1].rejected);
+  // Those of earlier parameters are not of these.
+  scene.receive(reportOf(3, 0.9, false));
+  samples = scene.scene().samples;
+  EXPECT_EQ(samples[0].standardized.value_or(0.0), 0.9);
+  EXPECT_FALSE(samples[1].standardized);
 }
 
 TEST(LiveScene, SamplesWithoutOrientationStandWhereTheirJointsWere) {

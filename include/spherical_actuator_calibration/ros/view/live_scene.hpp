@@ -48,14 +48,11 @@ class LiveScene {
     bool rejected = false;
   };
 
-  std::optional<double> stddevOf(const std::string& axis, double polar) const;
   SampledDirection directionOf(const msg::CalibrationSample& sample) const;
 
   CalibrationScene scene_;
-  bool is_identified_ = false;             ///< the parameters in force are those of a cycle
-  std::map<std::string, double> stddevs_;  ///< of parameters that are identified, by name [rad]
   SampleMirror samples_;
-  std::map<std::uint32_t, Residual> residuals_;
+  std::map<std::uint32_t, Residual> residuals_;  ///< of the last report, by sample
   bool changed_ = true;
 };
 
