@@ -11,10 +11,9 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/Restore.h"
-#include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -58,11 +57,36 @@ QLabel* wrappingLabel() {
   return label;
 }
 
+QTableWidget* parameterTable() {
+  auto* table = new QTableWidget(0, 3);
+  table->setHorizontalHeaderLabels({"parameter", "value", "uncertainty"});
+  table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  constexpr int kValue = 1;  // the widest: an axis
+  table->horizontalHeader()->setSectionResizeMode(kValue, QHeaderView::Stretch);
+  table->verticalHeader()->hide();
+  table->verticalHeader()->setDefaultSectionSize(20);
+  table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  return table;
+}
+
+void fill(const std::vector<ParameterLine>& lines, QTableWidget& table) {
+  table.setRowCount(static_cast<int>(lines.size()));
+  int row = 0;
+  for (const ParameterLine& line : lines) {
+    int column = 0;
+    for (const std::string& text : {line.name, line.value, line.uncertainty}) {
+      table.setItem(row, column++, new QTableWidgetItem(QString::fromStdString(text)));
+    }
+    ++row;
+  }
+}
+
 }  // namespace
 
 CalibrationPanel::CalibrationPanel(QWidget* parent)
-    : rviz::Panel(parent), listing_(node_.resolveName("calibration/list_samples")) {
+    : rviz::Panel(parent), model_(node_.getNamespace()) {
   build();
+  listen();
   connect(&timer_, &QTimer::timeout, this, &CalibrationPanel::refresh);
   timer_.start(kPeriod);
 }
@@ -84,9 +108,9 @@ void CalibrationPanel::build() {
   layout->addLayout(makeFileRow());
   answer_ = wrappingLabel();
   layout->addWidget(answer_);
-  verdict_ = wrappingLabel();
-  verdict_->setStyleSheet("font-weight: bold;");
-  layout->addWidget(verdict_);
+  grade_ = wrappingLabel();
+  grade_->setStyleSheet("font-weight: bold;");
+  layout->addWidget(grade_);
   layout->addWidget(makeResults(), 1);
 }
 
@@ -174,38 +198,26 @@ QLayout* CalibrationPanel::makeFileRow() {
 }
 
 QWidget* CalibrationPanel::makeResults() {
-  table_ = new QTableWidget(0, 3);
-  table_->setHorizontalHeaderLabels({"parameter", "value", "uncertainty"});
-  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
-  table_->verticalHeader()->hide();
-  table_->verticalHeader()->setDefaultSectionSize(20);
-  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  parameters_ = parameterTable();
+  estimates_ = parameterTable();
   chart_ = new ConvergenceChart;
   auto* tabs = new QTabWidget;
-  tabs->addTab(table_, "Result");
+  tabs->addTab(parameters_, "In force");
+  tabs->addTab(estimates_, "Last cycle");
   tabs->addTab(chart_, "Convergence");
   return tabs;
 }
 
-void CalibrationPanel::start() {
-  try {
-    model_ = std::make_unique<PanelModel>(loadDescriptionParameter(node_).actuator,
-                                          node_.getNamespace());
-  } catch (const Error& error) {
-    next_step_->setText(QString::fromStdString(error.what()));
-    return;
-  }
-  coil_->setRange(1, std::max(1, static_cast<int>(model_->coils())));
+void CalibrationPanel::listen() {
   feed<msg::CalibrationStatus>("status");
   feed<msg::CalibrationReport>("report");
   feed<msg::ActuatorParameters>("parameters");
-  feed<msg::CalibrationSample>("samples");
   constexpr std::uint32_t kQueueLength = 100;
   subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics",
       kQueueLength,
       [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
-        model_->receive(*message, ros::WallTime::now());
+        model_.receive(*message, ros::WallTime::now());
       }));
 }
 
@@ -215,26 +227,17 @@ void CalibrationPanel::feed(const std::string& topic) {
   constexpr std::uint32_t kQueueLength = 1000;
   subscribers_.push_back(node_.subscribe<Message>(
       topic, kQueueLength, [this](const typename Message::ConstPtr& message) {
-        model_->receive(*message);
+        model_.receive(*message);
         changed_ = true;
       }));
 }
 
 void CalibrationPanel::refresh() {
   showAnswer();
-  const bool is_time_of_health = ticks_++ % kTicksOfHealth == 0;
-  if (!model_) {
-    if (is_time_of_health) {
-      start();
-    }
-    return;
-  }
-  listing_.update(model_->samples());
-  if (is_time_of_health) {
+  if (ticks_++ % kTicksOfHealth == 0) {
     showHealth();
   }
-  const bool have_samples_changed = model_->samples().takeChange();
-  if (changed_ || have_samples_changed) {
+  if (changed_) {
     changed_ = false;
     showCalibration();
   }
@@ -242,12 +245,12 @@ void CalibrationPanel::refresh() {
 
 void CalibrationPanel::showHealth() {
   const ros::WallTime now = ros::WallTime::now();
-  const std::vector<HealthLine> lines = model_->streams(now);
+  const std::vector<HealthLine> lines = model_.streams(now);
   for (std::size_t n = 0; n < streams_.size(); ++n) {
     streams_[n]->setText(dotted(lines[n]));
     streams_[n]->setToolTip(QString::fromStdString(lines[n].message));
   }
-  const std::vector<HealthLine> troubles = model_->troubles(now);
+  const std::vector<HealthLine> troubles = model_.troubles(now);
   trouble_->setVisible(!troubles.empty());
   if (!troubles.empty()) {
     trouble_->setText(dotted(troubles.front()) + ": " +
@@ -256,20 +259,13 @@ void CalibrationPanel::showHealth() {
 }
 
 void CalibrationPanel::showCalibration() {
-  next_step_->setText(QString::fromStdString(model_->nextStep()));
-  bars_->setGroups(model_->coverage());
-  verdict_->setText(QString::fromStdString(model_->verdict() + " (" + model_->revision() + ")"));
-  const std::vector<ParameterLine> lines = model_->parameters();
-  table_->setRowCount(static_cast<int>(lines.size()));
-  int row = 0;
-  for (const ParameterLine& line : lines) {
-    int column = 0;
-    for (const std::string& text : {line.name, line.value, line.uncertainty}) {
-      table_->setItem(row, column++, new QTableWidgetItem(QString::fromStdString(text)));
-    }
-    ++row;
-  }
-  chart_->setHistory(QString::fromStdString(model_->historyTitle()), model_->errorHistory());
+  next_step_->setText(QString::fromStdString(model_.nextStep()));
+  bars_->setGroups(model_.coverage());
+  coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
+  grade_->setText(QString::fromStdString(model_.grade() + " (" + model_.revision() + ")"));
+  fill(model_.parameters(), *parameters_);
+  fill(model_.estimates(), *estimates_);
+  chart_->setHistory(QString::fromStdString(model_.historyTitle()), model_.errorHistory());
 }
 
 void CalibrationPanel::showAnswer() {

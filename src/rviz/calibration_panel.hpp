@@ -7,7 +7,6 @@
 #include <QSpinBox>
 #include <QTableWidget>
 #include <QTimer>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,14 +19,13 @@
 #include "coverage_bars.hpp"
 #include "panel_model.hpp"
 #include "service_caller.hpp"
-#include "spherical_actuator_calibration/ros/view/sample_listing.hpp"
 
 namespace sac {
 
 /// Panel of rviz for a calibration in the namespace that rviz runs in: streams and their health,
 /// what is sampled and what is missing, buttons for the services of the calibration node, the
-/// result with its uncertainty, and the convergence of the last cycle. It talks through topics and
-/// services only; the actuator's description comes from the parameter `actuator`.
+/// grade, the parameters in force with their uncertainty, and what the last cycle did. It talks
+/// through topics and services only.
 class CalibrationPanel : public rviz::Panel {
   Q_OBJECT
 
@@ -46,8 +44,7 @@ class CalibrationPanel : public rviz::Panel {
   QWidget* makeResults();
   QPushButton* addButton(QLayout* row, const QString& text, const QString& help);
 
-  /// Waits for the description of the actuator, then listens.
-  void start();
+  void listen();
   template <typename Message>
   void feed(const std::string& topic);
 
@@ -67,8 +64,7 @@ class CalibrationPanel : public rviz::Panel {
   void call(const std::string& service, const typename Service::Request& request);
 
   ros::NodeHandle node_;
-  std::unique_ptr<PanelModel> model_;  ///< none before the actuator's description is known
-  SampleListing listing_;
+  PanelModel model_;
   ServiceCaller caller_;
   std::vector<ros::Subscriber> subscribers_;
   bool changed_ = true;
@@ -87,8 +83,9 @@ class CalibrationPanel : public rviz::Panel {
   QSpinBox* coil_ = nullptr;
   QSpinBox* revision_ = nullptr;
   QLabel* answer_ = nullptr;
-  QLabel* verdict_ = nullptr;
-  QTableWidget* table_ = nullptr;
+  QLabel* grade_ = nullptr;
+  QTableWidget* parameters_ = nullptr;
+  QTableWidget* estimates_ = nullptr;
   ConvergenceChart* chart_ = nullptr;
 };
 

@@ -22,10 +22,10 @@ constexpr QRgb kEnough = qRgb(60, 120, 200);
 constexpr QRgb kDone = qRgb(40, 150, 70);
 
 QRgb colorOf(const CoverageBar& bar) {
-  if (bar.done) {
+  if (bar.coverage.identified != 0) {
     return kDone;
   }
-  return bar.count < bar.advised ? kFew : kEnough;
+  return bar.coverage.seen_well != 0 ? kEnough : kFew;
 }
 
 /// The number of "coil_7", or nothing.
@@ -38,9 +38,9 @@ QString numberOf(const CoverageBar& bar) {
 QString describe(const CoverageBar& bar) {
   return QString("%1: %2 of %3 samples%4")
       .arg(QString::fromStdString(bar.name))
-      .arg(bar.count)
-      .arg(bar.advised)
-      .arg(bar.done ? ", identified" : "");
+      .arg(bar.coverage.samples)
+      .arg(bar.coverage.wanted)
+      .arg(bar.coverage.identified != 0 ? ", identified" : "");
 }
 
 }  // namespace
@@ -89,8 +89,9 @@ void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
   }
   painter.setFont(small);
   for (const Place& place : places()) {
+    const msg::Coverage& coverage = place.bar->coverage;
     const double share =
-        std::min(1.0, place.bar->count / static_cast<double>(std::max(1U, place.bar->advised)));
+        std::min(1.0, coverage.samples / static_cast<double>(std::max(1U, coverage.wanted)));
     QRectF filled = place.area;
     filled.setTop(place.area.bottom() - share * place.area.height());
     painter.fillRect(place.area, QColor(kEmpty));

@@ -7,8 +7,9 @@
 
 namespace sac {
 
-/// One small bar per joint, pole and coil: grey when empty, filling up with samples from orange to
-/// blue, green when identified; its number stands below, name and count are its tool tip.
+/// One small bar per joint, pole and coil: grey when empty, filling up with samples, orange until
+/// it is seen well enough, then blue, green when identified; its number stands below, name and
+/// count are its tool tip.
 class CoverageBars : public QWidget {
   Q_OBJECT
 

@@ -2,15 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
-
-#include "spherical_actuator_calibration/assessment/sample_coverage.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
-#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -21,17 +15,6 @@ constexpr double kLongestSilence = 3.5;
 /// Topics of the measurements, in the order of the wires.
 constexpr const char* kStreams[] = {
     "joint_states", "coil_currents", "measured_orientation", "measured_torque"};
-
-// What a bar needs to be full: as the node's advice on the next step counts.
-constexpr std::uint32_t kAdvisedOrientations = 10;
-constexpr std::uint32_t kAdvisedPerPole = 3;
-constexpr std::uint32_t kAdvisedPerCoil = 4;
-
-// Expected errors over the workspace up to which a calibration is called good, or fair.
-constexpr double kGoodOrientation = 1e-3;  // [rad]
-constexpr double kFairOrientation = 5e-3;
-constexpr double kGoodTorque = 0.01;  // of the largest torque per ampere
-constexpr double kFairTorque = 0.05;
 
 HealthLine::Level levelOf(int level) {
   using diagnostic_msgs::DiagnosticStatus;
@@ -46,93 +29,70 @@ std::string withoutSlash(const std::string& name_space) {
   return start == std::string::npos ? "" : name_space.substr(start) + "/";
 }
 
-double peakOf(const TorqueCurve& curve) {
-  constexpr int kSteps = 500;
-  double peak = 0.0;
-  for (int n = 1; n <= kSteps; ++n) {
-    peak = std::max(peak, std::abs(curve.value(n * curve.supportEnd() / kSteps)));
-  }
-  return peak;
+/// A number by a format of printf.
+std::string number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
 }
 
-bool isAngle(const std::string& parameter) {
-  const auto ends = [&](const std::string& end) {
-    return parameter.size() > end.size() &&
-           parameter.compare(parameter.size() - end.size(), end.size(), end) == 0;
-  };
-  return ends("/offset") || ends("/axis_u") || ends("/axis_v") || ends("/polar") ||
-         ends("/azimuth");
+/// "joint", 1 → "joint_1"
+std::string numbered(const std::string& name, std::size_t index) {
+  return name + "_" + std::to_string(index + 1);
+}
+
+bool isPure(const std::string& unit) {
+  return unit.empty() || unit == "1";
+}
+
+ParameterLine line(const std::string& name, double value, double stddev, const std::string& unit) {
+  if (!std::isfinite(stddev)) {
+    return {name, "–", "not identified"};
+  }
+  if (isPure(unit)) {
+    return {name, number("%.5f", value), "± " + number("%.2g", stddev)};
+  }
+  return {name, number("%.5f ", value) + unit, "± " + number("%.3f m", 1e3 * stddev) + unit};
+}
+
+/// A direction has two deviations, across it.
+ParameterLine axisLine(const std::string& name, const msg::JointAxis& joint) {
+  const double worse = std::max(joint.axis_stddev[0], joint.axis_stddev[1]);
+  if (!std::isfinite(worse)) {
+    return {name, "–", "not identified"};
+  }
+  return {name,
+          number("%.4f, ", joint.axis.x) + number("%.4f, ", joint.axis.y) +
+              number("%.4f", joint.axis.z),
+          "± " + number("%.3f mrad", 1e3 * worse)};
+}
+
+template <typename Axis>
+void addAxis(const std::string& name, const Axis& axis, std::vector<ParameterLine>& lines) {
+  lines.push_back(line(name + "/polar", axis.polar, axis.polar_stddev, "rad"));
+  lines.push_back(line(name + "/azimuth", axis.azimuth, axis.azimuth_stddev, "rad"));
+  // Gains are identified where the configuration models them only.
+  if (std::isfinite(axis.gain_stddev)) {
+    lines.push_back(line(name + "/gain", axis.gain, axis.gain_stddev, "1"));
+  }
+}
+
+std::vector<CoverageBar> bars(const std::string& name, const std::vector<msg::Coverage>& coverage) {
+  std::vector<CoverageBar> result;
+  result.reserve(coverage.size());
+  for (std::size_t n = 0; n < coverage.size(); ++n) {
+    result.push_back({numbered(name, n), coverage[n]});
+  }
+  return result;
 }
 
 std::string cycleName(const msg::CalibrationReport& report) {
-  if (report.cycle == msg::CalibrationReport::REFINE) {
-    return "Refinement";
-  }
-  if (report.cycle == msg::CalibrationReport::JOINT) {
-    return "Joint";
-  }
-  return (report.cycle == msg::CalibrationReport::POLES ? "Poles with coil " : "Coil ") +
-         std::to_string(report.coil);
-}
-
-/// A malformed sample is somebody else's error, and nothing to show.
-void append(const msg::CalibrationSample& message, std::vector<Sample>& samples) {
-  try {
-    samples.push_back(sampleFromRos(message));
-  } catch (const Error&) {
-    return;
-  }
-}
-
-std::string gradeOf(double orientation, double torque) {
-  if (orientation <= kGoodOrientation && torque <= kGoodTorque) {
-    return "good";
-  }
-  return orientation <= kFairOrientation && torque <= kFairTorque ? "fair" : "poor";
+  return report.coil == 0 ? report.cycle : report.cycle + ", coil " + std::to_string(report.coil);
 }
 
 }  // namespace
 
-PanelModel::PanelModel(const Actuator& nominal, const std::string& name_space)
-    : nominal_(nominal), prefix_(withoutSlash(name_space)), model_(ParameterSpace(nominal)) {
-  if (model_.hasTorqueModel()) {
-    peak_torque_ = peakOf(model_.curve());
-  }
-}
-
-void PanelModel::receive(const msg::CalibrationStatus& message) {
-  status_ = message;
-  has_status_ = true;
-  samples_.receive(message);
-}
-
-void PanelModel::receive(const msg::CalibrationReport& message) {
-  last_ = message;
-  if (message.success == 0) {
-    return;
-  }
-  accepted_ = message;
-  for (const msg::ParameterEstimate& estimate : message.estimates) {
-    if (estimates_.find(estimate.name) == estimates_.end()) {
-      order_.push_back(estimate.name);
-    }
-    estimates_[estimate.name] = estimate;
-  }
-}
-
-void PanelModel::receive(const msg::ActuatorParameters& message) {
-  parameters_ = message;
-  // Of other than identified parameters the topics tell no uncertainty.
-  if (message.source != msg::ActuatorParameters::IDENTIFIED) {
-    accepted_ = msg::CalibrationReport();
-    estimates_.clear();
-    order_.clear();
-  }
-}
-
-void PanelModel::receive(const msg::CalibrationSample& message) {
-  samples_.receive(message);
-}
+PanelModel::PanelModel(const std::string& name_space) : prefix_(withoutSlash(name_space)) {}
 
 void PanelModel::receive(const diagnostic_msgs::DiagnosticArray& message,
                          const ros::WallTime& now) {
@@ -175,58 +135,16 @@ std::vector<HealthLine> PanelModel::troubles(const ros::WallTime& now) const {
 }
 
 std::vector<CoverageGroup> PanelModel::coverage() const {
-  std::vector<CoverageGroup> groups = {{"Joint",
-                                        {{"orientations",
-                                          status_.orientation_samples,
-                                          kAdvisedOrientations,
-                                          status_.joint_done != 0}}}};
-  if (model_.hasTorqueModel()) {
-    groups.push_back({"Poles", poleBars()});
-    groups.push_back({"Coils", coilBars()});
+  std::vector<CoverageGroup> groups = {{"Joint", {{"orientations", status_.joint}}}};
+  if (!status_.poles.empty()) {
+    groups.push_back({"Poles", bars("pole", status_.poles)});
+    groups.push_back({"Coils", bars("coil", status_.coils)});
   }
   return groups;
 }
 
-std::vector<CoverageBar> PanelModel::poleBars() const {
-  std::vector<Sample> samples;
-  samples.reserve(samples_.samples().size());
-  for (const auto& [id, message] : samples_.samples()) {
-    if (message.current.size() == nominal_.coils.size() || message.has_torque == 0) {
-      append(message, samples);
-    }
-  }
-  const SampleCoverage seen = sampleCoverage(model_,
-                                             samples,
-                                             model_.space().coordinatesOf(nominal_),
-                                             EstimationOptions{}.current_threshold);
-  std::vector<CoverageBar> bars;
-  bars.reserve(seen.poles.size());
-  for (std::size_t i = 0; i < seen.poles.size(); ++i) {
-    const std::string name = "pole_" + std::to_string(i + 1);
-    const auto estimate = estimates_.find(name + "/polar");
-    const bool is_done =
-        isIdentified() && estimate != estimates_.end() && estimate->second.observable != 0;
-    bars.push_back({name, seen.poles[i], kAdvisedPerPole, is_done});
-  }
-  return bars;
-}
-
-std::vector<CoverageBar> PanelModel::coilBars() const {
-  std::vector<CoverageBar> bars;
-  bars.reserve(nominal_.coils.size());
-  for (std::size_t j = 0; j < nominal_.coils.size(); ++j) {
-    const bool is_told = j < status_.torque_samples.size();
-    const bool is_done = j < status_.coil_done.size() && status_.coil_done[j] != 0;
-    bars.push_back({"coil_" + std::to_string(j + 1),
-                    is_told ? status_.torque_samples[j] : 0U,
-                    kAdvisedPerCoil,
-                    is_done});
-  }
-  return bars;
-}
-
 std::string PanelModel::nextStep() const {
-  return has_status_ ? status_.next_step : "Waiting for the calibration node.";
+  return status_.next_step.empty() ? "Waiting for the calibration node." : status_.next_step;
 }
 
 std::string PanelModel::revision() const {
@@ -236,58 +154,42 @@ std::string PanelModel::revision() const {
   return "revision " + std::to_string(parameters_.revision) + ", " + parameters_.source;
 }
 
-std::string PanelModel::verdict() const {
-  if (parameters_.source == msg::ActuatorParameters::RESTORED) {
-    return "Restored: run a cycle, or see the saved report, for the uncertainty.";
-  }
-  if (!isIdentified()) {
-    return "Not calibrated.";
-  }
-  std::string text =
-      format("Orientation known to %.2g mrad", 1e3 * accepted_.orientation_uncertainty);
-  double torque = 0.0;
-  if (accepted_.torque_uncertainty > 0.0 && peak_torque_ > 0.0) {
-    torque = accepted_.torque_uncertainty / peak_torque_;
-    text += format(", torque to %.2g %%", 100.0 * torque);
-  }
-  text += ": " + gradeOf(accepted_.orientation_uncertainty, torque) + ".";
-  const auto open = std::count_if(estimates_.begin(), estimates_.end(), [](const auto& item) {
-    return item.second.observable == 0;
-  });
-  if (open > 0) {
-    text += format(" %td of %zu parameters are not identified.", open, estimates_.size());
-  }
-  return text;
-}
-
-// A report may outlive its parameters: after a reset it is still the last one.
-bool PanelModel::isIdentified() const {
-  return parameters_.source == msg::ActuatorParameters::IDENTIFIED && !estimates_.empty();
+std::string PanelModel::grade() const {
+  return status_.grade.empty() ? "" : "Grade: " + status_.grade + ". " + status_.grade_reason;
 }
 
 std::vector<ParameterLine> PanelModel::parameters() const {
-  if (!isIdentified()) {
+  if (parameters_.source.empty()) {
     return {};
   }
   std::vector<ParameterLine> lines;
-  lines.reserve(order_.size());
-  for (const std::string& name : order_) {
-    const msg::ParameterEstimate& estimate = estimates_.at(name);
-    if (estimate.observable == 0 || !std::isfinite(estimate.stddev)) {
-      lines.push_back({name, "–", "not identified"});
-    } else if (isAngle(name)) {
-      lines.push_back(
-          {name, format("%.5f rad", estimate.value), format("± %.3f mrad", 1e3 * estimate.stddev)});
-    } else {
-      lines.push_back({name, format("%.5g", estimate.value), format("± %.2g", estimate.stddev)});
-    }
+  for (std::size_t k = 0; k < parameters_.joints.size(); ++k) {
+    const msg::JointAxis& joint = parameters_.joints[k];
+    const std::string name = numbered("joint", k);
+    lines.push_back(line(name + "/offset", joint.offset, joint.offset_stddev, "rad"));
+    lines.push_back(axisLine(name + "/axis", joint));
+  }
+  for (std::size_t i = 0; i < parameters_.poles.size(); ++i) {
+    addAxis(numbered("pole", i), parameters_.poles[i], lines);
+  }
+  for (std::size_t j = 0; j < parameters_.coils.size(); ++j) {
+    addAxis(numbered("coil", j), parameters_.coils[j], lines);
+  }
+  return lines;
+}
+
+std::vector<ParameterLine> PanelModel::estimates() const {
+  std::vector<ParameterLine> lines;
+  lines.reserve(report_.estimates.size());
+  for (const msg::ParameterEstimate& estimate : report_.estimates) {
+    lines.push_back(line(estimate.name, estimate.value, estimate.stddev, estimate.unit));
   }
   return lines;
 }
 
 std::vector<double> PanelModel::errorHistory() const {
-  std::vector<double> errors = last_.error_history;
-  if (!isStandardized()) {
+  std::vector<double> errors = report_.error_history;
+  if (!isPure(report_.error_unit)) {
     for (double& error : errors) {
       error *= 1e3;
     }
@@ -295,20 +197,12 @@ std::vector<double> PanelModel::errorHistory() const {
   return errors;
 }
 
-// Orientations and torques together have no common unit.
-bool PanelModel::isStandardized() const {
-  return last_.cycle == msg::CalibrationReport::REFINE && status_.orientation_samples > 0;
-}
-
 std::string PanelModel::historyTitle() const {
-  if (last_.cycle.empty()) {
+  if (report_.cycle.empty()) {
     return "No cycle has run";
   }
-  if (isStandardized()) {
-    return cycleName(last_) + ": standardised residuals [1]";
-  }
-  const bool is_joint = last_.cycle == msg::CalibrationReport::JOINT;
-  return cycleName(last_) + (is_joint ? ": orientation error [mrad]" : ": torque error [mN·m]");
+  return "Cycle " + cycleName(report_) + ": error [" +
+         (isPure(report_.error_unit) ? "1" : "m" + report_.error_unit) + "]";
 }
 
 }  // namespace sac

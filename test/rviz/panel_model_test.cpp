@@ -2,29 +2,56 @@
 
 #include <limits>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
-#include "support/scenarios.hpp"
-
 namespace sac {
 namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 ros::WallTime now() {
   return ros::WallTime(1000.0);
 }
 
-PanelModel paperPanel() {
-  return PanelModel(scenarios::paperNominal(), "/actuator");
+/// A joint whose first offset and first axis are identified, a pole, and a coil with a gain.
+msg::ActuatorParameters parameters() {
+  msg::ActuatorParameters message;
+  message.source = "identified";
+  message.revision = 7;
+  for (auto& joint : message.joints) {
+    joint.offset_stddev = kUnknown;
+    joint.axis_stddev = {kUnknown, kUnknown};
+  }
+  message.joints[0].axis.x = 1.0;
+  message.joints[0].offset = 0.01234;
+  message.joints[0].offset_stddev = 1.5e-4;
+  message.joints[0].axis_stddev = {1e-4, 2e-4};
+  message.poles.resize(1);
+  message.poles[0].polar = 0.25;
+  message.poles[0].polar_stddev = 3e-5;
+  message.poles[0].azimuth_stddev = kUnknown;
+  message.poles[0].gain_stddev = kUnknown;
+  message.coils.resize(1);
+  message.coils[0].gain = 1.05;
+  message.coils[0].gain_stddev = 2e-3;
+  return message;
 }
 
-msg::ActuatorParameters parametersOf(const std::string& source) {
-  msg::ActuatorParameters message = parametersToRos(scenarios::paperTruth());
-  message.source = source;
-  message.revision = 7;
+msg::CalibrationReport report(const std::string& unit) {
+  msg::CalibrationReport message;
+  message.cycle = msg::CalibrationReport::REFINE;
+  message.error_unit = unit;
+  message.error_history = {0.02, 0.001};
+  message.estimates.resize(2);
+  message.estimates[0].name = "torque_bias/x";
+  message.estimates[0].unit = "N·m";
+  message.estimates[0].value = 0.01234;
+  message.estimates[0].stddev = 1.5e-4;
+  message.estimates[1].name = "coil_3/polar";
+  message.estimates[1].unit = "rad";
+  message.estimates[1].stddev = kUnknown;
   return message;
 }
 
@@ -39,26 +66,8 @@ diagnostic_msgs::DiagnosticArray diagnosticsOf(const std::string& name,
   return array;
 }
 
-msg::CalibrationReport refinementOf(double orientation_uncertainty, double torque_uncertainty) {
-  msg::CalibrationReport report;
-  report.cycle = msg::CalibrationReport::REFINE;
-  report.success = 1;
-  report.orientation_uncertainty = orientation_uncertainty;
-  report.torque_uncertainty = torque_uncertainty;
-  report.error_history = {0.02, 0.001};
-  report.estimates.resize(2);
-  report.estimates[0].name = "joint_1/offset";
-  report.estimates[0].value = 0.01234;
-  report.estimates[0].stddev = 1.5e-4;
-  report.estimates[0].observable = 1;
-  report.estimates[1].name = "coil_3/polar";
-  report.estimates[1].stddev = std::numeric_limits<double>::infinity();
-  report.estimates[1].observable = 0;
-  return report;
-}
-
 TEST(PanelModel, TellsTheHealthOfTheStreamsOfItsNamespaceOnly) {
-  PanelModel panel = paperPanel();
+  PanelModel panel("/actuator");
   panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), now());
   panel.receive(diagnosticsOf("actuator/calibration: measured_torque", 2, "silent"), now());
   panel.receive(diagnosticsOf("other/calibration: coil_currents", 0, "good"), now());
@@ -71,7 +80,7 @@ TEST(PanelModel, TellsTheHealthOfTheStreamsOfItsNamespaceOnly) {
 }
 
 TEST(PanelModel, OldHealthIsUnknown) {
-  PanelModel panel = paperPanel();
+  PanelModel panel("/actuator");
   panel.receive(diagnosticsOf("actuator/calibration: joint_states", 0, "good"), now());
   panel.receive(diagnosticsOf("actuator/coil_driver: output", 1, "tripped"), now());
   const ros::WallTime later = now() + ros::WallDuration(10.0);
@@ -80,7 +89,7 @@ TEST(PanelModel, OldHealthIsUnknown) {
 }
 
 TEST(PanelModel, TellsTheMostSeriousTroubleFirst) {
-  PanelModel panel = paperPanel();
+  PanelModel panel("/actuator");
   panel.receive(diagnosticsOf("actuator/a: output", 1, "warm"), now());
   panel.receive(diagnosticsOf("actuator/b: link", 2, "lost"), now());
   panel.receive(diagnosticsOf("actuator/c: link", 0, "good"), now());
@@ -90,119 +99,98 @@ TEST(PanelModel, TellsTheMostSeriousTroubleFirst) {
   EXPECT_EQ(troubles[1].name, "a: output");
 }
 
-TEST(PanelModel, ShowsWhatIsSampledAndWhatIsMissing) {
-  PanelModel panel = paperPanel();
+TEST(PanelModel, ShowsTheCoverageThatItIsTold) {
+  PanelModel panel("/actuator");
   msg::CalibrationStatus status;
-  status.orientation_samples = 4;
-  status.torque_samples.assign(24, 0U);
-  status.torque_samples[4] = 2;
-  status.coil_done.assign(24, 0);
-  status.coil_done[4] = 1;
-  status.joint_done = 1;
+  status.joint.samples = 4;
+  status.joint.identified = 1;
+  status.poles.resize(8);
+  status.poles[0].samples = 1;
+  status.poles[0].wanted = 3;
+  status.coils.resize(24);
+  status.coils[4].samples = 5;
+  status.coils[4].seen_well = 1;
   panel.receive(status);
-  // Coil 1 at azimuth 0 sees pole 1 on the equator there, and no other at this orientation.
-  msg::CalibrationSample sample;
-  sample.id = 1;
-  sample.has_torque = 1;
-  sample.orientation.w = 1.0;
-  sample.current.assign(24, 0.0);
-  sample.current[0] = 2.0;
-  panel.receive(sample);
   const auto groups = panel.coverage();
   ASSERT_EQ(groups.size(), 3U);
-  EXPECT_EQ(groups[0].bars[0].count, 4U);
-  EXPECT_TRUE(groups[0].bars[0].done);
+  EXPECT_EQ(groups[0].bars[0].coverage.samples, 4U);
+  EXPECT_TRUE(groups[0].bars[0].coverage.identified);
   ASSERT_EQ(groups[1].bars.size(), 8U);
-  EXPECT_EQ(groups[1].bars[0].count, 1U);
-  EXPECT_EQ(groups[1].bars[4].count, 0U);
+  EXPECT_EQ(groups[1].bars[0].name, "pole_1");
+  EXPECT_EQ(groups[1].bars[0].coverage.wanted, 3U);
   ASSERT_EQ(groups[2].bars.size(), 24U);
-  EXPECT_EQ(groups[2].bars[4].count, 2U);
-  EXPECT_TRUE(groups[2].bars[4].done);
-  EXPECT_FALSE(groups[2].bars[5].done);
-}
-
-TEST(PanelModel, SamplesThatCannotBeAreLeftOut) {
-  PanelModel panel = paperPanel();
-  msg::CalibrationSample sample;
-  sample.id = 1;
-  sample.has_torque = 1;
-  sample.has_orientation = 1;
-  sample.orientation.w = 0.5;
-  sample.current.assign(24, 2.0);
-  panel.receive(sample);
-  sample.id = 2;
-  sample.orientation.w = 1.0;
-  sample.current.assign(30, 2.0);
-  panel.receive(sample);
-  EXPECT_EQ(panel.coverage()[1].bars[0].count, 0U);
+  EXPECT_EQ(groups[2].bars[4].name, "coil_5");
+  EXPECT_TRUE(groups[2].bars[4].coverage.seen_well);
+  EXPECT_EQ(panel.coils(), 24U);
 }
 
 TEST(PanelModel, AJointWithoutTorqueModelHasNoPolesAndCoils) {
-  Actuator joint_only = scenarios::paperNominal();
-  joint_only.poles.clear();
-  joint_only.coils.clear();
-  joint_only.torque_curve.reset();
-  const PanelModel panel(joint_only, "actuator");
+  PanelModel panel("actuator");
+  panel.receive(msg::CalibrationStatus());
   EXPECT_EQ(panel.coverage().size(), 1U);
 }
 
-TEST(PanelModel, JudgesByTheUncertaintyOverTheWorkspace) {
-  PanelModel panel = paperPanel();
-  EXPECT_EQ(panel.verdict(), "Not calibrated.");
-  panel.receive(parametersOf("identified"));
-  panel.receive(refinementOf(3e-4, 1e-4));
-  EXPECT_EQ(panel.verdict().substr(0, 34), "Orientation known to 0.3 mrad, tor");
-  EXPECT_NE(panel.verdict().find(": good."), std::string::npos);
-  EXPECT_NE(panel.verdict().find("1 of 2 parameters are not identified"), std::string::npos);
-  panel.receive(refinementOf(3e-3, 1e-4));
-  EXPECT_NE(panel.verdict().find(": fair."), std::string::npos);
-  panel.receive(refinementOf(3e-4, 1e-1));
-  EXPECT_NE(panel.verdict().find(": poor."), std::string::npos);
+TEST(PanelModel, ShowsTheGradeThatItIsTold) {
+  PanelModel panel("/actuator");
+  EXPECT_EQ(panel.grade(), "");
+  EXPECT_EQ(panel.nextStep(), "Waiting for the calibration node.");
+  msg::CalibrationStatus status;
+  status.grade = msg::CalibrationReport::NOT_VALIDATED;
+  status.grade_reason = "Nothing judges it.";
+  status.next_step = "Capture.";
+  panel.receive(status);
+  EXPECT_EQ(panel.grade(), "Grade: not_validated. Nothing judges it.");
+  EXPECT_EQ(panel.nextStep(), "Capture.");
 }
 
-TEST(PanelModel, NoParameterWithoutItsUncertainty) {
-  PanelModel panel = paperPanel();
-  panel.receive(parametersOf("identified"));
-  panel.receive(refinementOf(3e-4, 1e-4));
+TEST(PanelModel, ShowsTheParametersInForceWithTheirUncertainty) {
+  PanelModel panel("/actuator");
+  EXPECT_TRUE(panel.parameters().empty());
+  EXPECT_EQ(panel.revision(), "no parameters yet");
+  panel.receive(parameters());
+  EXPECT_EQ(panel.revision(), "revision 7, identified");
   const auto lines = panel.parameters();
-  ASSERT_EQ(lines.size(), 2U);
+  ASSERT_EQ(lines.size(), 6U + 2U + 3U);
+  EXPECT_EQ(lines[0].name, "joint_1/offset");
   EXPECT_EQ(lines[0].value, "0.01234 rad");
   EXPECT_EQ(lines[0].uncertainty, "± 0.150 mrad");
-  EXPECT_EQ(lines[1].value, "–");
-  EXPECT_EQ(lines[1].uncertainty, "not identified");
+  EXPECT_EQ(lines[1].value, "1.0000, 0.0000, 0.0000");
+  EXPECT_EQ(lines[1].uncertainty, "± 0.200 mrad");
+  EXPECT_EQ(lines[6].value, "0.25000 rad");
+  EXPECT_EQ(lines.back().name, "coil_1/gain");
+  EXPECT_EQ(lines.back().value, "1.05000");
+  EXPECT_EQ(lines.back().uncertainty, "± 0.002");
 }
 
-TEST(PanelModel, NominalAndRestoredParametersHaveNoUncertaintyToShow) {
-  for (const std::string source : {"nominal", "restored"}) {
-    PanelModel panel = paperPanel();
-    panel.receive(refinementOf(3e-4, 1e-4));
-    panel.receive(parametersOf(source));
-    // The last report is latched: it may come after the parameters that replaced its own.
-    panel.receive(refinementOf(3e-4, 1e-4));
-    EXPECT_TRUE(panel.parameters().empty()) << source;
-    EXPECT_EQ(panel.verdict().find("known"), std::string::npos) << source;
-    EXPECT_EQ(panel.revision(), "revision 7, " + source);
+TEST(PanelModel, WhatIsNotIdentifiedHasNoValueToShow) {
+  PanelModel panel("/actuator");
+  panel.receive(parameters());
+  const auto lines = panel.parameters();
+  for (const std::size_t place : {2U, 3U, 7U}) {
+    EXPECT_EQ(lines[place].value, "–") << lines[place].name;
+    EXPECT_EQ(lines[place].uncertainty, "not identified") << lines[place].name;
   }
 }
 
-TEST(PanelModel, AFailedCycleShowsItsHistoryButNoParameters) {
-  PanelModel panel = paperPanel();
-  msg::CalibrationReport failed = refinementOf(1.0, 1.0);
-  failed.success = 0;
-  panel.receive(failed);
-  EXPECT_TRUE(panel.parameters().empty());
-  EXPECT_EQ(panel.errorHistory(), (std::vector<double>{20.0, 1.0}));
-  EXPECT_EQ(panel.historyTitle(), "Refinement: torque error [mN·m]");
+TEST(PanelModel, EstimatesHaveTheUnitThatTheReportTells) {
+  PanelModel panel("/actuator");
+  panel.receive(report("1"));
+  const auto lines = panel.estimates();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].value, "0.01234 N·m");
+  EXPECT_EQ(lines[0].uncertainty, "± 0.150 mN·m");
+  EXPECT_EQ(lines[1].uncertainty, "not identified");
 }
 
-TEST(PanelModel, ARefinementOfOrientationsAndTorquesHasNoUnit) {
-  PanelModel panel = paperPanel();
-  msg::CalibrationStatus status;
-  status.orientation_samples = 3;
-  panel.receive(status);
-  panel.receive(refinementOf(3e-4, 1e-4));
+TEST(PanelModel, TheHistoryHasTheUnitThatTheReportTells) {
+  PanelModel panel("/actuator");
+  EXPECT_EQ(panel.historyTitle(), "No cycle has run");
+  panel.receive(report("N·m"));
+  EXPECT_EQ(panel.errorHistory(), (std::vector<double>{20.0, 1.0}));
+  EXPECT_EQ(panel.historyTitle(), "Cycle refine: error [mN·m]");
+  panel.receive(report("1"));
   EXPECT_EQ(panel.errorHistory(), (std::vector<double>{0.02, 0.001}));
-  EXPECT_EQ(panel.historyTitle(), "Refinement: standardised residuals [1]");
+  EXPECT_EQ(panel.historyTitle(), "Cycle refine: error [1]");
 }
 
 }  // namespace
