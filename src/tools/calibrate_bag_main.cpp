@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -141,6 +142,12 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
   std::cout << openParagraph(session);
 }
 
+/// The last word.
+void printGrade(const CalibrationSession& session) {
+  const GradedCalibration graded = gradeCalibration(session);
+  std::cout << "grade: " << gradeName(graded.grade) << "\n" << graded.reason << "\n";
+}
+
 void writeResult(const CalibrationSession& session,
                  const CalibrationOrigin& origin,
                  const Files& files,
@@ -197,9 +204,11 @@ int calibrateBag(const CalibrateBagOptions& options) {
   }
   if (!has_result) {
     std::cout << "No cycle succeeded: " << files.description << " is not written.\n";
+    printGrade(session);
     return kIncomplete;
   }
   writeResult(session, origin, files, options.overwrite);
+  printGrade(session);
   return session.isComplete() ? kComplete : kIncomplete;
 }
 

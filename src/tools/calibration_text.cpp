@@ -112,14 +112,12 @@ std::string rowText(const Row& row) {
   } else {
     text += format(" %16.6f %13.3f %11.3f", p.value, 1e3 * (p.value - p.nominal), 1e3 * p.stddev);
   }
-  if (!row.truth) {
-    return text + "\n";
+  if (row.truth) {
+    text += format(" %12.6f", *row.truth);
+    text += hasValue(p) ? format(" %13.3f %10.2f", 1e3 * errorOf(row), errorOf(row) / p.stddev)
+                        : format(" %13s %10s", "-", "-");
   }
-  text += format(" %12.6f", *row.truth);
-  if (!hasValue(p)) {
-    return text + format(" %13s %10s\n", "-", "-");
-  }
-  return text + format(" %13.3f %10.2f\n", 1e3 * errorOf(row), errorOf(row) / p.stddev);
+  return text + "  " + p.unit + "\n";
 }
 
 std::string coverageLine(const std::vector<Row>& rows) {
@@ -213,11 +211,12 @@ std::string parameterTable(const CalibrationSession& session,
                            const std::optional<Actuator>& truth) {
   std::string text = format("%-18s %12s %16s %13s %11s",
                             "parameter",
-                            "nominal[rad]",
-                            "identified[rad]",
-                            "change[mrad]",
-                            "std[mrad]");
-  text += truth ? format(" %12s %13s %10s\n", "truth[rad]", "error[mrad]", "error/std") : "\n";
+                            "nominal",
+                            "identified",
+                            "change [e-3]",
+                            "std [e-3]");
+  text += truth ? format(" %12s %13s %10s", "truth", "error [e-3]", "error/std") : "";
+  text += "  unit\n";
   const std::vector<Row> rows = rowsOf(session, truth);
   for (const Row& row : rows) {
     text += rowText(row);
