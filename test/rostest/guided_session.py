@@ -106,7 +106,8 @@ class GuidedSession(unittest.TestCase):
         self.node_restarted(session)
         self.assertEqual(session.wait(), 0, "\n".join(session.lines))
         self.assertTrue(session.says("they agree with the parameters"), session.lines)
-        self.assertTrue(session.says("73 of 73 parameters identified"), session.lines)
+        self.assertTrue(session.says("all 73 parameters are identified"), session.lines)
+        self.assertTrue(session.says("Grade: good."), session.lines)
         self.check_result(session)
 
     def fault_is_told_and_cured(self, session, fault, part):

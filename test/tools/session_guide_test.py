@@ -13,10 +13,10 @@ from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 class ExcitedCoil(unittest.TestCase):
     def test_is_the_one_that_carries_current(self):
-        self.assertEqual(progress.excited_coil([0.001, -0.002, 0.0], 2.0), 0)
-        self.assertEqual(progress.excited_coil([0.001, -1.99, 0.0], 2.0), 2)
-        self.assertIsNone(progress.excited_coil([2.0, -1.99, 0.0], 2.0))
-        self.assertEqual(progress.excited_coil([], 2.0), 0)
+        self.assertEqual(progress.excited_coil([0.001, -0.002, 0.0], 0.05), 0)
+        self.assertEqual(progress.excited_coil([0.001, -0.05, 0.0], 0.05), 2)
+        self.assertIsNone(progress.excited_coil([2.0, -1.99, 0.0], 0.05))
+        self.assertEqual(progress.excited_coil([], 0.05), 0)
 
 
 class MissingPatterns(unittest.TestCase):
@@ -68,40 +68,29 @@ class ValidationPoses(unittest.TestCase):
 
 
 class Cycles(unittest.TestCase):
-    def test_a_planned_session_goes_from_the_joint_to_the_refinement(self):
-        self.assertEqual(
-            progress.cycles_for([2, 3, 0]), [("calibrate_joint", 0), ("refine", 0)]
-        )
-
-    def test_poles_go_with_the_coil_of_most_samples(self):
-        self.assertEqual(
-            progress.cycles_for([4, 30, 0, 4]),
-            [
-                ("calibrate_joint", 0),
-                ("calibrate_poles", 2),
-                ("calibrate_coil", 1),
-                ("calibrate_coil", 4),
-                ("refine", 0),
-            ],
-        )
-
-    def test_without_coils_there_is_only_the_joint_to_refine(self):
-        self.assertEqual(progress.cycles_for([]), [("calibrate_joint", 0), ("refine", 0)])
+    def test_each_has_its_service(self):
+        self.assertEqual(progress.service_of("joint"), ("calibrate_joint", 0))
+        self.assertEqual(progress.service_of("poles:2"), ("calibrate_poles", 2))
+        self.assertEqual(progress.service_of("coil:14"), ("calibrate_coil", 14))
+        self.assertEqual(progress.service_of("refine"), ("refine", 0))
 
 
-class WorstStddev(unittest.TestCase):
+class AllIdentified(unittest.TestCase):
     @staticmethod
-    def estimate(name, stddev, observable=True):
-        return SimpleNamespace(name=name, stddev=stddev, observable=observable)
+    def status(joint, poles, coils):
+        def parts(flags):
+            return [SimpleNamespace(identified=flag) for flag in flags]
 
-    def test_is_of_identified_parameters_only(self):
-        estimates = [
-            self.estimate("a", 1e-4),
-            self.estimate("b", 3e-4),
-            self.estimate("c", 1.0, observable=False),
-        ]
-        self.assertEqual(progress.worst_stddev(estimates), ("b", 3e-4))
-        self.assertIsNone(progress.worst_stddev(estimates[2:]))
+        return SimpleNamespace(joint=parts([joint])[0], poles=parts(poles), coils=parts(coils))
+
+    def test_needs_joint_poles_and_coils(self):
+        self.assertTrue(progress.all_identified(self.status(True, [True] * 8, [True] * 24)))
+        self.assertFalse(progress.all_identified(self.status(False, [True], [True])))
+        self.assertFalse(progress.all_identified(self.status(True, [True, False], [True])))
+        self.assertFalse(progress.all_identified(self.status(True, [True], [False, True])))
+
+    def test_an_actuator_may_be_a_joint_alone(self):
+        self.assertTrue(progress.all_identified(self.status(True, [], [])))
 
 
 class ProgressOfASession(unittest.TestCase):

@@ -5,7 +5,7 @@ from spherical_actuator_calibration.msg import CalibrationStatus
 from spherical_actuator_calibration.srv import Calibrate, Capture, ListSamples, PlanPoses, RemoveSample
 from std_srvs.srv import Trigger
 
-from .progress import Measured, Pose, excited_coil
+from .progress import Measured, Pose, excited_coil, service_of
 
 SERVICES = {
     "calibrate_coil": Calibrate,
@@ -20,6 +20,7 @@ SERVICES = {
     "validate": Calibrate,
 }
 PATIENCE = 1.0  # [s] between two looks for a node that is gone
+LATEST = 1.0  # [s] after which a status counts as new, whatever its time
 
 
 class Calibration:
@@ -28,16 +29,24 @@ class Calibration:
     def __init__(self, ns, terminal):
         self._node = ns + "/calibration"
         self._terminal = terminal
-        self.status = None
+        self._status = None
+        self._answered = rospy.Time()  # time of what the node answered last
         self._subscriber = rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep)
 
     def _keep(self, status):
-        self.status = status
+        self._status = status
 
     def wait_until_up(self):
         self._wait_for("save")
-        while self.status is None:
+        while self._status is None:
             rospy.sleep(0.05)
+
+    def status(self):
+        """The status that goes with the last answer: topics may be slower than services."""
+        end = rospy.get_time() + LATEST
+        while self._status.header.stamp < self._answered and rospy.get_time() < end:
+            rospy.sleep(0.02)
+        return self._status
 
     def _wait_for(self, service):
         while True:
@@ -54,7 +63,7 @@ class Calibration:
     def _call(self, service, **fields):
         """Answer of a service; None when the node went away, and is back."""
         try:
-            return rospy.ServiceProxy(f"{self._node}/{service}", SERVICES[service])(**fields)
+            answer = rospy.ServiceProxy(f"{self._node}/{service}", SERVICES[service])(**fields)
         except rospy.ROSInterruptException:
             raise
         except (rospy.ServiceException, rospy.ROSException):
@@ -64,6 +73,10 @@ class Calibration:
             self._wait_for(service)
             self._terminal.say("The calibration node is back; the session goes on.")
             return None
+        for part in ("sample", "report"):
+            if hasattr(answer, part):
+                self._answered = getattr(answer, part).header.stamp
+        return answer
 
     def call(self, service, **fields):
         """Answer of a service that may be asked twice."""
@@ -76,13 +89,19 @@ class Calibration:
         """Answer, or None when it is not known whether a sample was stored."""
         return self._call("capture", duration=duration, validation=validation)
 
-    def measured(self, current):
+    def run(self, cycle):
+        """Answer of a cycle, as the status names it."""
+        service, coil = service_of(cycle)
+        return self.call(service, coil=coil)
+
+    def pattern_of(self, sample):
+        """The coil that a sample excites, see excited_coil."""
+        return excited_coil(sample.current, self._status.current_threshold)
+
+    def measured(self):
         """Samples that are held."""
         samples = self.call("list_samples").samples
-        return [
-            Measured(tuple(s.joint_position), excited_coil(s.current, current), s.validation)
-            for s in samples
-        ]
+        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation) for s in samples]
 
     def plan(self, poses, wanted_stddev, cycle="refine"):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan."""

@@ -4,8 +4,6 @@ import dataclasses
 import random
 
 SAME_POSE = 0.02  # [rad] largest difference of joint angles
-POSES_FOR_POLES = 9  # with one coil excited, of which a good choice tells every pole
-EXCITED = 0.3  # share of the current that a coil must carry to count as excited
 
 
 @dataclasses.dataclass(frozen=True)
@@ -33,9 +31,9 @@ class Measured:
     validation: bool
 
 
-def excited_coil(currents, nominal_current):
-    """Number of the one coil that carries current; 0 without any, None when there are several."""
-    excited = [n + 1 for n, i in enumerate(currents) if abs(i) > EXCITED * nominal_current]
+def excited_coil(currents, threshold):
+    """Number of the one coil that counts as excited; 0 without any, None when there are several."""
+    excited = [n + 1 for n, i in enumerate(currents) if abs(i) >= threshold]
     if not excited:
         return 0
     return excited[0] if len(excited) == 1 else None
@@ -74,27 +72,15 @@ def validation_poses(count, coils_each, coils, tilt, seed):
     return poses
 
 
-def cycles_for(torque_samples):
-    """Cycles to run on the samples, as (service, coil): joint, then poles and other coils where one coil
-    was excited at enough poses to tell all poles, and at last refine, which needs neither of them."""
-    cycles = [("calibrate_joint", 0)]
-    most = max(torque_samples, default=0)
-    if most >= POSES_FOR_POLES:
-        main = torque_samples.index(most) + 1
-        cycles.append(("calibrate_poles", main))
-        others = (n + 1 for n, count in enumerate(torque_samples) if count and n + 1 != main)
-        cycles += [("calibrate_coil", coil) for coil in others]
-    cycles.append(("refine", 0))
-    return cycles
+def service_of(cycle):
+    """Service and coil of a cycle as the calibration node names it: "coil:3" gives ("calibrate_coil", 3)."""
+    name, _, coil = cycle.partition(":")
+    return name if name == "refine" else "calibrate_" + name, int(coil or 0)
 
 
-def worst_stddev(estimates):
-    """Name and standard deviation [rad] of the least certain identified parameter, or None."""
-    identified = [e for e in estimates if e.observable]
-    if not identified:
-        return None
-    worst = max(identified, key=lambda e: e.stddev)
-    return worst.name, worst.stddev
+def all_identified(status):
+    """Whether the node has identified the joint, every pole and every coil."""
+    return all(part.identified for part in (status.joint, *status.poles, *status.coils))
 
 
 class Progress:

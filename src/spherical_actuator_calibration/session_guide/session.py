@@ -23,7 +23,6 @@ class Session:
         self._terminal = terminal
         self._tilt = actuator["workspace"]["tilt_limit"]
         self._coils = len(actuator.get("coils", []))
-        self._parameters = 9 + 2 * (len(actuator.get("poles", [])) + self._coils)
         names = [joint["name"] for joint in actuator["joints"]]
         self._calibration = Calibration(options.ns, terminal)
         self._laboratory = Laboratory(options.ns, self._coils, names)
@@ -34,6 +33,7 @@ class Session:
         """Returns whether all cycles succeeded and the result was saved."""
         try:
             self._calibration.wait_until_up()
+            self._require_current()
             self._measure(self._planned_poses())
             is_complete = self._estimate()
             for _ in range(MOST_ROUNDS):
@@ -46,10 +46,15 @@ class Session:
         finally:
             self._laboratory.release()
 
+    def _require_current(self):
+        threshold = self._calibration.status().current_threshold
+        if self._coils and self._options.current < threshold:
+            raise RuntimeError(f"--current: below {threshold} A a coil counts as off.")
+
     # -- measuring -----------------------------------------------------------------------------------
 
     def _measured(self):
-        return self._calibration.measured(self._options.current)
+        return self._calibration.measured()
 
     def _planned_poses(self):
         """Poses that are still to be measured, after those that the node holds."""
@@ -160,7 +165,7 @@ class Session:
         if not sample.has_orientation:
             self._terminal.say_once("The sample has no orientation: check the tracker.")
             return False
-        if progress.excited_coil(sample.current, self._options.current) != pattern:
+        if self._calibration.pattern_of(sample) != pattern:
             self._terminal.say_once("The currents changed during the capture: check the amplifier.")
             return False
         if pattern and not sample.has_torque:
@@ -170,14 +175,12 @@ class Session:
 
     def _look_at_the_joint(self):
         """Tells how well the joint is known so far, as soon as enough poses are measured."""
-        status = self._calibration.status
-        places = [pose for pose in progress.poses_of(self._measured()) if not pose.validation]
-        if status is None or status.refined or len(places) < 3:
+        status = self._calibration.status()
+        if status.refined or "joint" not in status.next_cycles:
             return
-        answer = self._calibration.call("calibrate_joint", coil=0)
-        worst = progress.worst_stddev(answer.report.estimates) if answer.success else None
-        if worst:
-            self._uncertainty = f"joint ± {1e3 * worst[1]:.2f} mrad"
+        answer = self._calibration.run("joint")
+        if answer.success:
+            self._uncertainty = f"orientation ± {1e3 * answer.report.orientation_uncertainty:.2f} mrad"
 
     def _show(self):
         self._terminal.progress(f"{self._progress.text()}  {self._uncertainty}")
@@ -185,16 +188,13 @@ class Session:
     # -- estimating ----------------------------------------------------------------------------------
 
     def _estimate(self):
-        """Runs the cycles; returns whether every parameter is identified."""
-        is_complete = False
-        for service, coil in progress.cycles_for(list(self._calibration.status.torque_samples)):
-            answer = self._calibration.call(service, coil=coil)
+        """Runs the cycles that the samples are enough for; returns whether every parameter is identified."""
+        for cycle in self._calibration.status().next_cycles:
+            answer = self._calibration.run(cycle)
             self._terminal.say(("" if answer.success else "Not done: ") + answer.message)
-            if service == "refine" and answer.success:
-                identified = sum(estimate.observable for estimate in answer.report.estimates)
-                is_complete = identified == self._parameters
-                self._tell_uncertainty(answer.report, identified)
-        return is_complete
+        status = self._calibration.status()
+        self._terminal.say(status.grade_reason)
+        return progress.all_identified(status)
 
     def _conclude(self):
         """Validates and saves; returns whether the result can be used."""
@@ -207,13 +207,3 @@ class Session:
         answer = self._calibration.call("save")
         self._terminal.say(answer.message)
         return answer.success
-
-    def _tell_uncertainty(self, report, identified):
-        worst = progress.worst_stddev(report.estimates)
-        if not worst:
-            return
-        self._terminal.say(
-            f"{identified} of {self._parameters} parameters identified; the least certain, {worst[0]}, "
-            f"to ± {1e3 * worst[1]:.3f} mrad. Expected errors over the workspace: orientation "
-            f"{1e3 * report.orientation_uncertainty:.2f} mrad, torque {1e3 * report.torque_uncertainty:.2f} mN.m/A."
-        )
