@@ -4,7 +4,6 @@
 import math
 import os
 import resource
-import socket
 import subprocess
 import sys
 import tempfile
@@ -25,17 +24,12 @@ from calibration_client import (
     values_of,
     wait_for,
 )
+from emulated_lab import free_port
 from emulated_streams import EmulatedStreams, rotation
 
 POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.0, 0.1, 0.5))
 DURATION = 0.3  # [s] of a capture
 REST = 1.5  # [s] of the streams, long enough for an automatic sample
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
 
 
 def is_at(sample, pose):
