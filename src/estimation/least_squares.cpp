@@ -13,10 +13,16 @@
 namespace sac {
 namespace {
 
-/// Close to Gauss–Newton from the first step: the prior lies within the basin as a rule.
-constexpr double kFirstDamping = 1e-8;
+/// Enough that a direction which hardly anything tells does not throw the first steps into another
+/// basin, where samples that fit would be taken for outliers.
+constexpr double kFirstDamping = 1e-4;
 constexpr double kLeastDamping = 1e-16;
-constexpr double kLargestDamping = 1e8;
+constexpr double kLargestDamping = 1e16;
+/// Of a coordinate that nothing tells at some point, as of a pole that left the reach of all coils:
+/// without it there would be no step at all.
+constexpr double kLeastDiagonal = 1e-6;
+/// A step must bring at least this share of the decrease that the linear model promises.
+constexpr double kLeastGain = 1e-3;
 /// A smaller relative decrease of the cost cannot be told from its rounding.
 constexpr double kCostRounding = 1e-13;
 /// Size of coordinates for which the relative tolerance is meant at least: a tolerance of
@@ -143,7 +149,7 @@ class Descent {
   /// Takes the least damped step that does not raise the cost; false when there is none.
   bool advance(const NormalEquations& normal) {
     const Eigen::VectorXd x = result_.path.back();
-    for (; damping_ <= kLargestDamping; damping_ *= 10.0) {
+    for (; damping_ <= kLargestDamping; raiseDamping()) {
       const std::optional<Eigen::VectorXd> step = dampedStep(normal);
       if (!step) {
         continue;
@@ -151,9 +157,10 @@ class Descent {
       const Eigen::VectorXd moved = objective_.moved(x, *step);
       const bool is_fine = isFine(normal, x, *step);
       is_converged_ = isLast(x, *step, is_fine);
-      if (is_fine || is_converged_ || objective_.cost(moved) <= normal.cost) {
+      const double gain = is_fine || is_converged_ ? 1.0 : gainOf(normal, moved, *step);
+      if (gain > kLeastGain) {
         previous_step_ = step->norm();
-        damping_ = std::max(0.1 * damping_, kLeastDamping);
+        lowerDamping(gain);
         result_.path.push_back(moved);
         return true;
       }
@@ -161,9 +168,30 @@ class Descent {
     return false;
   }
 
+  /// Decrease of the cost over the one that the linear model promises.
+  double gainOf(const NormalEquations& normal,
+                const Eigen::VectorXd& moved,
+                const Eigen::VectorXd& step) const {
+    const double promised = -step.dot(2.0 * normal.gradient + normal.information * step);
+    return promised > 0.0 ? (normal.cost - objective_.cost(moved)) / promised : 0.0;
+  }
+
+  /// Nielsen's rule, as Madsen, Nielsen and Tingleff give it: the better the linear model, the less
+  /// damping.
+  void lowerDamping(double gain) {
+    const double factor = std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3));
+    damping_ = std::max(factor * damping_, kLeastDamping);
+    growth_ = 2.0;
+  }
+
+  void raiseDamping() {
+    damping_ *= growth_;
+    growth_ *= 2.0;
+  }
+
   std::optional<Eigen::VectorXd> dampedStep(const NormalEquations& normal) const {
     Eigen::MatrixXd damped = normal.information;
-    damped.diagonal() *= 1.0 + damping_;
+    damped.diagonal() += damping_ * normal.information.diagonal().cwiseMax(kLeastDiagonal);
     const Eigen::LLT<Eigen::MatrixXd> factor(damped);
     if (factor.info() != Eigen::Success) {
       return std::nullopt;
@@ -204,6 +232,7 @@ class Descent {
   LeastSquaresResult& result_;
   Objective objective_;
   double damping_ = kFirstDamping;
+  double growth_ = 2.0;         ///< of the damping, at the next refusal
   double previous_step_ = 0.0;  ///< 0: there was none
   bool is_converged_ = false;
 };
