@@ -13,9 +13,8 @@
 namespace sac {
 namespace {
 
-/// Enough that a direction which hardly anything tells does not throw the first steps into another
-/// basin, where samples that fit would be taken for outliers.
-constexpr double kFirstDamping = 1e-4;
+/// Close to Gauss–Newton from the first step: the prior lies within the basin as a rule.
+constexpr double kFirstDamping = 1e-8;
 constexpr double kLeastDamping = 1e-16;
 constexpr double kLargestDamping = 1e16;
 /// Of a coordinate that nothing tells at some point, as of a pole that left the reach of all coils:
