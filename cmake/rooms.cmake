@@ -1,11 +1,14 @@
 # Libraries are made of rooms: folders of include/, src/ and test/ of the same name. A room uses only rooms that
 # were added before it: the includes are held by dev/check_rooms, the symbols by the linker (see add_room()).
 
+option(WARNINGS_AS_ERRORS "For developers: another compiler warns of other things" OFF)
+
 # C++17, all warnings, and libraries found from an installed program without LD_LIBRARY_PATH.
 function(use_project_options target)
   target_compile_definitions(${target} PRIVATE PACKAGE_VERSION="${${PROJECT_NAME}_VERSION}")
   target_compile_options(${target} PRIVATE
-    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wzero-as-null-pointer-constant -Werror)
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wzero-as-null-pointer-constant
+    $<$<BOOL:${WARNINGS_AS_ERRORS}>:-Werror>)
   set_target_properties(${target} PROPERTIES
     CXX_STANDARD 17
     CXX_STANDARD_REQUIRED ON
