@@ -1,10 +1,9 @@
 #include "urdf_elements.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 #include <tinyxml2.h>
@@ -33,13 +32,8 @@ tinyxml2::XMLElement& childElement(tinyxml2::XMLElement& parent, const char* nam
 std::string exactTriple(const Eigen::Vector3d& v) {
   std::string text;
   for (const double value : v) {
-    std::array<char, 32> number = {};
-    const std::to_chars_result result = std::to_chars(number.data(),
-                                                      number.data() + number.size(),
-                                                      value + 0.0,
-                                                      std::chars_format::general,
-                                                      std::numeric_limits<double>::max_digits10);
-    text += (text.empty() ? "" : " ") + std::string(number.data(), result.ptr);
+    constexpr int kExact = std::numeric_limits<double>::max_digits10;
+    text += (text.empty() ? "" : " ") + roundedText(value + 0.0, kExact);
   }
   return text;
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
+#include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
@@ -42,9 +42,7 @@ constexpr std::array<Material, 7> kMaterials = {{{"shell", "0.6 0.62 0.66 0.15"}
                                                  {"south", "0.15 0.3 0.85 1"}}};
 
 std::string shortest(double value) {
-  std::array<char, 32> text = {};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value + 0.0).ptr;
-  return std::string(text.data(), end);
+  return shortestText(value + 0.0);
 }
 
 /// To nanometres or nanoradians: the last digits of sines differ between machines.
@@ -63,11 +61,8 @@ std::string significant(double value, double scale) {
   if (std::abs(value) < kRoundOff * scale) {
     return "0";
   }
-  std::array<char, 32> text = {};
   constexpr int kDigits = 6;
-  const auto end = std::to_chars(
-      text.data(), text.data() + text.size(), value, std::chars_format::general, kDigits);
-  return std::string(text.data(), end.ptr);
+  return roundedText(value, kDigits);
 }
 
 XMLElement& addChild(XMLElement& parent, const char* name) {

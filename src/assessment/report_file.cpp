@@ -30,7 +30,8 @@ std::vector<std::string> texts(const std::vector<std::string>& plain) {
 std::vector<std::string> matrixLines(const Eigen::MatrixXd& matrix) {
   std::vector<std::string> lines;
   lines.reserve(static_cast<std::size_t>(matrix.rows()));
-  for (const auto& row : matrix.rowwise()) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const Eigen::RowVectorXd row = matrix.row(i);
     lines.push_back(yamlNumbers(row));
   }
   return lines;

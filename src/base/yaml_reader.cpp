@@ -6,17 +6,17 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 
 #include <yaml-cpp/yaml.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/number_text.hpp"
 
 namespace sac {
 
@@ -88,31 +88,32 @@ bool isPlainScalar(const YAML::Node& node) {
   return node.IsScalar() && node.Tag() != kTagOfQuoted;
 }
 
+/// The text of a number without its plus sign, which the readers of numbers do not know.
+std::string withoutPlus(const std::string& text) {
+  return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
+}
+
 /// Reads the whole text as a number, YAML's spellings of infinity and NaN included.
-template <typename Number>
-bool readNumber(const YAML::Node& node, Number& number) {
+bool readNumber(const YAML::Node& node, double& number) {
   if (!isPlainScalar(node)) {
     return false;
   }
-  std::string text = node.Scalar();
-  // from_chars knows no leading plus sign.
-  const std::size_t begin = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
-  const char* first = text.data() + begin;
-  const char* last = text.data() + text.size();
-  const std::from_chars_result result = std::from_chars(first, last, number);
-  if (result.ec == std::errc::result_out_of_range && result.ptr == last) {
-    if constexpr (std::is_floating_point_v<Number>) {
-      number = std::numeric_limits<Number>::infinity();
-      return true;
-    }
-  }
-  if (result.ec == std::errc() && result.ptr == last) {
+  if (const std::optional<double> value = parsedNumber(withoutPlus(node.Scalar()))) {
+    number = *value;
     return true;
   }
-  if constexpr (std::is_floating_point_v<Number>) {
-    return YAML::convert<Number>::decode(node, number) && !std::isfinite(number);
+  return YAML::convert<double>::decode(node, number) && !std::isfinite(number);
+}
+
+/// Reads the whole text as a whole number.
+bool readNumber(const YAML::Node& node, std::int64_t& number) {
+  if (!isPlainScalar(node)) {
+    return false;
   }
-  return false;
+  const std::string text = withoutPlus(node.Scalar());
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result result = std::from_chars(text.data(), end, number);
+  return result.ec == std::errc() && result.ptr == end;
 }
 
 bool readBoolean(const YAML::Node& node, bool& value) {

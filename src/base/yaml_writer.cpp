@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "spherical_actuator_calibration/base/number_text.hpp"
 
 namespace sac {
 namespace {
@@ -47,10 +48,7 @@ std::string yamlNumber(double value) {
   if (std::isinf(value)) {
     return value > 0.0 ? ".inf" : "-.inf";
   }
-  std::array<char, 32> buffer = {};
-  const std::to_chars_result result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  std::string text(buffer.data(), result.ptr);
+  std::string text = shortestText(value);
   if (text.find('.') == std::string::npos) {
     text.insert(std::min(text.find('e'), text.size()), ".0");
   }

@@ -54,7 +54,8 @@ class LeastPower {
   std::optional<Eigen::Vector3d> newtonStep(const Eigen::Vector3d& lambda,
                                             const Eigen::Vector3d& misfit) const {
     Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-    for (const auto& column : Q_.colwise()) {
+    for (Eigen::Index j = 0; j < Q_.cols(); ++j) {
+      const Eigen::Vector3d column = Q_.col(j);
       if (std::abs(column.dot(lambda)) < limit_) {
         curvature += column * column.transpose();
       }

@@ -314,7 +314,8 @@ CalibrationModel::CalibrationModel(ParameterSpace space) : space_(std::move(spac
   const Eigen::MatrixXd& shapes = space_.effects().curveShapes();
   for (Eigen::Index n = 0; n < shapes.cols(); ++n) {
     TorqueCurveDescription single = *space_.nominal().torque_curve;
-    single.coefficients.assign(shapes.col(n).begin(), shapes.col(n).end());
+    const Eigen::VectorXd shape = shapes.col(n);
+    single.coefficients.assign(shape.begin(), shape.end());
     curve_basis_.emplace_back(single);
   }
 }

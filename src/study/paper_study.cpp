@@ -116,7 +116,9 @@ CalibrationState startOf(const ParameterSpace& space, const Actuator& truth, Sit
   const Eigen::Index known = situation == Situation::kCoil ? space.coil(0) : space.pole(0);
   state.belief.x.head(known) = space.coordinatesOf(truth).head(known);
   state.belief.covariance.topLeftCorner(known, known).setZero();
-  std::fill(state.identified.begin(), state.identified.begin() + known, true);
+  for (Eigen::Index k = 0; k < known; ++k) {
+    state.identified[static_cast<std::size_t>(k)] = true;
+  }
   return state;
 }
 
