@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "support/autodiff_costs.hpp"
-#include "support/ceres_costs.hpp"
 
 namespace sac::benchmarks {
 namespace {
@@ -36,50 +36,72 @@ void evaluateAll(benchmark::State& state,
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(costs.size()));
 }
 
-enum class Derivative { kAnalytic, kAutodiff };
+/// The same of the model itself, by all coordinates. `evaluate(n, jacobian)` returns a residual.
+template <typename Evaluate>
+void evaluateModel(benchmark::State& state, const Evaluate& evaluate) {
+  ResidualJacobian jacobian;
+  for (auto _ : state) {
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      benchmark::DoNotOptimize(evaluate(n, jacobian));
+      benchmark::DoNotOptimize(jacobian.data());
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
+}
 
-void orientationCost(benchmark::State& state, Derivative derivative) {
+void orientationAnalytic(benchmark::State& state) {
   const CycleScenario scenario = cycleScenario(Cycle::kJoint, kSamples);
-  const Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();
+  const Eigen::VectorXd& x = scenario.state.belief.x;
+  evaluateModel(state, [&](std::size_t n, ResidualJacobian& jacobian) {
+    return scenario.model.orientationResidual(scenario.samples[n], x, &jacobian);
+  });
+}
+
+void orientationAutodiff(benchmark::State& state) {
+  const CycleScenario scenario = cycleScenario(Cycle::kJoint, kSamples);
   Costs costs;
   for (const Sample& sample : scenario.samples) {
-    if (derivative == Derivative::kAnalytic) {
-      costs.push_back(std::make_unique<OrientationCost>(scenario.model, sample, whitening));
-    } else {
-      costs.push_back(std::make_unique<autodiff::OrientationCost>(
-          new autodiff::OrientationResidual(scenario.model, sample, whitening)));
-    }
+    costs.push_back(std::make_unique<autodiff::OrientationCost>(
+        new autodiff::OrientationResidual(scenario.model, sample, Eigen::Matrix3d::Identity())));
   }
   evaluateAll(state, costs, {scenario.state.belief.x.data()});
 }
 
-void torqueCost(benchmark::State& state, Derivative derivative) {
-  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
-  const ParameterSpace& space = scenario.model.space();
-  const std::size_t coil = scenario.request.coil.value();
-  const Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();
+std::vector<std::vector<Excitation>> excitationsOf(const CycleScenario& scenario) {
   std::vector<std::vector<Excitation>> excitations;
   for (const Sample& sample : scenario.samples) {
     excitations.push_back(excitedCoils(sample, EstimationOptions().current_threshold));
   }
+  return excitations;
+}
+
+void torqueAnalytic(benchmark::State& state) {
+  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
+  const std::vector<std::vector<Excitation>> excitations = excitationsOf(scenario);
+  const Eigen::VectorXd& x = scenario.state.belief.x;
+  evaluateModel(state, [&](std::size_t n, ResidualJacobian& jacobian) {
+    return scenario.model.torqueResidual(scenario.samples[n], excitations[n], x, &jacobian);
+  });
+}
+
+void torqueAutodiff(benchmark::State& state) {
+  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
+  const ParameterSpace& space = scenario.model.space();
+  const std::vector<std::vector<Excitation>> excitations = excitationsOf(scenario);
   Costs costs;
   for (std::size_t n = 0; n < scenario.samples.size(); ++n) {
-    if (derivative == Derivative::kAnalytic) {
-      costs.push_back(std::make_unique<TorqueCost>(
-          scenario.model, scenario.samples[n], excitations[n], whitening));
-    } else {
-      costs.push_back(std::make_unique<autodiff::TorqueCost<kPoles>>(new autodiff::TorqueResidual(
-          scenario.model, scenario.samples[n], excitations[n].front(), whitening)));
-    }
+    costs.push_back(std::make_unique<autodiff::TorqueCost<kPoles>>(new autodiff::TorqueResidual(
+        scenario.model, scenario.samples[n], excitations[n].front(), Eigen::Matrix3d::Identity())));
   }
   const Eigen::VectorXd& x = scenario.state.belief.x;
+  const std::size_t coil = excitations.front().front().coil;
   evaluateAll(state, costs, {x.data(), x.data() + space.pole(0), x.data() + space.coil(coil)});
 }
 
-BENCHMARK_CAPTURE(orientationCost, analytic, Derivative::kAnalytic);
-BENCHMARK_CAPTURE(orientationCost, autodiff, Derivative::kAutodiff);
-BENCHMARK_CAPTURE(torqueCost, analytic, Derivative::kAnalytic);
-BENCHMARK_CAPTURE(torqueCost, autodiff, Derivative::kAutodiff);
+BENCHMARK(orientationAnalytic)->Name("orientationCost/analytic");
+BENCHMARK(orientationAutodiff)->Name("orientationCost/autodiff");
+BENCHMARK(torqueAnalytic)->Name("torqueCost/analytic");
+BENCHMARK(torqueAutodiff)->Name("torqueCost/autodiff");
 
 }  // namespace
 }  // namespace sac::benchmarks

@@ -73,17 +73,12 @@ std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
   std::vector<ModelFit> fits;
   fits.push_back(fitWith("none", start, samples, config, {}));
   fits.push_back(fitWith("all", start, samples, config, config.effects));
-  const auto modelled =
-      std::count(config.effects.modelled.begin(), config.effects.modelled.end(), true);
-  for (std::size_t e = 0; modelled > 1 && e < kLaboratoryEffects; ++e) {
-    if (config.effects.modelled[e]) {
+  const std::vector<std::string> modelled = modelledEffects(config.effects);
+  for (const std::string& effect : modelled) {
+    if (modelled.size() > 1) {
       EffectSelection fewer = config.effects;
-      fewer.modelled[e] = false;
-      fits.push_back(fitWith(std::string("without ") + effectName(static_cast<LaboratoryEffect>(e)),
-                             start,
-                             samples,
-                             config,
-                             fewer));
+      fewer[effect] = false;
+      fits.push_back(fitWith("without " + effect, start, samples, config, fewer));
     }
   }
   return fits;

@@ -101,9 +101,8 @@ void visitOptions(Config& c, Visitor& visit) {
   visitMeans(c, visit);
   visitEstimation(c, visit);
   visit.section("effects");
-  for (std::size_t e = 0; e < kLaboratoryEffects; ++e) {
-    const auto effect = static_cast<LaboratoryEffect>(e);
-    visit.option(effectName(effect), c.effects[effect]);
+  for (const std::string& effect : effectNames()) {
+    visit.option(effect, c.effects[effect]);
   }
   visit.section("validation");
   visit.option("hold_out_every", c.hold_out_every, 0);

@@ -10,20 +10,17 @@ bool concerns(const EffectLayout& effects,
               Eigen::Index coordinate,
               bool any_orientation,
               const std::vector<bool>& excited) {
-  switch (effects.effect(coordinate)) {
-    case LaboratoryEffect::kEncoderHarmonics:
-    case LaboratoryEffect::kTiltCrossAxis:
+  const PlacedEffect& placed = effects.at(coordinate);
+  switch (placed.acts_on) {
+    case LaboratoryEffect::ActsOn::kEverything:
       return true;
-    case LaboratoryEffect::kMarkerRegistration:
-    case LaboratoryEffect::kTrackerRegistration:
+    case LaboratoryEffect::ActsOn::kOrientations:
       return any_orientation;
-    case LaboratoryEffect::kCoilGains: {
-      const Eigen::Index place = coordinate - effects.first(LaboratoryEffect::kCoilGains);
-      return excited[effects.coilsWithoutGain() + static_cast<std::size_t>(place)];
-    }
-    default:
-      return std::find(excited.begin(), excited.end(), true) != excited.end();
+    case LaboratoryEffect::ActsOn::kTorques:
+      break;
   }
+  return std::find(excited.begin(), excited.end(), true) != excited.end() &&
+         placed.effect->isToldBy(coordinate - placed.first, excited);
 }
 
 /// Per coil: a sample that serves the cycle excites it.

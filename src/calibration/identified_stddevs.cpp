@@ -11,33 +11,35 @@ namespace {
 /// Derivatives of one gain by the coordinates of effects that it depends on.
 using Gradient = std::vector<std::pair<Eigen::Index, double>>;
 
-/// gain = nominal (1 + common) (1 + own)
-Gradient poleGainGradient(const ParameterSpace& space, const Eigen::VectorXd& x, std::size_t pole) {
-  const EffectLayout& effects = space.effects();
-  const bool has_common = effects.has(LaboratoryEffect::kStrengthScale);
-  const bool has_own = effects.has(LaboratoryEffect::kPoleGains);
-  const Eigen::Index common = space.effect() + effects.first(LaboratoryEffect::kStrengthScale);
-  const Eigen::Index own = space.effect() + effects.first(LaboratoryEffect::kPoleGains) +
-                           static_cast<Eigen::Index>(pole);
-  const double nominal = space.nominal().poles[pole].gain;
-  Gradient gradient;
-  if (has_common) {
-    gradient.emplace_back(common, nominal * (has_own ? 1.0 + x[own] : 1.0));
+/// Gradients of the gains of all poles and coils.
+struct GainGradients {
+  std::vector<Gradient> poles;
+  std::vector<Gradient> coils;
+};
+
+template <typename Axis>
+void addDerivatives(const std::vector<Axis>& at,
+                    const std::vector<Axis>& moved,
+                    Eigen::Index coordinate,
+                    std::vector<Gradient>& gradients) {
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    if (moved[n].gain != at[n].gain) {
+      gradients[n].emplace_back(coordinate, moved[n].gain - at[n].gain);
+    }
   }
-  if (has_own) {
-    gradient.emplace_back(own, nominal * (has_common ? 1.0 + x[common] : 1.0));
-  }
-  return gradient;
 }
 
-Gradient coilGainGradient(const ParameterSpace& space, std::size_t coil) {
-  const EffectLayout& effects = space.effects();
-  if (!effects.has(LaboratoryEffect::kCoilGains) || coil < effects.coilsWithoutGain()) {
-    return {};
+/// A gain is linear in each coordinate: a step of 1 gives its derivative.
+GainGradients gainGradients(const ParameterSpace& space, const Eigen::VectorXd& x) {
+  GainGradients gradients{std::vector<Gradient>(space.poles()),
+                          std::vector<Gradient>(space.coils())};
+  const Actuator at = space.actuatorAt(x);
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    const Actuator moved = space.actuatorAt(x + Eigen::VectorXd::Unit(space.size(), p));
+    addDerivatives(at.poles, moved.poles, p, gradients.poles);
+    addDerivatives(at.coils, moved.coils, p, gradients.coils);
   }
-  const auto place = static_cast<Eigen::Index>(coil - effects.coilsWithoutGain());
-  return {{space.effect() + effects.first(LaboratoryEffect::kCoilGains) + place,
-           space.nominal().coils[coil].gain}};
+  return gradients;
 }
 
 std::optional<double> gainStddev(const CalibrationState& state, const Gradient& gradient) {
@@ -65,6 +67,7 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
   const auto at = [&](Eigen::Index p) {
     return state.identified[static_cast<std::size_t>(p)] ? std::optional(stddevs[p]) : std::nullopt;
   };
+  const GainGradients gains = gainGradients(space, x);
   ParameterStddevs result;
   for (std::size_t k = 0; k < kJoints; ++k) {
     const Eigen::Index joint = space.joint(k);
@@ -72,12 +75,11 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
   }
   for (std::size_t i = 0; i < space.poles(); ++i) {
     const Eigen::Index pole = space.pole(i);
-    result.poles.push_back(
-        {at(pole), at(pole + 1), gainStddev(state, poleGainGradient(space, x, i))});
+    result.poles.push_back({at(pole), at(pole + 1), gainStddev(state, gains.poles[i])});
   }
   for (std::size_t j = 0; j < space.coils(); ++j) {
     const Eigen::Index coil = space.coil(j);
-    result.coils.push_back({at(coil), at(coil + 1), gainStddev(state, coilGainGradient(space, j))});
+    result.coils.push_back({at(coil), at(coil + 1), gainStddev(state, gains.coils[j])});
   }
   return result;
 }

@@ -131,7 +131,7 @@ std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinat
   const EffectLayout& effects = model.space().effects();
   const auto at = static_cast<Eigen::Index>(coordinate);
   return "The samples cannot tell " + effects.name(at) +
-         " apart from the other parameters: switch off effects." + effectName(effects.effect(at)) +
+         " apart from the other parameters: switch off effects." + effects.at(at).name +
          ", or add poses over the whole workspace.";
 }
 

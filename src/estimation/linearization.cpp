@@ -3,15 +3,6 @@
 #include <boost/container/small_vector.hpp>
 
 namespace sac {
-namespace {
-
-/// Where the columns of the effects are in a whole Jacobian; nowhere when none is modelled.
-template <typename Jacobian>
-JacobianBlock effectBlock(const ParameterSpace& space, Jacobian& jacobian) {
-  return {space.effects().size() > 0 ? jacobian.data() + space.effect() : nullptr, space.size()};
-}
-
-}  // namespace
 
 ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
                                            const EstimationOptions& options)
@@ -33,70 +24,36 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
 
 Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
                                                const Eigen::VectorXd& x) const {
+  return evaluate(observation, x, nullptr);
+}
+
+Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
+                                               const Eigen::VectorXd& x,
+                                               ResidualJacobian* jacobian) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
-  const ParameterSpace& space = problem_.model->space();
-  if (what.quantity == Quantity::kOrientation) {
-    return problem_.model->orientationResidual(sample,
-                                               {x.data(), x.data() + space.effect(), {}, {}});
-  }
-  boost::container::small_vector<const double*, 8> coils;
-  for (const Excitation& excitation : excitations_[observation]) {
-    coils.push_back(x.data() + space.coil(excitation.coil));
-  }
-  CalibrationModel::TorqueBlocks blocks;
-  blocks.joints = x.data();
-  blocks.poles = x.data() + space.pole(0);
-  blocks.coils = coils.data();
-  blocks.effects = x.data() + space.effect();
-  return problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+  return what.quantity == Quantity::kOrientation
+             ? problem_.model->orientationResidual(sample, x, jacobian)
+             : problem_.model->torqueResidual(sample, excitations_[observation], x, jacobian);
 }
 
 void ObservationEvaluator::linearize(std::size_t observation,
                                      const Eigen::VectorXd& x,
                                      LinearizedObservation& out) const {
-  const Observation& what = problem_.observations[observation];
-  const Sample& sample = (*problem_.samples)[what.sample];
   const ParameterSpace& space = problem_.model->space();
-  const Eigen::Index size = space.size();
-  out.jacobian.setZero(3, size);
-  const auto block = [&](Eigen::Index first) {
-    return JacobianBlock{out.jacobian.data() + first, size};
-  };
+  const bool is_torque = problem_.observations[observation].quantity == Quantity::kTorque;
   const auto take = [&out](Eigen::Index first, Eigen::Index last) {
     for (Eigen::Index p = first; p < last; ++p) {
       out.columns.push_back(p);
     }
   };
   out.columns.clear();
-  if (what.quantity == Quantity::kOrientation) {
-    take(0, space.pole(0));
-    take(space.effect(), size);
-    out.residual = problem_.model->orientationResidual(
-        sample, {x.data(), x.data() + space.effect(), block(0), effectBlock(space, out.jacobian)});
-    return;
-  }
-  take(0, space.coil(0));
-  boost::container::small_vector<const double*, 8> coils;
-  boost::container::small_vector<JacobianBlock, 8> d_coils;
+  take(0, is_torque ? space.coil(0) : space.pole(0));
   for (const Excitation& excitation : excitations_[observation]) {
-    const Eigen::Index first = space.coil(excitation.coil);
-    coils.push_back(x.data() + first);
-    d_coils.push_back(block(first));
-    out.columns.push_back(first);
-    out.columns.push_back(first + 1);
+    take(space.coil(excitation.coil), space.coil(excitation.coil) + ParameterSpace::kPerAxis);
   }
-  CalibrationModel::TorqueBlocks blocks;
-  blocks.joints = x.data();
-  blocks.poles = x.data() + space.pole(0);
-  blocks.coils = coils.data();
-  blocks.d_joints = block(0);
-  blocks.d_poles = block(space.pole(0));
-  blocks.d_coils = d_coils.data();
-  blocks.effects = x.data() + space.effect();
-  blocks.d_effects = effectBlock(space, out.jacobian);
-  take(space.effect(), size);
-  out.residual = problem_.model->torqueResidual(sample, excitations_[observation], blocks);
+  take(space.effect(), space.size());
+  out.residual = evaluate(observation, x, &out.jacobian);
 }
 
 Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,

@@ -40,37 +40,6 @@ void moveAngles(const AxisChart& chart, const Eigen::Vector2d& coordinates, Pole
   axis.azimuth = angles.azimuth;
 }
 
-void changeCurve(const EffectLayout& effects,
-                 const double* values,
-                 std::vector<double>& coefficients) {
-  const Eigen::Map<const Eigen::VectorXd> shares(
-      values + effects.first(LaboratoryEffect::kTorqueCurve), effects.curveShapes().cols());
-  Eigen::Map<Eigen::VectorXd>(coefficients.data(), effects.curveShapes().rows()) +=
-      effects.curveShapes() * shares;
-}
-
-/// Puts the effects of strength into gains and torque curve.
-void applyStrength(const EffectLayout& effects, const double* values, Actuator& actuator) {
-  using Effect = LaboratoryEffect;
-  const double scale = effects.has(Effect::kStrengthScale)
-                           ? 1.0 + values[effects.first(Effect::kStrengthScale)]
-                           : 1.0;
-  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
-    const double own =
-        effects.has(Effect::kPoleGains)
-            ? values[effects.first(Effect::kPoleGains) + static_cast<Eigen::Index>(i)]
-            : 0.0;
-    actuator.poles[i].gain *= scale * (1.0 + own);
-  }
-  for (Eigen::Index n = 0; n < effects.count(Effect::kCoilGains); ++n) {
-    const std::size_t coil = effects.coilsWithoutGain() + static_cast<std::size_t>(n);
-    actuator.coils[coil].gain *= 1.0 + values[effects.first(Effect::kCoilGains) + n];
-  }
-  if (effects.has(Effect::kTorqueCurve)) {
-    changeCurve(effects, values, actuator.torque_curve->coefficients);
-  }
-}
-
 }  // namespace
 
 ParameterSpace::ParameterSpace(Actuator nominal, const EffectSelection& effects)
@@ -133,7 +102,7 @@ std::string ParameterSpace::name(Eigen::Index parameter) const {
 }
 
 std::string ParameterSpace::unit(Eigen::Index parameter) const {
-  return parameter < effect() ? "rad" : effectUnit(effects_.effect(parameter - effect()));
+  return parameter < effect() ? "rad" : effects_.at(parameter - effect()).unit;
 }
 
 Actuator ParameterSpace::actuatorAt(const Eigen::VectorXd& x) const {
@@ -149,7 +118,9 @@ Actuator ParameterSpace::actuatorAt(const Eigen::VectorXd& x) const {
   for (std::size_t j = 0; j < coils(); ++j) {
     moveAngles(coil_charts_[j], x.segment<2>(coil(j)), actuator.coils[j]);
   }
-  applyStrength(effects_, x.data() + effect(), actuator);
+  for (const PlacedEffect& placed : effects_.effects()) {
+    placed.effect->applyTo(actuator, EffectLayout::values(placed, x.data() + effect()));
+  }
   return actuator;
 }
 
@@ -189,7 +160,7 @@ Eigen::VectorXd ParameterSpace::reportedValues(const Eigen::VectorXd& x) const {
     values.segment<2>(coil(j)) << actuator.coils[j].polar, actuator.coils[j].azimuth;
   }
   for (Eigen::Index e = 0; e < effects_.size(); ++e) {
-    values[effect() + e] = x[effect() + e] * effects_.unit(e);
+    values[effect() + e] = x[effect() + e] * effects_.scale(e);
   }
   return values;
 }
@@ -210,7 +181,7 @@ Eigen::VectorXd ParameterSpace::reportedStddevs(const Eigen::VectorXd& x,
     transform(coil_charts_[j], coil(j));
   }
   for (Eigen::Index e = 0; e < effects_.size(); ++e) {
-    stddevs[effect() + e] *= effects_.unit(e);
+    stddevs[effect() + e] *= effects_.scale(e);
   }
   return stddevs;
 }

@@ -96,12 +96,8 @@ class PoseUncertainty {
     const Eigen::Index axes = space().size() - joints;
     R_rotor_stator_ = pose.R_stator_rotor.transpose();
     // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
-    Eigen::Matrix<double, 3, 9, Eigen::RowMajor> J;
-    CalibrationModel::OrientationBlocks blocks;
-    blocks.joints = belief_.x.data();
-    blocks.effects = belief_.x.data() + model_.space().effect();
-    blocks.d_joints = {J.data(), J.cols()};
-    model_.orientationResidual(pose, blocks);
+    model_.orientationResidual(pose, belief_.x, &jacobian_);
+    const Eigen::Matrix<double, 3, 9> J = jacobian_.leftCols<9>();
     const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
     const Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
     moved_covariance_.topLeftCorner<3, 3>() = own;
@@ -155,6 +151,7 @@ class PoseUncertainty {
   const ParameterBelief& belief_;
   std::vector<AxisPoint> poles_;
   std::vector<AxisPoint> coils_;
+  ResidualJacobian jacobian_;
   Eigen::Matrix3d R_rotor_stator_ = Eigen::Matrix3d::Identity();
   Eigen::MatrixXd moved_covariance_;
 };

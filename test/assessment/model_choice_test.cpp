@@ -10,8 +10,6 @@
 namespace sac {
 namespace {
 
-using Effect = LaboratoryEffect;
-
 /// The paper's session with a torque bias [N·m] in every torque.
 std::vector<Sample> biasedSession(double bias) {
   scenarios::Generator generator(4);
@@ -23,9 +21,9 @@ std::vector<Sample> biasedSession(double bias) {
   return samples;
 }
 
-CalibrationConfig modelling(const std::vector<Effect>& effects) {
+CalibrationConfig modelling(const std::vector<std::string>& effects) {
   CalibrationConfig config;
-  for (const Effect effect : effects) {
+  for (const std::string& effect : effects) {
     config.effects[effect] = true;
   }
   return config;
@@ -33,7 +31,7 @@ CalibrationConfig modelling(const std::vector<Effect>& effects) {
 
 TEST(ModelChoice, PrefersTheEffectThatIsThere) {
   const std::vector<ModelFit> fits = compareEffects(
-      {scenarios::paperNominal()}, biasedSession(2.7e-3), modelling({Effect::kTorqueBias}));
+      {scenarios::paperNominal()}, biasedSession(2.7e-3), modelling({"torque_bias"}));
   ASSERT_EQ(fits.size(), 2U);
   EXPECT_EQ(fits[0].parameters, 73U);
   EXPECT_EQ(fits[1].parameters, 76U);
@@ -46,16 +44,15 @@ TEST(ModelChoice, PrefersTheEffectThatIsThere) {
 }
 
 TEST(ModelChoice, AdvisesAgainstAnEffectThatIsNotThere) {
-  const std::vector<ModelFit> fits = compareEffects(
-      {scenarios::paperNominal()}, biasedSession(0.0), modelling({Effect::kTorqueBias}));
+  const std::vector<ModelFit> fits =
+      compareEffects({scenarios::paperNominal()}, biasedSession(0.0), modelling({"torque_bias"}));
   EXPECT_LT(fits[0].bic, fits[1].bic);
 }
 
 TEST(ModelChoice, LeavesEachEffectOutInTurn) {
-  const std::vector<ModelFit> fits =
-      compareEffects({scenarios::paperNominal()},
-                     biasedSession(2.7e-3),
-                     modelling({Effect::kTorqueBias, Effect::kStrengthScale}));
+  const std::vector<ModelFit> fits = compareEffects({scenarios::paperNominal()},
+                                                    biasedSession(2.7e-3),
+                                                    modelling({"torque_bias", "strength_scale"}));
   ASSERT_EQ(fits.size(), 4U);
   EXPECT_EQ(fits[2].effects, "without torque_bias");
   EXPECT_EQ(fits[3].effects, "without strength_scale");

@@ -76,7 +76,9 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
   }
   estimation.max_iterations = 7;
   config.tolerance = {0.01, 0.02, 0.04, 0.05, 0.06};
-  config.effects.modelled.fill(true);
+  for (const std::string& effect : effectNames()) {
+    config.effects[effect] = true;
+  }
   config.hold_out_every = 5;
   config.wanted = {1e-3, 2e-3};
 

@@ -140,7 +140,7 @@ TEST(CycleSelection, WithoutTorqueModelOnlyTheJointIsPossible) {
   samples.push_back(orientationSample());
   EXPECT_EQ(textOf(possibleCycles(model, samples, {})), "joint");
   EffectSelection effects;
-  effects[LaboratoryEffect::kTiltCrossAxis] = true;
+  effects["tilt_cross_axis"] = true;
   const CalibrationModel with_effects{ParameterSpace(actuator, effects)};
   EXPECT_EQ(textOf(possibleCycles(with_effects, samples, {})), "joint,refine");
 }

@@ -1,6 +1,8 @@
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -9,9 +11,9 @@
 namespace sac {
 namespace {
 
-ParameterSpace spaceWith(const std::vector<LaboratoryEffect>& effects) {
+ParameterSpace spaceWith(const std::vector<std::string>& effects) {
   EffectSelection selection;
-  for (const LaboratoryEffect effect : effects) {
+  for (const std::string& effect : effects) {
     selection[effect] = true;
   }
   return ParameterSpace(scenarios::paperNominal(), selection);
@@ -51,13 +53,11 @@ TEST(IdentifiedStddevs, StandAtTheirValues) {
 }
 
 TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {
-  using Effect = LaboratoryEffect;
-  const ParameterSpace space =
-      spaceWith({Effect::kStrengthScale, Effect::kPoleGains, Effect::kCoilGains});
+  const ParameterSpace space = spaceWith({"strength_scale", "pole_gains", "coil_gains"});
   const EffectLayout& effects = space.effects();
-  const Eigen::Index common = space.effect() + effects.first(Effect::kStrengthScale);
-  const Eigen::Index pole = space.effect() + effects.first(Effect::kPoleGains) + 4;
-  const Eigen::Index coil = space.effect() + effects.first(Effect::kCoilGains);
+  const Eigen::Index common = space.effect() + effects.first("strength_scale");
+  const Eigen::Index pole = space.effect() + effects.first("pole_gains") + 4;
+  const Eigen::Index coil = space.effect() + effects.first("coil_gains");
   CalibrationState state = nominalState(space, {});
   identify(state, pole, 3e-3);
   EXPECT_FALSE(identifiedStddevs(space, state).poles[4].gain);

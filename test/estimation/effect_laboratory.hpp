@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,15 +14,13 @@
 
 namespace sac {
 
-using Effect = LaboratoryEffect;
-
 inline constexpr double kOrientationNoise = 1e-3;
 inline constexpr double kTorqueNoise = 5e-4;
 
 /// These effects and no other.
-inline EffectSelection only(const std::vector<Effect>& effects) {
+inline EffectSelection only(const std::vector<std::string>& effects) {
   EffectSelection selection;
-  for (const Effect effect : effects) {
+  for (const std::string& effect : effects) {
     selection[effect] = true;
   }
   return selection;

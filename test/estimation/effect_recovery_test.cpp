@@ -33,7 +33,7 @@ class EffectTrials {
     Eigen::VectorXd truth = space.coordinatesOf(geometry);
     ASSERT_EQ(static_cast<Eigen::Index>(values.size()), space.effects().size());
     for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
-      truth[space.effect() + e] = values[static_cast<std::size_t>(e)] / space.effects().unit(e);
+      truth[space.effect() + e] = values[static_cast<std::size_t>(e)] / space.effects().scale(e);
     }
     const CycleRequest refine{Cycle::kRefine};
     const std::vector<Eigen::Index> free =
@@ -98,7 +98,7 @@ void expectModelledAtTheBound(const EffectSelection& effects, MakeCase make_case
 
 TEST(LaboratoryEffects, TorqueBias) {
   expectModelledAtTheBound(
-      only({Effect::kTorqueBias}),
+      only({"torque_bias"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.bias = {2.7e-3, 0.0, 0.0};
@@ -109,7 +109,7 @@ TEST(LaboratoryEffects, TorqueBias) {
 
 TEST(LaboratoryEffects, RotorUnbalance) {
   expectModelledAtTheBound(
-      only({Effect::kRotorUnbalance}),
+      only({"rotor_unbalance"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.unbalance = {3.0e-3, -2.0e-3, 4.2e-3};
@@ -120,7 +120,7 @@ TEST(LaboratoryEffects, RotorUnbalance) {
 
 TEST(LaboratoryEffects, GainsOfPolesAndCoils) {
   expectModelledAtTheBound(
-      only({Effect::kPoleGains, Effect::kCoilGains}),
+      only({"pole_gains", "coil_gains"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Actuator made = geometry;
         const auto spread = [&] { return 1.0 + scenarios::uniformNoise(0.02, generator).x(); };
@@ -143,7 +143,7 @@ TEST(LaboratoryEffects, GainsOfPolesAndCoils) {
 
 TEST(LaboratoryEffects, StrengthScaleOfWarmMagnets) {
   expectModelledAtTheBound(
-      only({Effect::kStrengthScale}),
+      only({"strength_scale"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         constexpr double kWarm = -0.0012 * 30.0;
         Actuator made = geometry;
@@ -157,7 +157,7 @@ TEST(LaboratoryEffects, StrengthScaleOfWarmMagnets) {
 
 TEST(LaboratoryEffects, EncoderHarmonics) {
   expectModelledAtTheBound(
-      only({Effect::kEncoderHarmonics}),
+      only({"encoder_harmonics"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.harmonics = {0.8e-3, -0.6e-3, 0.3e-3, 0.2e-3};
@@ -168,7 +168,7 @@ TEST(LaboratoryEffects, EncoderHarmonics) {
 
 TEST(LaboratoryEffects, TiltScaleAndCrossAxis) {
   expectModelledAtTheBound(
-      only({Effect::kTiltCrossAxis}),
+      only({"tilt_cross_axis"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.tilt << 0.01, -0.006, 0.008, -0.01;
@@ -179,20 +179,16 @@ TEST(LaboratoryEffects, TiltScaleAndCrossAxis) {
 
 TEST(LaboratoryEffects, TorqueCurve) {
   expectModelledAtTheBound(
-      only({Effect::kTorqueCurve}),
+      only({"torque_curve"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
-        TorqueCurveDescription curve = geometry.torque_curve.value();
-        const EffectLayout layout(geometry, only({Effect::kTorqueCurve}));
+        const ParameterSpace space(geometry, only({"torque_curve"}));
         values = {0.01, -0.02, 0.015, 0.005, -0.005, 0.003, 0.002};
-        for (std::size_t c = 0; c < curve.coefficients.size(); ++c) {
-          for (std::size_t n = 0; n < values.size(); ++n) {
-            curve.coefficients[c] +=
-                layout.curveShapes()(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(n)) *
-                values[n];
-          }
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(space.size());
+        for (std::size_t n = 0; n < values.size(); ++n) {
+          x[space.effect() + static_cast<Eigen::Index>(n)] = values[n];
         }
         Actuator made = geometry;
-        made.torque_curve = curve;
+        made.torque_curve = space.actuatorAt(x).torque_curve;
         return sessionIn({}, made, generator);
       });
 }
@@ -200,7 +196,7 @@ TEST(LaboratoryEffects, TorqueCurve) {
 /// Torques are measured in the rotor's frame, so that they tell where the marker is.
 TEST(LaboratoryEffects, MarkerRegistration) {
   expectModelledAtTheBound(
-      only({Effect::kMarkerRegistration}),
+      only({"marker_registration"}),
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.marker = {4e-3, -3e-3, 5e-3};

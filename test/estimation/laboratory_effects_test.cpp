@@ -17,8 +17,7 @@ namespace sac {
 namespace {
 
 TEST(LaboratoryEffects, JacobiansOfAllAgreeWithNumericOnes) {
-  EffectSelection all;
-  all.modelled.fill(true);
+  const EffectSelection all = only(effectNames());
   const CalibrationModel model{ParameterSpace(scenarios::paperNominal(), all)};
   scenarios::Generator generator(5);
   std::vector<Sample> samples =
@@ -73,7 +72,7 @@ TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
   nominal.coils.clear();
   nominal.torque_curve.reset();
   CalibrationConfig config;
-  config.effects = only({Effect::kTiltCrossAxis});
+  config.effects = only({"tilt_cross_axis"});
   CalibrationSession session({nominal}, samples, config);
   session.run({Cycle::kJoint});
   const CycleReport& report = session.run({Cycle::kRefine});
@@ -88,7 +87,7 @@ TEST(LaboratoryEffects, OfTheSensorsOfAnActuatorWithoutTorqueModel) {
 TEST(LaboratoryEffects, ATrackerRegistrationThatNothingTellsIsRefusedByName) {
   scenarios::Generator generator(8);
   CalibrationConfig config;
-  config.effects = only({Effect::kTrackerRegistration});
+  config.effects = only({"tracker_registration"});
   config.tolerance.effect = 1e-3;
   CalibrationSession session(
       {scenarios::paperNominal()}, sessionIn({}, madeUnit(generator), generator), config);
@@ -114,7 +113,7 @@ TEST(LaboratoryEffects, AreInTheCalibratedDescription) {
   Laboratory laboratory;
   laboratory.bias = {2e-3, -1e-3, 0.5e-3};
   CalibrationConfig config;
-  config.effects = only({Effect::kTorqueBias, Effect::kStrengthScale});
+  config.effects = only({"torque_bias", "strength_scale"});
   CalibrationSession session(
       {scenarios::paperNominal()}, sessionIn(laboratory, made, generator), config);
   session.run({Cycle::kJoint});
@@ -132,15 +131,16 @@ TEST(LaboratoryEffects, AreInTheCalibratedDescription) {
 
 TEST(LaboratoryEffects, ShapesOfTheTorqueCurveAreAsHighAsItsPeak) {
   const Actuator nominal = scenarios::paperNominal();
-  const EffectLayout layout(nominal, only({Effect::kTorqueCurve}));
-  TorqueCurveDescription shape = *nominal.torque_curve;
-  const double peak = layout.curveShapes()(0, 0);
-  EXPECT_NEAR(peak, 0.2846, 1e-3);
-  for (Eigen::Index n = 0; n < layout.curveShapes().cols(); ++n) {
-    shape.coefficients.assign(layout.curveShapes().col(n).begin(),
-                              layout.curveShapes().col(n).end());
-    const TorqueCurve curve(shape);
-    EXPECT_NEAR(curve.value(curve.supportBegin()), peak, 1e-9) << n;
+  const ParameterSpace space(nominal, only({"torque_curve"}));
+  const double end = TorqueCurve(*nominal.torque_curve).supportBegin();
+  for (Eigen::Index n = 0; n < space.effects().size(); ++n) {
+    const Eigen::VectorXd x = Eigen::VectorXd::Unit(space.size(), space.effect() + n);
+    // The change alone: with what it is added to taken off.
+    TorqueCurveDescription shape = *space.actuatorAt(x).torque_curve;
+    for (std::size_t c = 0; c < shape.coefficients.size(); ++c) {
+      shape.coefficients[c] -= nominal.torque_curve->coefficients[c];
+    }
+    EXPECT_NEAR(TorqueCurve(shape).value(end), 0.2846, 1e-3) << n;
   }
 }
 
@@ -150,20 +150,28 @@ TEST(LaboratoryEffects, NeedATorqueModelWhereTheyActOnTorque) {
   joint_only.coils.clear();
   joint_only.torque_curve.reset();
   const std::string message =
-      errorMessage<ConfigError>([&] { EffectLayout(joint_only, only({Effect::kTorqueBias})); });
+      errorMessage<ConfigError>([&] { EffectLayout(joint_only, only({"torque_bias"})); });
   EXPECT_NE(message.find("effects.torque_bias"), std::string::npos) << message;
-  EXPECT_EQ(EffectLayout(joint_only, only({Effect::kEncoderHarmonics})).size(), 4);
+  EXPECT_EQ(EffectLayout(joint_only, only({"encoder_harmonics"})).size(), 4);
+}
+
+TEST(LaboratoryEffects, OneThatIsUnknownIsRefusedByName) {
+  const std::string message =
+      errorMessage<ConfigError>([] { EffectLayout(scenarios::paperNominal(), only({"moon"})); });
+  EXPECT_NE(message.find("effects.moon"), std::string::npos) << message;
 }
 
 TEST(LaboratoryEffects, AreNamedAndMeasuredInTheirUnits) {
   const EffectLayout layout(scenarios::paperNominal(),
-                            only({Effect::kPoleGains, Effect::kCoilGains, Effect::kTorqueBias}));
+                            only({"pole_gains", "coil_gains", "torque_bias"}));
   ASSERT_EQ(layout.size(), 3 + 8 + 23);
   EXPECT_EQ(layout.name(0), "torque_bias/x");
   EXPECT_EQ(layout.name(3), "pole_1/gain");
   EXPECT_EQ(layout.name(11), "coil_2/gain");
-  EXPECT_EQ(layout.effect(11), Effect::kCoilGains);
-  EXPECT_EQ(layout.unit(3), 1.0);
+  EXPECT_EQ(layout.at(11).name, "coil_gains");
+  EXPECT_EQ(layout.at(11).unit, "1");
+  EXPECT_EQ(layout.at(0).unit, "N·m");
+  EXPECT_EQ(layout.scale(3), 1.0);
 }
 
 }  // namespace

@@ -30,14 +30,14 @@ TEST(SamplePrediction, IsWhatTheForwardModelsSay) {
 
 TEST(SamplePrediction, KnowsLaboratoryEffects) {
   EffectSelection effects;
-  effects[LaboratoryEffect::kTorqueBias] = true;
-  effects[LaboratoryEffect::kMarkerRegistration] = true;
+  effects["torque_bias"] = true;
+  effects["marker_registration"] = true;
   const CalibrationModel model{ParameterSpace(scenarios::paperNominal(), effects)};
   const EffectLayout& layout = model.space().effects();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(model.space().size());
-  const Eigen::Index bias = layout.first(LaboratoryEffect::kTorqueBias);
-  x[model.space().effect() + bias] = 0.003 / layout.unit(bias);
-  x[model.space().effect() + layout.first(LaboratoryEffect::kMarkerRegistration) + 1] = 0.02;
+  const Eigen::Index bias = layout.first("torque_bias");
+  x[model.space().effect() + bias] = 0.003 / layout.scale(bias);
+  x[model.space().effect() + layout.first("marker_registration") + 1] = 0.02;
 
   Sample sample;
   sample.has_orientation = true;

@@ -95,7 +95,7 @@ TEST_F(OpeningTest, AnotherDescriptionOfTheUnitIsRefused) {
 TEST_F(OpeningTest, OtherLaboratoryEffectsAreRefused) {
   make();
   SessionIdentity other = identity();
-  other.config.effects[LaboratoryEffect::kTorqueBias] = true;
+  other.config.effects["torque_bias"] = true;
   expectRefusal("models the laboratory effects \"none\"", other);
   expectRefusal("asks for \"torque_bias\"", other);
 }

@@ -1,107 +1,71 @@
 #include "support/ceres_costs.hpp"
 
-#include <cstdint>
-
-#include <boost/container/small_vector.hpp>
-
 namespace sac {
 namespace {
 
-using RowMajorJacobian = Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>;
+using Blocks = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 
-/// Block that Ceres wants (null pointer: not wanted), packed: stride equals width.
-JacobianBlock packed(double** jacobians, std::size_t block, Eigen::Index width) {
-  return {jacobians == nullptr ? nullptr : jacobians[block], width};
-}
-
-void whiten(const Eigen::Matrix3d& whitening, const JacobianBlock& block) {
-  if (block.data != nullptr) {
-    RowMajorJacobian jacobian(block.data, 3, block.stride);
-    for (Eigen::Index column = 0; column < block.stride; ++column) {
-      jacobian.col(column) = (whitening * jacobian.col(column)).eval();
-    }
+Blocks torqueBlocks(const ParameterSpace& space, const std::vector<Excitation>& excitations) {
+  Blocks blocks{{0, space.pole(0)}, {space.pole(0), space.coil(0) - space.pole(0)}};
+  for (const Excitation& excitation : excitations) {
+    blocks.emplace_back(space.coil(excitation.coil), ParameterSpace::kPerAxis);
   }
-}
-
-std::int32_t effectCount(const CalibrationModel& model) {
-  return static_cast<std::int32_t>(model.space().effects().size());
+  return blocks;
 }
 
 }  // namespace
 
-OrientationCost::OrientationCost(const CalibrationModel& model,
-                                 const Sample& sample,
-                                 const Eigen::Matrix3d& whitening)
-    : model_(model), sample_(sample), whitening_(whitening) {
+ModelCost::ModelCost(const CalibrationModel& model,
+                     const Sample& sample,
+                     const Eigen::Matrix3d& whitening,
+                     Blocks blocks)
+    : model_(model), sample_(sample), whitening_(whitening), blocks_(std::move(blocks)) {
   set_num_residuals(3);
-  mutable_parameter_block_sizes()->push_back(9);
-  if (effectCount(model) > 0) {
-    mutable_parameter_block_sizes()->push_back(effectCount(model));
+  for (const auto& block : blocks_) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(block.second));
   }
 }
 
-bool OrientationCost::Evaluate(double const* const* parameters,
-                               double* residuals,
-                               double** jacobians) const {
-  CalibrationModel::OrientationBlocks blocks;
-  blocks.joints = parameters[0];
-  blocks.d_joints = packed(jacobians, 0, 9);
-  if (effectCount(model_) > 0) {
-    blocks.effects = parameters[1];
-    blocks.d_effects = packed(jacobians, 1, effectCount(model_));
+bool ModelCost::Evaluate(double const* const* parameters,
+                         double* residuals,
+                         double** jacobians) const {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model_.space().size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto [first, size] = blocks_[b];
+    x.segment(first, size) = Eigen::Map<const Eigen::VectorXd>(parameters[b], size);
   }
+  ResidualJacobian jacobian;
   Eigen::Map<Eigen::Vector3d> whitened(residuals);
-  whitened = whitening_ * model_.orientationResidual(sample_, blocks);
-  whiten(whitening_, blocks.d_joints);
-  whiten(whitening_, blocks.d_effects);
+  whitened = whitening_ * residual(x, jacobians == nullptr ? nullptr : &jacobian);
+  for (std::size_t b = 0; jacobians != nullptr && b < blocks_.size(); ++b) {
+    const auto [first, size] = blocks_[b];
+    if (jacobians[b] != nullptr) {
+      Eigen::Map<ResidualJacobian>(jacobians[b], 3, size) =
+          whitening_ * jacobian.middleCols(first, size);
+    }
+  }
   return true;
+}
+
+OrientationCost::OrientationCost(const CalibrationModel& model,
+                                 const Sample& sample,
+                                 const Eigen::Matrix3d& whitening)
+    : ModelCost(model, sample, whitening, {{0, model.space().pole(0)}}) {}
+
+Eigen::Vector3d OrientationCost::residual(const Eigen::VectorXd& x,
+                                          ResidualJacobian* jacobian) const {
+  return model_.orientationResidual(sample_, x, jacobian);
 }
 
 TorqueCost::TorqueCost(const CalibrationModel& model,
                        const Sample& sample,
                        const std::vector<Excitation>& excitations,
                        const Eigen::Matrix3d& whitening)
-    : model_(model), sample_(sample), excitations_(excitations), whitening_(whitening) {
-  set_num_residuals(3);
-  mutable_parameter_block_sizes()->push_back(9);
-  mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(2 * model.space().poles()));
-  for (std::size_t e = 0; e < excitations.size(); ++e) {
-    mutable_parameter_block_sizes()->push_back(2);
-  }
-  if (effectCount(model) > 0) {
-    mutable_parameter_block_sizes()->push_back(effectCount(model));
-  }
-}
+    : ModelCost(model, sample, whitening, torqueBlocks(model.space(), excitations)),
+      excitations_(excitations) {}
 
-bool TorqueCost::Evaluate(double const* const* parameters,
-                          double* residuals,
-                          double** jacobians) const {
-  constexpr std::size_t kFirstCoil = 2;
-  boost::container::small_vector<JacobianBlock, 8> d_coils;
-  for (std::size_t e = 0; e < excitations_.size(); ++e) {
-    d_coils.push_back(packed(jacobians, kFirstCoil + e, 2));
-  }
-  CalibrationModel::TorqueBlocks blocks;
-  blocks.joints = parameters[0];
-  blocks.poles = parameters[1];
-  blocks.coils = parameters + kFirstCoil;
-  blocks.d_joints = packed(jacobians, 0, 9);
-  blocks.d_poles = packed(jacobians, 1, static_cast<Eigen::Index>(2 * model_.space().poles()));
-  blocks.d_coils = jacobians == nullptr ? nullptr : d_coils.data();
-  if (effectCount(model_) > 0) {
-    const std::size_t last = kFirstCoil + excitations_.size();
-    blocks.effects = parameters[last];
-    blocks.d_effects = packed(jacobians, last, effectCount(model_));
-  }
-  Eigen::Map<Eigen::Vector3d> whitened(residuals);
-  whitened = whitening_ * model_.torqueResidual(sample_, excitations_, blocks);
-  whiten(whitening_, blocks.d_joints);
-  whiten(whitening_, blocks.d_poles);
-  whiten(whitening_, blocks.d_effects);
-  for (const JacobianBlock& block : d_coils) {
-    whiten(whitening_, block);
-  }
-  return true;
+Eigen::Vector3d TorqueCost::residual(const Eigen::VectorXd& x, ResidualJacobian* jacobian) const {
+  return model_.torqueResidual(sample_, excitations_, x, jacobian);
 }
 
 }  // namespace sac

@@ -11,7 +11,7 @@ namespace sac {
 /// One observation linearised in all coordinates: residual(x + δ) ≈ residual + jacobian δ.
 struct LinearizedObservation {
   Eigen::Vector3d residual;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian;  ///< 3×P, zero where unused
+  ResidualJacobian jacobian;          ///< 3×P, zero where unused
   std::vector<Eigen::Index> columns;  ///< coordinates that can be nonzero, ascending
 };
 
@@ -41,6 +41,10 @@ class ObservationEvaluator {
                              const std::vector<bool>& held) const;
 
  private:
+  Eigen::Vector3d evaluate(std::size_t observation,
+                           const Eigen::VectorXd& x,
+                           ResidualJacobian* jacobian) const;
+
   const EstimationProblem& problem_;
   const EstimationOptions& options_;
   std::vector<std::vector<Excitation>> excitations_;

@@ -31,6 +31,9 @@ struct ParameterId {
   std::size_t index;
 };
 
+/// Of a residual by all coordinates of a ParameterSpace, 3×P.
+using ResidualJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Minimal coordinates of everything that calibration identifies, around one nominal actuator.
 ///
 /// The coordinate vector x has 9 + 2m + 2l entries [rad]: (offset, u, v) of each joint, (u, v) of

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/estimation/effect_selection.hpp"
+#include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
+
+namespace sac::effects {
+
+/// Relative change of the strength of each coil. Where pole gains or the common scale are modelled,
+/// the first coil has none: it is the reference of strength.
+class CoilGains final : public LaboratoryEffect {
+ public:
+  static constexpr auto kName = "coil_gains";
+  static constexpr auto kUnit = "1";
+  static constexpr ActsOn kActsOn = ActsOn::kTorques;
+
+  CoilGains(const Actuator& nominal, const EffectSelection& selection)
+      : LaboratoryEffect(gainNames(nominal, firstCoil(selection)), 1.0),
+        first_coil_(firstCoil(selection)) {}
+
+  bool isToldBy(Eigen::Index n, const std::vector<bool>& excited) const override {
+    return excited[first_coil_ + static_cast<std::size_t>(n)];
+  }
+  Eigen::Index strengthCoordinate(std::size_t /*pole*/, std::size_t coil) const override {
+    return static_cast<Eigen::Index>(coil) - static_cast<Eigen::Index>(first_coil_);
+  }
+  void applyTo(Actuator& actuator, const Values& values) const override {
+    for (std::size_t n = 0; n < names().size(); ++n) {
+      actuator.coils[first_coil_ + n].gain *= 1.0 + values[static_cast<Eigen::Index>(n)];
+    }
+  }
+
+ private:
+  static std::size_t firstCoil(const EffectSelection& selection) {
+    return selection.has("pole_gains") || selection.has("strength_scale") ? 1 : 0;
+  }
+  static std::vector<std::string> gainNames(const Actuator& nominal, std::size_t first_coil) {
+    std::vector<std::string> names;
+    for (std::size_t j = first_coil; j < nominal.coils.size(); ++j) {
+      names.push_back("coil_" + std::to_string(numberOf(j)) + "/gain");
+    }
+    return names;
+  }
+
+  std::size_t first_coil_;  ///< that has a gain
+};
+
+}  // namespace sac::effects

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "spherical_actuator_calibration/estimation/effect_selection.hpp"
+#include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
+
+namespace sac::effects {
+
+/// Rotation vector of the marker in the rotor, rotor frame. Torques tell it: they are measured in
+/// the rotor's frame.
+class MarkerRegistration final : public LaboratoryEffect {
+ public:
+  static constexpr auto kName = "marker_registration";
+  static constexpr auto kUnit = "rad";
+  static constexpr ActsOn kActsOn = ActsOn::kOrientations;
+
+  MarkerRegistration(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
+      : LaboratoryEffect(components(kName), 1.0) {}
+
+  void addMarkerColumns(Columns columns) const override { columns.setIdentity(); }
+};
+
+}  // namespace sac::effects

@@ -1,0 +1,73 @@
+#include "torque_curve_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+
+namespace sac::effects {
+namespace {
+
+std::vector<std::string> shapeNames(const Actuator& nominal) {
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < nominal.torque_curve->coefficients.size(); ++n) {
+    names.push_back("torque_curve/t" + std::to_string(n));
+  }
+  return names;
+}
+
+/// Largest torque of the polynomial part [N·m/A].
+double peakOf(const TorqueCurve& curve) {
+  constexpr int kSteps = 200;
+  double peak = 0.0;
+  for (int n = 0; n <= kSteps; ++n) {
+    peak = std::max(peak, std::abs(curve.value(curve.supportBegin() * n / kSteps)));
+  }
+  return peak;
+}
+
+/// T_{n+1} = 2 t T_n − T_{n−1} with t = 2ψ/ψ_end − 1.
+Eigen::MatrixXd chebyshevShapes(const TorqueCurveDescription& curve) {
+  const auto count = static_cast<Eigen::Index>(curve.coefficients.size());
+  const double slope = 2.0 / curve.support_begin;
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(count, count);
+  const auto times_t = [&](Eigen::Index n) {
+    Eigen::VectorXd product = -shapes.col(n);
+    product.tail(count - 1) += slope * shapes.col(n).head(count - 1);
+    return product;
+  };
+  shapes(0, 0) = 1.0;
+  if (count > 1) {
+    shapes.col(1) = times_t(0);
+  }
+  for (Eigen::Index n = 1; n + 1 < count; ++n) {
+    shapes.col(n + 1) = 2.0 * times_t(n) - shapes.col(n - 1);
+  }
+  return peakOf(TorqueCurve(curve)) * shapes;
+}
+
+}  // namespace
+
+TorqueCurveChange::TorqueCurveChange(const Actuator& nominal, const EffectSelection& /*selection*/)
+    : LaboratoryEffect(shapeNames(nominal), 1.0), shapes_(chebyshevShapes(*nominal.torque_curve)) {
+  for (Eigen::Index n = 0; n < shapes_.cols(); ++n) {
+    TorqueCurveDescription single = *nominal.torque_curve;
+    single.coefficients.assign(shapes_.col(n).begin(), shapes_.col(n).end());
+    basis_.emplace_back(single);
+  }
+}
+
+void TorqueCurveChange::addPairColumns(const Eigen::Vector3d& pole_rotor,
+                                       const Eigen::Vector3d& coil_rotor,
+                                       Columns columns) const {
+  for (std::size_t n = 0; n < basis_.size(); ++n) {
+    columns.col(static_cast<Eigen::Index>(n)) = pairTorque(basis_[n], pole_rotor, coil_rotor);
+  }
+}
+
+void TorqueCurveChange::applyTo(Actuator& actuator, const Values& values) const {
+  std::vector<double>& coefficients = actuator.torque_curve->coefficients;
+  Eigen::Map<Eigen::VectorXd>(coefficients.data(), shapes_.rows()) += shapes_ * values;
+}
+
+}  // namespace sac::effects

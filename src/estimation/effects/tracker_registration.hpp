@@ -1,0 +1,21 @@
+#pragma once
+
+#include "spherical_actuator_calibration/estimation/effect_selection.hpp"
+#include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
+
+namespace sac::effects {
+
+/// Rotation vector of the tracker in the stator, stator frame.
+class TrackerRegistration final : public LaboratoryEffect {
+ public:
+  static constexpr auto kName = "tracker_registration";
+  static constexpr auto kUnit = "rad";
+  static constexpr ActsOn kActsOn = ActsOn::kOrientations;
+
+  TrackerRegistration(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
+      : LaboratoryEffect(components(kName), 1.0) {}
+
+  void addTrackerColumns(Columns columns) const override { columns.setIdentity(); }
+};
+
+}  // namespace sac::effects
