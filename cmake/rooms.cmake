@@ -5,7 +5,6 @@ option(WARNINGS_AS_ERRORS "For developers: another compiler warns of other thing
 
 # C++17, all warnings, and libraries found from an installed program without LD_LIBRARY_PATH.
 function(use_project_options target)
-  target_compile_definitions(${target} PRIVATE PACKAGE_VERSION="${${PROJECT_NAME}_VERSION}")
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wzero-as-null-pointer-constant
     $<$<BOOL:${WARNINGS_AS_ERRORS}>:-Werror>)

@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
@@ -86,7 +87,7 @@ CalibrationOrigin originOf(const CalibrateBagOptions& options) {
   for (const std::string& bag : options.bags) {
     origin.recordings.push_back({fs::path(bag).filename().string(), fileChecksum(bag)});
   }
-  origin.software = PACKAGE_VERSION;
+  origin.software = packageVersion();
   return origin;
 }
 

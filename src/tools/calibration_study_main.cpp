@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
@@ -132,7 +133,7 @@ Shard parseShard(const std::string& text) {
 /// What the trials depend on.
 std::vector<std::pair<std::string, std::string>> settingsOf(const Options& options,
                                                             const Actuator& nominal) {
-  return {{"software", PACKAGE_VERSION},
+  return {{"software", packageVersion()},
           {"actuator", nominal.name},
           {"tracker", options.tracker},
           {"plan", options.plan_path.value_or("random")},

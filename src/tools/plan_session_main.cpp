@@ -9,6 +9,7 @@
 #include "plan_session_options.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
@@ -78,7 +79,7 @@ SessionPlanRecord recordOf(const PlanSessionOptions& options,
   SessionPlanRecord record;
   record.actuator = actuator.name;
   record.serial = actuator.serial;
-  record.software = PACKAGE_VERSION;
+  record.software = packageVersion();
   record.cycle = cycleText(options.cycle);
   record.current = options.plan.current;
   record.tracker_on = options.plan.tracker_on;

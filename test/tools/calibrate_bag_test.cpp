@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "spherical_actuator_calibration/ros/conversion/file_checksum.hpp"
@@ -268,7 +269,7 @@ TEST_F(CalibrateBag, RecordsWhereACalibrationComesFrom) {
   EXPECT_EQ(record.source[0].recording, "session.bag");
   ASSERT_EQ(std::system(("sha256sum " + session() + " >" + path("sum")).c_str()), 0);
   EXPECT_EQ(record.source[0].checksum, "sha256:" + contentOf(path("sum")).substr(0, 64));
-  EXPECT_EQ(record.software, PACKAGE_VERSION);
+  EXPECT_EQ(record.software, packageVersion());
   EXPECT_TRUE(std::regex_match(record.date, std::regex(R"(20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ)")));
 }
 

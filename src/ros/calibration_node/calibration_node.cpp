@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
@@ -41,7 +42,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
       options_(options),
       directory_(options.directory, start.actuator),
       files_(directory_),
-      session_(start, options.calibration, directory_.database(), PACKAGE_VERSION),
+      session_(start, options.calibration, directory_.database(), packageVersion()),
       topics_(node, options.calibration.frames.stator),
       auto_capture_(options.auto_capture),
       intake_(node, start.actuator, options.calibration),
