@@ -20,8 +20,8 @@ std::string commandDefect(const Eigen::VectorXd& command, std::size_t coils) {
     return "The command has " + std::to_string(command.size()) + " currents for " +
            std::to_string(coils) + " coils.";
   }
-  for (Eigen::Index coil = 0; coil < command.size(); ++coil) {
-    if (!std::isfinite(command[coil])) {
+  for (std::size_t coil = 0; coil < coils; ++coil) {
+    if (!std::isfinite(command[static_cast<Eigen::Index>(coil)])) {
       return "The commanded current of coil " + std::to_string(numberOf(coil)) + " is not finite.";
     }
   }

@@ -11,7 +11,9 @@
 namespace sac {
 namespace {
 
-const std::vector<CycleRequest> kWholeCalibration = {{Cycle::kJoint}, {Cycle::kRefine}};
+std::vector<CycleRequest> wholeCalibration() {
+  return {{Cycle::kJoint}, {Cycle::kRefine}};
+}
 
 /// The paper's session; every tenth sample is held out.
 std::vector<Sample> sessionSamples() {
@@ -47,7 +49,7 @@ TEST(CalibrationGrade, HasOneNamePerGrade) {
 }
 
 TEST(CalibrationGrade, GoodNeedsEveryParameterAndHeldOutSamplesThatAgree) {
-  const GradedCalibration graded = gradeOf(sessionSamples(), kWholeCalibration);
+  const GradedCalibration graded = gradeOf(sessionSamples(), wholeCalibration());
   EXPECT_EQ(graded.grade, Grade::kGood) << graded.reason;
   EXPECT_TRUE(tells(graded, "all 73 parameters are identified")) << graded.reason;
 }
@@ -57,7 +59,7 @@ TEST(CalibrationGrade, NothingIsGoodThatWasNotJudged) {
   for (Sample& sample : samples) {
     sample.validation = false;
   }
-  const GradedCalibration graded = gradeOf(samples, kWholeCalibration);
+  const GradedCalibration graded = gradeOf(samples, wholeCalibration());
   EXPECT_EQ(graded.grade, Grade::kNotValidated);
   EXPECT_TRUE(tells(graded, "no held-out sample judges them")) << graded.reason;
 }
@@ -67,7 +69,7 @@ TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
   for (Sample& sample : samples) {
     sample.has_torque = sample.has_torque && !sample.validation;
   }
-  const GradedCalibration graded = gradeOf(samples, kWholeCalibration);
+  const GradedCalibration graded = gradeOf(samples, wholeCalibration());
   EXPECT_EQ(graded.grade, Grade::kNotValidated);
   EXPECT_TRUE(tells(graded, "no held-out torque judges poles and coils")) << graded.reason;
 }
@@ -81,13 +83,13 @@ TEST(CalibrationGrade, UsableWherePartsAreMissing) {
 TEST(CalibrationGrade, UsableWhereTheWantedAccuracyIsMissed) {
   CalibrationConfig config;
   config.wanted.orientation = 1e-7;
-  const GradedCalibration one = gradeOf(sessionSamples(), kWholeCalibration, config);
+  const GradedCalibration one = gradeOf(sessionSamples(), wholeCalibration(), config);
   EXPECT_EQ(one.grade, Grade::kUsable);
   EXPECT_TRUE(tells(one, "above the wanted 0.0001 mrad")) << one.reason;
   config.wanted = {1.0, 1e-9};
-  EXPECT_EQ(gradeOf(sessionSamples(), kWholeCalibration, config).grade, Grade::kUsable);
+  EXPECT_EQ(gradeOf(sessionSamples(), wholeCalibration(), config).grade, Grade::kUsable);
   config.wanted = {1.0, 1.0};
-  EXPECT_EQ(gradeOf(sessionSamples(), kWholeCalibration, config).grade, Grade::kGood);
+  EXPECT_EQ(gradeOf(sessionSamples(), wholeCalibration(), config).grade, Grade::kGood);
 }
 
 TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
@@ -97,11 +99,11 @@ TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
       sample.R_stator_rotor = rotationExp({0.01, 0.0, 0.0}) * sample.R_stator_rotor;
     }
   }
-  EXPECT_EQ(gradeOf(samples, kWholeCalibration).grade, Grade::kContradicted);
+  EXPECT_EQ(gradeOf(samples, wholeCalibration()).grade, Grade::kContradicted);
 }
 
 TEST(CalibrationGrade, ACycleThatFailedSpoilsNothing) {
-  std::vector<CycleRequest> requests = kWholeCalibration;
+  std::vector<CycleRequest> requests = wholeCalibration();
   requests.push_back({Cycle::kCoil, 24});
   EXPECT_EQ(gradeOf(sessionSamples(), requests).grade, Grade::kGood);
 }

@@ -52,7 +52,8 @@ TorqueCurveChange::TorqueCurveChange(const Actuator& nominal, const EffectSelect
     : LaboratoryEffect(shapeNames(nominal), 1.0), shapes_(chebyshevShapes(*nominal.torque_curve)) {
   for (Eigen::Index n = 0; n < shapes_.cols(); ++n) {
     TorqueCurveDescription single = *nominal.torque_curve;
-    single.coefficients.assign(shapes_.col(n).begin(), shapes_.col(n).end());
+    const Eigen::VectorXd shape = shapes_.col(n);
+    single.coefficients.assign(shape.data(), shape.data() + shape.size());
     basis_.emplace_back(single);
   }
 }

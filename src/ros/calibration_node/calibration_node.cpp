@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 

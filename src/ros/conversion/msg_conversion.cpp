@@ -24,18 +24,6 @@ Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::u
   return q.normalized().toRotationMatrix();
 }
 
-msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
-  msg::ParameterEstimate message;
-  message.name = estimate.name;
-  message.unit = estimate.unit;
-  message.nominal = estimate.nominal;
-  message.initial = estimate.initial;
-  message.value = estimate.value;
-  message.stddev = estimate.observable ? estimate.stddev : kUnknown;
-  message.observable = static_cast<std::uint8_t>(estimate.observable);
-  return message;
-}
-
 msg::SampleResidual residualToRos(const SampleResidual& residual) {
   msg::SampleResidual message;
   message.id = residual.id;
@@ -63,6 +51,21 @@ void fillGrade(const GradedCalibration& graded, msg::CalibrationReport& message)
 }
 
 }  // namespace
+
+msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
+  msg::ParameterEstimate message;
+  message.name = estimate.name;
+  message.unit = estimate.unit;
+  message.nominal = estimate.nominal;
+  message.initial = estimate.initial;
+  message.value = estimate.value;
+  message.stddev = kUnknown;
+  if (estimate.observable) {
+    message.stddev = estimate.stddev;
+  }
+  message.observable = static_cast<std::uint8_t>(estimate.observable);
+  return message;
+}
 
 Eigen::Vector3d vectorFromRos(const geometry_msgs::Vector3& message) {
   return {message.x, message.y, message.z};
@@ -279,26 +282,6 @@ msg::Coverage coverageToRos(const Coverage& coverage) {
   message.wanted = coverage.wanted;
   message.seen_well = static_cast<std::uint8_t>(coverage.isSeenWell());
   message.identified = static_cast<std::uint8_t>(coverage.identified);
-  return message;
-}
-
-msg::PlanPoses::Response planToRos(const PosePlan& plan) {
-  msg::PlanPoses::Response message;
-  message.success = static_cast<std::uint8_t>(plan.success);
-  message.message = plan.message;
-  for (const PlannedPose& pose : plan.poses) {
-    msg::PlannedPose& item = message.poses.emplace_back();
-    for (std::size_t k = 0; k < kJoints; ++k) {
-      item.joint_position[k] = pose.joint_position[static_cast<Eigen::Index>(k)];
-    }
-    for (const std::size_t coil : pose.coils) {
-      item.coils.push_back(static_cast<std::uint32_t>(numberOf(coil)));
-    }
-  }
-  std::transform(plan.expected.begin(),
-                 plan.expected.end(),
-                 std::back_inserter(message.expected),
-                 estimateToRos);
   return message;
 }
 

@@ -22,7 +22,6 @@
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/Coverage.h"
-#include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/actuator/calibration_record.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
@@ -31,7 +30,6 @@
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -85,6 +83,9 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator,
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design);
 
+/// The standard deviation of what is not observable is infinite.
+msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate);
+
 /// `graded`: what is in force after the cycle. The header stays empty. The standard deviation of
 /// what is not observable is infinite.
 msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibration& graded);
@@ -95,8 +96,5 @@ msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
                                        const GradedCalibration& graded);
 
 msg::Coverage coverageToRos(const Coverage& coverage);
-
-/// Answer of the service plan_poses.
-msg::PlanPoses::Response planToRos(const PosePlan& plan);
 
 }  // namespace sac
