@@ -169,7 +169,7 @@ Eigen::Vector3d CalibrationModel::orientationResidual(const Sample& sample,
   const JointLinearization linear = linearizeRotorOrientation(
       point.geometry, sample.joint_position + d_reading * effects.values());
   const Eigen::Matrix3d R_predicted = R_tracker * linear.R_stator_rotor * rotationExp(marker);
-  const Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * R_predicted.transpose());
+  Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * R_predicted.transpose());
   if (jacobian == nullptr) {
     return y;
   }

@@ -5,7 +5,7 @@
 namespace sac {
 
 const bool& EffectSelection::operator[](const std::string& effect) const {
-  static const bool kAbsent = false;
+  static constexpr bool kAbsent = false;
   const auto found = modelled_.find(effect);
   return found == modelled_.end() ? kAbsent : found->second;
 }

@@ -133,13 +133,13 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
 /// Solves on from where the path is, and once more with the weights at the solution where they
 /// depend on it.
 bool Estimator::solveReweighted() {
-  const auto solveOn = [this] {
+  const auto solve_on = [this] {
     const Eigen::VectorXd start = solution_.path.empty() ? problem_.prior.x : solution_.x();
     solve(start, Loss::kSquared, 0.0);
   };
-  solveOn();
+  solve_on();
   if (result_.termination == Termination::kConverged && updateWeights(solution_.x())) {
-    solveOn();
+    solve_on();
   }
   return result_.termination == Termination::kConverged;
 }
