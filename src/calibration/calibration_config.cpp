@@ -158,7 +158,10 @@ class OptionReader {
 /// Writes every option.
 class OptionWriter {
  public:
-  void section(const std::string& name) { writer_.map(0, name); }
+  void section(const std::string& name) {
+    section_ = name;
+    writer_.map(0, name);
+  }
   void option(const std::string& key, double value, const ValueRange& /*range*/) {
     add(key, yamlNumber(value));
   }
@@ -171,10 +174,17 @@ class OptionWriter {
     add(key, value == BiasRemoval::kNone ? "none" : "zero_current");
   }
   std::string text() const { return writer_.text(); }
+  /// Name, as section.key, and value of every option.
+  const std::vector<std::pair<std::string, std::string>>& options() const { return options_; }
 
  private:
-  void add(const std::string& key, const std::string& value) { writer_.entry(1, key, value); }
+  void add(const std::string& key, const std::string& value) {
+    options_.emplace_back(section_ + "." + key, value);
+    writer_.entry(1, key, value);
+  }
 
+  std::string section_;
+  std::vector<std::pair<std::string, std::string>> options_;
   YamlWriter writer_;
 };
 
@@ -223,6 +233,25 @@ CalibrationConfig loadCalibrationConfig(const std::string& path) {
 
 CalibrationConfig parseCalibrationConfig(const std::string& text, const std::string& name) {
   return readWholeConfig(YamlMap::parse(text, name), name);
+}
+
+std::vector<std::string> changedStreamOptions(const CalibrationConfig& config) {
+  OptionWriter present;
+  OptionWriter defaults;
+  const CalibrationConfig default_config;
+  visitDwell(config, present);
+  visitMeans(config, present);
+  visitDwell(default_config, defaults);
+  visitMeans(default_config, defaults);
+  std::vector<std::string> changed;
+  for (std::size_t n = 0; n < present.options().size(); ++n) {
+    // The threshold also tells the estimation which coils were excited.
+    const auto& option = present.options()[n];
+    if (option != defaults.options()[n] && option.first != "currents.threshold") {
+      changed.push_back(option.first);
+    }
+  }
+  return changed;
 }
 
 std::string renderCalibrationConfig(const CalibrationConfig& config) {

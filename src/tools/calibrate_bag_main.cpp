@@ -107,8 +107,18 @@ Recording readBags(const CalibrateBagOptions& options,
   reading.ns = options.ns;
   reading.frames = config.frames;
   reading.samples = config.samples;
+  reading.source = options.source;
   reading.progress = terminalProgress("reading");
-  return readRecordings(options.bags, nominal, reading);
+  Recording recording = readRecordings(options.bags, nominal, reading);
+  std::string names;
+  for (const std::string& option : changedStreamOptions(config)) {
+    names += (names.empty() ? "" : ", ") + option;
+  }
+  if (!recording.report.has_streams && !names.empty()) {
+    recording.report.notes.push_back("Samples are taken as they were recorded, so that " + names +
+                                     " of the configuration has no effect: --from streams.");
+  }
+  return recording;
 }
 
 void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {

@@ -14,8 +14,8 @@ constexpr char kIntroduction[] =
     "\n"
     "Calibrates the actuator that the description names from recordings, read directly and "
     "without\n"
-    "a master: from the topic samples where it was recorded, else from joint_states,\n"
-    "measured_orientation, measured_torque and coil_currents.\n"
+    "a master: from the topic samples where it was recorded, else (or with --from streams) from\n"
+    "joint_states, measured_orientation, measured_torque and coil_currents.\n"
     "Exit status: 0 all cycles succeeded; 1 a cycle failed or a parameter is not observable (the\n"
     "others are written); 2 bad usage or unreadable input.\n\n";
 
@@ -24,6 +24,16 @@ void requireDate(const std::string& date) {
   if (!std::regex_match(date, form)) {
     throw ConfigError("--date: \"" + date + "\" is not of the form 2024-05-31T12:00:00Z.");
   }
+}
+
+SampleSource parseSource(const std::string& text) {
+  if (text == "samples") {
+    return SampleSource::kSamples;
+  }
+  if (text == "streams") {
+    return SampleSource::kStreams;
+  }
+  throw ConfigError("--from: \"" + text + "\" is neither samples nor streams.");
 }
 
 /// What cannot be told from one option alone.
@@ -46,11 +56,17 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
                                                             std::ostream& out) {
   CalibrateBagOptions options;
   std::optional<std::string> cycles;
+  std::optional<std::string> source;
   CommandLine line(kIntroduction);
   line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
   line.add(
       "config", options.config_path, "YAML", "configuration; config/calibration.yaml shows all");
   line.add("ns", options.ns, "NAME", "namespace of the recorded topics");
+  line.add("from",
+           source,
+           "samples|streams",
+           "what to calibrate from; without it samples where they were recorded. The sections "
+           "dwell, currents, means and streams of the configuration act on streams only");
   line.add("cycles",
            cycles,
            "LIST",
@@ -74,6 +90,9 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
     return std::nullopt;
   }
   check(options);
+  if (source) {
+    options.source = parseSource(*source);
+  }
   if (cycles) {
     options.cycles = parseCycles(*cycles);
   }

@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 
 namespace sac {
 
@@ -16,6 +17,7 @@ struct CalibrateBagOptions {
   std::optional<std::string> config_path;
   std::string ns = "/actuator";
   std::vector<std::string> bags;
+  SampleSource source = SampleSource::kSamplesWhereRecorded;
   /// In the order wanted, kCoil with coil 0 for all others; nothing: all that the data allow.
   std::optional<std::vector<CycleRequest>> cycles;
   std::optional<std::string> truth_path;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <string>
 #include <vector>
@@ -216,6 +217,21 @@ TEST_F(CalibrateBag, RealPositionerMissesTheAxisThatItHasNot) {
   EXPECT_EQ(loadActuator(output()).joints[2].axis, loadActuator(kPositioner).joints[2].axis);
 }
 
+TEST_F(CalibrateBag, TellsWhatOfTheConfigurationHasNoEffectOnSamples) {
+  const std::string config = path("config.yaml");
+  std::ofstream(config) << "dwell: {rest_window: 0.4}\nmeans: {smallest_count: 12}\n"
+                           "currents: {threshold: 0.06}\n";
+  const std::string options = "--config " + config + " --output " + output() + " --force ";
+  const std::string idle = "dwell.rest_window, means.smallest_count of the configuration";
+  const Outcome samples =
+      run("--actuator " + std::string(kPositioner) + " " + options + POSITIONER_BAG);
+  EXPECT_NE(samples.output.find(idle), std::string::npos) << samples.output;
+  const Outcome streams =
+      run("--actuator " + actuator() + " --cycles joint --from streams " + options + session());
+  EXPECT_EQ(streams.status, 0) << streams.errors;
+  EXPECT_EQ(streams.output.find(idle), std::string::npos) << streams.output;
+}
+
 TEST_F(CalibrateBag, WithoutTrackerTheRotationOfTheStatorStaysOpen) {
   SimulationOptions simulation;
   simulation.tracker.poses = 0;
@@ -319,6 +335,7 @@ TEST_F(CalibrateBag, HelpTellsEveryOption) {
   for (const std::string option : {"--actuator",
                                    "--config",
                                    "--ns",
+                                   "--from",
                                    "--cycles",
                                    "--output",
                                    "--urdf",
@@ -339,6 +356,8 @@ TEST_F(CalibrateBag, RefusesBadUsage) {
   expectRefusal("--actuator " + actuator() + " --output " + output(), "recording (BAG) is needed");
   expectRefusal(good + " --cycles joint,pole:1", "The cycle \"pole:1\" is unknown");
   expectRefusal(good + " --cycles ''", "--cycles needs a value");
+  expectRefusal(good + " --from dwells", "--from: \"dwells\" is neither samples nor streams");
+  expectRefusal(good + " --from samples", "/actuator/samples was not recorded");
   expectRefusal(good + " --speed 3", "--speed");
   expectRefusal(good + " --cycle joint", "--cycle");
   expectRefusal(good + " --output " + output(), "--output");

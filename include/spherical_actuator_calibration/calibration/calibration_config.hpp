@@ -50,6 +50,11 @@ CalibrationConfig parseCalibrationConfig(const std::string& text, const std::str
 /// stands for the file in messages.
 CalibrationConfig readCalibrationConfig(const YamlMap& map, const std::string& name);
 
+/// Options that tell how streams become samples (sections dwell, currents, means, streams) and
+/// differ from their defaults, as "dwell.rest_window". They have no effect on samples that were
+/// recorded.
+std::vector<std::string> changedStreamOptions(const CalibrationConfig& config);
+
 /// Text of a configuration file with every key. Loading gives back the configuration to the last
 /// bit.
 std::string renderCalibrationConfig(const CalibrationConfig& config);

@@ -62,7 +62,7 @@ class Reader {
   };
 
   void readGroup(const BagGroup& group, const Step& step) {
-    const bool from_samples = topics_.isRecorded(group, TopicRole::kSamples);
+    const bool from_samples = takesSamples(group);
     if (!from_samples) {
       topics_.requireStreams(group);
     }
@@ -70,6 +70,18 @@ class Reader {
     streams_.finish();
     append(streams_.takeSamples());
     append(recorded_samples_.takeSamples());
+  }
+
+  bool takesSamples(const BagGroup& group) const {
+    if (options_.source == SampleSource::kStreams) {
+      return false;
+    }
+    const bool are_recorded = topics_.isRecorded(group, TopicRole::kSamples);
+    if (options_.source == SampleSource::kSamples && !are_recorded) {
+      throw DataError(pathsOf(group) + ": the topic " + topics_.name(TopicRole::kSamples) +
+                      " was not recorded; take the samples from the streams.");
+    }
+    return are_recorded;
   }
 
   // rosbag and the message classes report damage by several exceptions, some of them of the

@@ -140,6 +140,28 @@ TEST_F(RecordingReader, PrefersRecordedSamples) {
   }
 }
 
+TEST_F(RecordingReader, TakesSamplesOrStreamsAsAsked) {
+  const std::vector<Sample> from_streams = read({session()}).samples;
+  const std::string both = edited([&, written = false](const auto& message, auto& out) mutable {
+    bags::keep(message, out);
+    if (!written) {
+      out.write("/actuator/samples", message.getTime(), sampleToRos(from_streams.front()));
+      written = true;
+    }
+  });
+  RecordingOptions options;
+  options.source = SampleSource::kStreams;
+  const Recording streams = readRecordings({both}, unit(), options);
+  expectSame(streams.samples, from_streams);
+  EXPECT_FALSE(streams.report.has_samples);
+
+  options.source = SampleSource::kSamples;
+  EXPECT_EQ(readRecordings({both}, unit(), options).samples.size(), 1U);
+  const std::string error =
+      errorMessage<DataError>([&] { readRecordings({session()}, unit(), options); });
+  EXPECT_NE(error.find("/actuator/samples was not recorded"), std::string::npos) << error;
+}
+
 TEST_F(RecordingReader, SamplesRecordedTwiceCountOnce) {
   std::vector<Sample> samples = read({session()}).samples;
   samples.resize(3);

@@ -12,11 +12,19 @@
 
 namespace sac {
 
+/// What samples are taken from.
+enum class SampleSource {
+  kSamplesWhereRecorded,  ///< the topic `samples` of recordings that have it, else the raw streams
+  kSamples,               ///< the topic `samples`
+  kStreams,               ///< the raw streams, also where samples were recorded
+};
+
 /// How recordings are read.
 struct RecordingOptions {
   std::string ns = "/actuator";  ///< namespace of the actuator's topics
   MeasurementFrames frames;
   SampleBuilderOptions samples;
+  SampleSource source = SampleSource::kSamplesWhereRecorded;
   std::function<void(double)>
       progress;  ///< told the share done (0 to 1) now and then; may be empty
 };
@@ -27,10 +35,9 @@ struct Recording {
   RecordingReport report;
 };
 
-/// Reads the samples of one actuator out of recordings: from the topic `samples` where it was
-/// recorded, else from the raw streams by a SampleBuilder. Bags are read in the order of their
-/// begin; those recorded side by side are read as one. Beside rosbag's index, memory does not grow
-/// with their length.
+/// Reads the samples of one actuator out of recordings: from the topic `samples`, or from the raw
+/// streams by a SampleBuilder. Bags are read in the order of their begin; those recorded side by
+/// side are read as one. Beside rosbag's index, memory does not grow with their length.
 ///
 /// Throws DataError, naming the file, for bags that cannot be read, that miss topics, are of
 /// another actuator, unit or number of coils, or whose measurements are all in another frame.
