@@ -15,7 +15,7 @@ CycleDemand demandOf(Cycle cycle, std::size_t poles) {
     case Cycle::kRefine:
       break;
   }
-  return {1, 1};
+  return {poles + 1, kAdvisedTorquesPerPole * poles};
 }
 
 }  // namespace sac

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <iterator>
+#include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -67,26 +68,40 @@ std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
   return counts;
 }
 
-/// Poses with an orientation that differ by the least motion in some joint, up to a number of them.
-std::size_t differentPoses(const std::vector<Sample>& samples,
+/// Samples that serve, of one pose at most so many, up to `enough` in all. Poses differ by the
+/// least motion in some joint.
+template <typename Serves>
+std::size_t samplesOfPoses(const std::vector<Sample>& samples,
                            double least_motion,
-                           std::size_t enough) {
-  std::vector<Eigen::Vector3d> poses;
+                           std::size_t most_of_a_pose,
+                           std::size_t enough,
+                           const Serves& serves) {
+  std::vector<std::pair<Eigen::Vector3d, std::size_t>> poses;
+  std::size_t count = 0;
   for (const Sample& sample : samples) {
-    if (sample.validation || !sample.has_orientation) {
-      continue;
-    }
-    const bool is_new = std::all_of(poses.begin(), poses.end(), [&](const Eigen::Vector3d& pose) {
-      return (pose - sample.joint_position).cwiseAbs().maxCoeff() >= least_motion;
-    });
-    if (is_new) {
-      poses.push_back(sample.joint_position);
-    }
-    if (poses.size() == enough) {
+    if (count == enough) {
       break;
     }
+    if (sample.validation || !serves(sample)) {
+      continue;
+    }
+    auto pose = std::find_if(poses.begin(), poses.end(), [&](const auto& known) {
+      return (known.first - sample.joint_position).cwiseAbs().maxCoeff() < least_motion;
+    });
+    if (pose == poses.end()) {
+      pose = poses.insert(poses.end(), {sample.joint_position, 0});
+    }
+    count += ++pose->second <= most_of_a_pose ? 1 : 0;
   }
-  return poses.size();
+  return count;
+}
+
+bool hasOrientation(const Sample& sample) {
+  return sample.has_orientation;
+}
+
+bool hasTorque(const Sample& sample) {
+  return sample.has_torque;
 }
 
 }  // namespace
@@ -152,24 +167,35 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
   return expandCoils(requests, model, samples, options);
 }
 
+std::size_t usefulOrientations(const std::vector<Sample>& samples,
+                               const EstimationOptions& options,
+                               std::size_t enough) {
+  constexpr std::size_t kMostOfAPose = 3;
+  return samplesOfPoses(samples, options.min_joint_motion, kMostOfAPose, enough, hasOrientation);
+}
+
 std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
                                      const std::vector<Sample>& samples,
                                      const EstimationOptions& options) {
   const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
+  const auto has_poses = [&](std::size_t needed, const auto& serves) {
+    return samplesOfPoses(samples, options.min_joint_motion, 1, needed, serves) == needed;
+  };
+  std::vector<CycleRequest> cycles;
   const auto has_samples = [&](const CycleRequest& request) {
     const std::size_t needed = demandOf(request.cycle, model.space().poles()).needed;
     switch (request.cycle) {
       case Cycle::kJoint:
-        return differentPoses(samples, options.min_joint_motion, needed) == needed;
+        return has_poses(needed, hasOrientation);
       case Cycle::kPoles:
       case Cycle::kCoil:
         return counts.at(request.coil.value()) >= needed;
       case Cycle::kRefine:
         break;
     }
-    return true;
+    // What one cycle has enough of, all at once have; without, torques of several coils at a time.
+    return !cycles.empty() || has_poses(needed, hasTorque);
   };
-  std::vector<CycleRequest> cycles;
   bool has_poles = false;
   for (const CycleRequest& request : possibleCycles(model, samples, options)) {
     if (!has_samples(request)) {

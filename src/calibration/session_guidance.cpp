@@ -66,9 +66,10 @@ class Guide {
   std::size_t advised(Cycle cycle) const { return demandOf(cycle, model_.space().poles()).advised; }
 
   std::string jointStep() const {
-    const std::size_t held = serving({Cycle::kJoint});
-    if (held >= advised(Cycle::kJoint)) {
-      return "Call calibrate_joint: " + number(held) + " samples have an orientation.";
+    const std::size_t held = progress_.joint.samples;
+    if (progress_.joint.isSeenWell()) {
+      return "Call calibrate_joint: " + number(serving({Cycle::kJoint})) +
+             " samples have an orientation.";
     }
     return "Move the rotor to a new pose with each joint turned, let it rest, and call capture: " +
            missing(held, advised(Cycle::kJoint)) + " with an orientation.";
@@ -142,10 +143,11 @@ std::uint32_t count(std::size_t value) {
 
 void addCoverage(const CalibrationModel& model,
                  const SampleCoverage& seen,
+                 std::size_t orientations,
                  const CalibrationState& state,
                  SessionProgress& progress) {
   const ParameterSpace& space = model.space();
-  progress.joint = {seen.orientations,
+  progress.joint = {count(orientations),
                     count(demandOf(Cycle::kJoint, space.poles()).advised),
                     allIdentified(state, space.joint(0), space.pole(0))};
   for (std::size_t i = 0; i < seen.poles.size(); ++i) {
@@ -186,6 +188,7 @@ SessionProgress progressOf(const CalibrationModel& model,
   }
   addCoverage(model,
               sampleCoverage(model, samples, state.belief.x, options.current_threshold),
+              usefulOrientations(samples, options, demandOf(Cycle::kJoint, space.poles()).advised),
               state,
               progress);
   progress.next_cycles = nextCycles(model, samples, options);

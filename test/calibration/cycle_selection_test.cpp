@@ -122,6 +122,23 @@ TEST(CycleSelection, TheJointNeedsThreeOrientationsAtDifferentPoses) {
   EXPECT_EQ(textOf(nextCycles(paperModel(), still, {})), "");
 }
 
+TEST(CycleSelection, TheRefinementNeedsWhatAnotherCycleNeedsOrTorquesAtManyPoses) {
+  std::vector<Sample> torques = samplesWithCoils({2});
+  torques.front().has_orientation = true;
+  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+  // Two coils at a time: no other cycle can take them.
+  torques = samplesWithCoils({1, 2, 3, 4, 5, 6, 7, 8, 9});
+  for (std::size_t n = 0; n < torques.size(); ++n) {
+    torques[n].current[20] = 2.0;
+    torques[n].joint_position[0] = 0.2 * static_cast<double>(n);
+  }
+  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+  torques = joined(torques, samplesWithCoils({1}));
+  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "refine");
+  torques[3].joint_position = torques[4].joint_position;
+  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+}
+
 TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {
   std::vector<Sample> samples = samplesWithCoils({2, 4, 6});
   samples[0].validation = true;

@@ -69,6 +69,19 @@ TEST(SessionGuidance, CountsWhatIsMissing) {
   EXPECT_NE(nextStep(session).find("12 of 24 are held"), std::string::npos);
 }
 
+TEST(SessionGuidance, OnePoseTellsNothingMoreHoweverOftenItIsMeasured) {
+  Sample sample;
+  sample.has_orientation = true;
+  const CalibrationSession session(
+      {scenarios::paperNominal()}, std::vector<Sample>(12, sample), {});
+  const SessionProgress progress = progressOf(session);
+  EXPECT_EQ(progress.joint.samples, 3U);
+  EXPECT_FALSE(progress.joint.isSeenWell());
+  EXPECT_EQ(progress.orientation_samples, 12U);
+  EXPECT_TRUE(progress.next_cycles.empty());
+  EXPECT_NE(nextStep(session).find("3 of 10 are held"), std::string::npos) << nextStep(session);
+}
+
 TEST(SessionGuidance, HeldOutSamplesDoNotServeACycle) {
   scenarios::Generator generator(1);
   const Actuator truth = scenarios::paperTruth();
@@ -106,6 +119,7 @@ TEST(SessionGuidance, TellsHowWellEachPoleAndCoilIsSeen) {
   const SessionProgress after = progressOf(session);
   EXPECT_TRUE(after.joint.identified);
   EXPECT_TRUE(after.poles[4].identified);
+  EXPECT_EQ(after.torque_samples[0], 30U);
   EXPECT_TRUE(after.coils[0].identified);
   EXPECT_FALSE(after.coils[1].identified);
 }

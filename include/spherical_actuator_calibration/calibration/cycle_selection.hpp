@@ -29,8 +29,14 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
                                          const std::vector<Sample>& samples,
                                          const EstimationOptions& options);
 
-/// Those of the possible cycles that have as many samples as they need (CycleDemand; for the joint,
-/// at different poses), in their order. Each presumes that those before it have run: other coils
+/// Samples in use with an orientation, up to `enough`; of one pose no more than three count, for
+/// they tell nothing new. Poses differ by min_joint_motion in some joint.
+std::size_t usefulOrientations(const std::vector<Sample>& samples,
+                               const EstimationOptions& options,
+                               std::size_t enough);
+
+/// Those of the possible cycles that have as many samples as they need (CycleDemand; at
+/// different poses), in their order. Each presumes that those before it have run: other coils
 /// need the poles.
 std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
                                      const std::vector<Sample>& samples,

@@ -23,7 +23,7 @@ struct Coverage {
 
 /// How far a calibration session has come (message CalibrationStatus).
 struct SessionProgress {
-  Coverage joint;               ///< samples with an orientation
+  Coverage joint;               ///< samples with an orientation: see usefulOrientations()
   std::vector<Coverage> poles;  ///< torque samples in which an excited coil reaches the pole
   std::vector<Coverage> coils;  ///< torque samples in which the excited coil reaches some pole
   std::vector<CycleRequest> next_cycles;      ///< see nextCycles()

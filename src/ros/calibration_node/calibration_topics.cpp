@@ -45,6 +45,7 @@ void CalibrationTopics::publishParameters(const LiveSession& session) {
 }
 
 void CalibrationTopics::publishReport(const msg::CalibrationReport& report) {
+  last_report_ = report;
   report_.publish(report);
 }
 
@@ -74,6 +75,12 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.grade_reason = graded.reason;
   message.next_step = nextStep(calibration.model(), calibration.samples(), progress, estimation);
   status_.publish(message);
+  if (last_report_ && (last_report_->grade != message.grade ||
+                       last_report_->grade_reason != message.grade_reason)) {
+    last_report_->grade = message.grade;
+    last_report_->grade_reason = message.grade_reason;
+    report_.publish(*last_report_);
+  }
 }
 
 void CalibrationTopics::publishSample(const msg::CalibrationSample& sample) {

@@ -27,6 +27,7 @@ Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::u
 msg::SampleResidual residualToRos(const SampleResidual& residual) {
   msg::SampleResidual message;
   message.id = residual.id;
+  message.unit = residual.quantity == Quantity::kOrientation ? "rad" : "N·m";
   message.residual = residual.residual;
   message.standardized = residual.standardized;
   message.rejected = static_cast<std::uint8_t>(residual.rejected);

@@ -50,8 +50,11 @@ void LiveScene::receive(const msg::ActuatorParameters& message) {
 
 void LiveScene::receive(const msg::CalibrationReport& message) {
   residuals_.clear();
+  // A sample may have two, of its orientation and its torque: the worse one is shown.
   for (const auto& residual : message.residuals) {
-    residuals_[residual.id] = {residual.standardized, residual.rejected != 0};
+    Residual& shown = residuals_[residual.id];
+    shown.standardized = std::max(shown.standardized, residual.standardized);
+    shown.rejected = shown.rejected || residual.rejected != 0;
   }
   changed_ = true;
 }

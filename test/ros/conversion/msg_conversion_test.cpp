@@ -197,9 +197,12 @@ TEST(MsgConversion, CoverageTellsWhetherItIsEnough) {
   EXPECT_EQ(few.wanted, 3U);
   EXPECT_FALSE(few.seen_well);
   EXPECT_FALSE(few.identified);
-  const msg::Coverage enough = coverageToRos({3, 3, true});
+  const msg::Coverage enough = coverageToRos({3, 3, false});
   EXPECT_TRUE(enough.seen_well);
-  EXPECT_TRUE(enough.identified);
+  EXPECT_FALSE(enough.identified);
+  const msg::Coverage identified = coverageToRos({2, 3, true});
+  EXPECT_FALSE(identified.seen_well);
+  EXPECT_TRUE(identified.identified);
 }
 
 TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
@@ -230,8 +233,22 @@ TEST(MsgConversion, ReportsTellWhatIsNotObservable) {
   EXPECT_FALSE(message.estimates[1].observable);
   ASSERT_EQ(message.residuals.size(), 1U);
   EXPECT_EQ(message.residuals[0].id, 9U);
+  EXPECT_EQ(message.residuals[0].unit, "N·m");
   EXPECT_TRUE(message.residuals[0].rejected);
   EXPECT_EQ(message.residuals[0].reason, "misfit");
+}
+
+TEST(MsgConversion, AValidationSucceedsOnlyWhereHeldOutSamplesAgree) {
+  HeldOutValidation validation;
+  validation.samples = 4;
+  validation.residuals = {{1, Quantity::kOrientation, 0.5, 1.0, false, ""}};
+  validation.probability = 0.5;
+  const msg::CalibrationReport agrees = validationToRos(validation, {Grade::kGood, ""});
+  EXPECT_TRUE(agrees.success);
+  EXPECT_EQ(agrees.residuals.at(0).unit, "rad");
+  validation.probability = 1e-6;
+  EXPECT_FALSE(validationToRos(validation, {Grade::kContradicted, ""}).success);
+  EXPECT_FALSE(validationToRos({}, {Grade::kNotValidated, ""}).success);
 }
 
 }  // namespace

@@ -119,6 +119,18 @@ TEST(LiveScene, ResidualsOfTheLastReportGoToTheirSamples) {
   EXPECT_FALSE(samples[1].standardized);
 }
 
+TEST(LiveScene, TheWorseResidualOfASampleIsShown) {
+  LiveScene scene = paperScene();
+  scene.receive(sampleOf(3));
+  CycleReport report;
+  report.residuals = {{3, Quantity::kOrientation, 1e-3, 7.0, true, "misfit"},
+                      {3, Quantity::kTorque, 1e-3, 0.8, false, ""}};
+  scene.receive(reportToRos(report, {}));
+  const auto samples = scene.scene().samples;
+  EXPECT_EQ(samples.at(0).standardized.value_or(0.0), 7.0);
+  EXPECT_TRUE(samples.at(0).rejected);
+}
+
 TEST(LiveScene, SamplesWithoutOrientationStandWhereTheirJointsWere) {
   LiveScene scene = paperScene();
   msg::CalibrationSample sample = sampleOf(1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <ros/node_handle.h>
@@ -22,6 +23,7 @@ class CalibrationTopics {
 
   void publishParameters(const LiveSession& session);
   void publishReport(const msg::CalibrationReport& report);
+  /// Publishes the last report once more where its grade is another one now.
   void publishStatus(const LiveSession& session,
                      const SessionProgress& progress,
                      const GradedCalibration& graded);
@@ -35,6 +37,7 @@ class CalibrationTopics {
   std_msgs::Header header() const;
 
   std::string frame_;
+  std::optional<msg::CalibrationReport> last_report_;
   ros::Publisher parameters_;
   ros::Publisher report_;
   ros::Publisher status_;
