@@ -301,19 +301,6 @@ class BadDay(unittest.TestCase):
         self.client.start(self.node)
         self.nothing_changed(2, held)
 
-    def test_the_report_tells_the_grade_of_what_is_in_force_now(self):
-        self.capture_all()
-        self.assertTrue(self.client.call("calibrate_joint").success)
-        wait_for(lambda: self.grades() == {"not_validated"}, "report and status of the cycle")
-        self.assertTrue(self.client.call("reset").success)
-        wait_for(lambda: self.grades() == {"failed"}, "report and status of nominal parameters")
-        self.assertTrue(self.client.call("restore", revision=1).success)
-        wait_for(lambda: self.grades() == {"not_validated"}, "report and status of revision 1")
-
-    def grades(self):
-        latest = (self.client.latest("report"), self.client.latest("status"))
-        return {message.grade for message in latest if message}
-
     def test_automatic_samples_wait_for_a_full_disk(self):
         self.assertTrue(self.client.call("set_auto_capture", data=True).success)
         unlimited = resource.prlimit(self.node.process.pid, resource.RLIMIT_FSIZE)

@@ -51,6 +51,19 @@ class BagLoop(unittest.TestCase):
             self.assertEqual(later.orientation, first.orientation)
         answer = self.client.call("calibrate_joint")
         self.assertTrue(answer.success, answer.message)
+        self.report_tells_the_grade_of_what_is_in_force_now()
+
+    def report_tells_the_grade_of_what_is_in_force_now(self):
+        wait_for(lambda: self.grades() == {"not_validated"}, "report and status of the cycle")
+        identified = self.client.revision()
+        self.assertTrue(self.client.call("reset").success)
+        wait_for(lambda: self.grades() == {"failed"}, "report and status of nominal parameters")
+        self.assertTrue(self.client.call("restore", revision=identified).success)
+        wait_for(lambda: self.grades() == {"not_validated"}, "report and status, restored")
+
+    def grades(self):
+        latest = (self.client.latest("report"), self.client.latest("status"))
+        return {message.grade for message in latest if message}
 
     def all_rounds_are_held(self):
         return self.client.latest("status").orientation_samples >= ROUNDS * POSES

@@ -14,7 +14,7 @@
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
-/// The residuals of core/cost_functions.hpp stated a second time, straight from the equations of
+/// The residuals of CalibrationModel stated a second time, straight from the equations of
 /// the paper and without a derivative by hand: Ceres differentiates them. What the analytic costs
 /// are checked against and measured against.
 namespace sac::autodiff {

@@ -4,7 +4,7 @@
 
 namespace sac {
 
-/// Makes the page for people of a report file (core/report_file.hpp), by the program render_report,
+/// Makes the page for people of a report file (assessment/report_file.hpp), by the program render_report,
 /// which lies beside this one in a build as in an installation. The page is replaced if it exists,
 /// and is whole or as before. Waits for it: some seconds.
 ///
