@@ -74,6 +74,7 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
     line.add("id", std::to_string(residual.id));
     line.add("quantity", quantityName(residual.quantity));
     line.add("residual", yamlNumber(residual.residual));
+    line.add("unit", residual.quantity == Quantity::kOrientation ? "rad" : "N·m");
     line.add("standardized", yamlNumber(residual.standardized));
     line.add("rejected", yamlBoolean(residual.rejected));
     if (residual.rejected) {

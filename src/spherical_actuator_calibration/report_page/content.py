@@ -18,6 +18,11 @@ QUANTITIES = ("orientation", "torque")
 MOST_INFLUENTIAL = 8
 
 
+def name_of(cycle):
+    """A cycle as people call it."""
+    return CYCLES.get(cycle["cycle"], cycle["cycle"].capitalize()).format(cycle["coil"])
+
+
 class Report:
     """The report.yaml of one calibration."""
 
@@ -127,7 +132,7 @@ class Report:
             history = cycle["error_history"]
             rows.append(
                 {
-                    "name": CYCLES[cycle["cycle"]].format(cycle["coil"]),
+                    "name": name_of(cycle),
                     "success": cycle["success"],
                     "message": cycle["message"],
                     "samples": self._samples_of(cycle),
@@ -146,12 +151,11 @@ class Report:
         return f"{cycle['samples_used']} ({rejected} rejected)" if rejected else f"{cycle['samples_used']}"
 
     def convergence(self):
-        pictures = []
-        for kind in CYCLES:
-            cycles = [cycle for cycle in self._cycles if cycle["cycle"] == kind and cycle["error_history"]]
-            if cycles:
-                pictures.append(figures.convergence(kind, cycles))
-        return pictures
+        groups = {}
+        for cycle in self._cycles:
+            if cycle["error_history"]:
+                groups.setdefault((cycle["cycle"], cycle["error_unit"]), []).append(cycle)
+        return [figures.convergence(kind, unit, cycles) for (kind, unit), cycles in groups.items()]
 
     # ---- residuals -----------------------------------------------------------------------------------
 
@@ -168,7 +172,7 @@ class Report:
     def residual_cycle(self):
         """Name of the cycle whose residuals are shown."""
         last = self._last_success()
-        return CYCLES[last["cycle"]].format(last["coil"]) if last else None
+        return name_of(last) if last else None
 
     def rejected(self):
         """Rows of measurements that were taken for outliers by the last successful cycles."""
@@ -176,7 +180,7 @@ class Report:
             {
                 "id": item["id"],
                 "quantity": item["quantity"],
-                "residual": with_unit(item["residual"], "rad" if item["quantity"] == "orientation" else "N·m"),
+                "residual": with_unit(item["residual"], item["unit"]),
                 "reason": item["reason"],
             }
             for quantity in QUANTITIES

@@ -97,18 +97,17 @@ def _plain_logarithm(axes):
     axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-CYCLE_TITLES = {
-    "joint": "Joint: mean orientation error",
-    "poles": "Poles with their coil: torque error",
-    "coil": "Single coils: torque error",
-    "refine": "Refinement: standardised error",
-}
+CYCLE_TITLES = {"joint": "Joint", "poles": "Poles with their coil", "coil": "Single coils", "refine": "Refinement"}
+ERROR_TITLES = {"rad": "mean orientation error", "N·m": "torque error", "1": "standardised error"}
 
 
-def convergence(kind, cycles):
-    """Error before the first and after each iteration, of all cycles of one kind (paper, Figures 7, 10, 12, 13)."""
-    factor, unit = SHOWN[cycles[0]["error_unit"]]
-    with Figure(f"convergence_{kind}", CYCLE_TITLES[kind]) as figure:
+def convergence(kind, error_unit, cycles):
+    """Error before the first and after each iteration, of all cycles of one kind (paper, Figures 7, 10, 12, 13).
+
+    The cycles tell their errors in the same unit."""
+    factor, unit = SHOWN[error_unit]
+    title = f"{CYCLE_TITLES.get(kind, kind.capitalize())}: {ERROR_TITLES[error_unit]}"
+    with Figure(f"convergence_{kind}", title) as figure:
         axes = figure.axes
         for cycle in cycles:
             errors = [max(factor * error, 1e-12) for error in cycle["error_history"]]
@@ -120,7 +119,7 @@ def convergence(kind, cycles):
         _whole_numbers(axes.xaxis)
         before, after = (max(factor * cycle["error_history"][end] for cycle in cycles) for end in (0, -1))
         figure.alt = (
-            f"{CYCLE_TITLES[kind]} by iteration on a logarithmic scale, {len(cycles)} "
+            f"{title} by iteration on a logarithmic scale, {len(cycles)} "
             f"{'cycle' if len(cycles) == 1 else 'cycles'}: from {significant(before)} to {significant(after)} {unit} "
             "at most."
         )
@@ -167,7 +166,7 @@ def _draw_residuals(axes, residuals, key, factor, colour, influential):
 
 def residuals_of(quantity, residuals, influential):
     """Residual norm of each sample, in its unit."""
-    unit = "rad" if quantity == "orientation" else "N·m"
+    unit = residuals[0]["unit"]
     factor, name = SHOWN[unit]
     with Figure(f"residuals_{quantity}", f"{quantity.capitalize()} residuals") as figure:
         _draw_residuals(figure.axes, residuals, "residual", factor, COLOURS[quantity], influential)
