@@ -2,6 +2,7 @@
 """dev/check_clang_tidy reads sources together, and finds what it would find in each alone."""
 
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -19,8 +20,13 @@ class CheckClangTidy(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name).resolve()
+        self.cache = self.root / "cache"
+        self.settle()
+
+    def settle(self):
+        """A package with one source in order, in self.root."""
         self.sources = []
-        (self.root / "build").mkdir()
+        (self.root / "build").mkdir(parents=True)
         for name in (".clang-tidy", "test/.clang-tidy"):
             (self.root / name).parent.mkdir(exist_ok=True)
             shutil.copy(ROOT / name, self.root / name)
@@ -44,6 +50,7 @@ class CheckClangTidy(unittest.TestCase):
         result = subprocess.run(
             [ROOT / "dev" / "check_clang_tidy", "build", *sources],
             cwd=self.root,
+            env={**os.environ, "XDG_CACHE_HOME": str(self.cache)},
             capture_output=True,
             text=True,
             check=False,
@@ -60,6 +67,12 @@ class CheckClangTidy(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertIn(f"{self.root}/include/base/turn.hpp:3:7: error: {FINDING}", said)
         self.assertIn("1 checked now, 1 with findings", said)
+
+    def test_another_clone_knows_it_too(self):
+        self.assertEqual(self.check(), (0, "1 sources in 1 groups, 1 checked now, 0 with findings\n"))
+        self.root = self.root / "clone"
+        self.settle()
+        self.assertEqual(self.check(), (0, "1 sources in 1 groups, 0 checked now, 0 with findings\n"))
 
     def test_finds_the_defects_of_every_source_of_a_group(self):
         for name in ("one", "two"):
