@@ -11,8 +11,6 @@ namespace {
 /// A loop that was held up must not make up for it with one large step [s].
 constexpr double kLongestStep = 0.05;
 
-constexpr int kStopAttempts = 3;
-
 std::string lostReason(const std::string& error) {
   return "the link is lost: " + error;
 }
@@ -23,19 +21,10 @@ CoilDriver::CoilDriver(const CurrentAmplifierOptions& options,
                        std::size_t coils,
                        ModbusTransport& transport)
     : options_(options),
-      coils_(coils),
       transport_(transport),
       amplifier_(options, coils, transport),
-      limiter_(options.limits, coils) {}
-
-std::string CoilDriver::command(const Eigen::VectorXd& currents, double now) {
-  std::string defect = commandDefect(currents, coils_);
-  if (defect.empty()) {
-    command_ = currents;
-    commanded_at_ = now;
-  }
-  return defect;
-}
+      limiter_(options.limits, coils),
+      supervisor_(options.supervision, coils) {}
 
 CoilDriver::Beat CoilDriver::beat(double now) {
   if (!link_.mayTry(now)) {
@@ -43,6 +32,7 @@ CoilDriver::Beat CoilDriver::beat(double now) {
     return {std::nullopt, lostReason(link_.lastError()), true};
   }
   try {
+    allowOneBeat();
     if (!link_.isUp()) {
       connect();
     }
@@ -65,67 +55,87 @@ CoilDriver::Beat CoilDriver::beat(double now) {
 void CoilDriver::connect() {
   forget();
   transport_.open();
-  amplifier_.disable();
+  setZero();
 }
 
 CoilDriver::Beat CoilDriver::exchange(double now) {
   Beat result;
   if (amplifier_.isTripped()) {
     forget();
-    amplifier_.disable();
+    setZero();
     result.zero_reason = "the amplifier has tripped";
     result.fault = true;
   } else {
-    result.zero_reason = zeroReason(now);
-    const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
-    if (result.zero_reason.empty()) {
-      amplifier_.write(limiter_.follow(*command_, elapsed), OutputStages::kOn);
-    } else {
-      amplifier_.write(limiter_.stop(), OutputStages::kOff);
-    }
+    follow(now, result);
   }
   last_beat_ = now;
-  result.measured = amplifier_.read();
+  result.measured = measure();
   return result;
 }
 
-std::string CoilDriver::zeroReason(double now) const {
-  if (!command_) {
-    return "no command has come";
+void CoilDriver::follow(double now, Beat& result) {
+  const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
+  const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
+  if (command) {
+    supervisor_.setting(limiter_.follow(*command, elapsed));
+    amplifier_.write(limiter_.setpoints(), OutputStages::kOn);
+    return;
   }
-  return now - commanded_at_ > options_.watchdog ? "no fresh command" : "";
+  result.zero_reason = supervisor_.zeroReason(now);
+  result.fault = !supervisor_.fault().empty();
+  supervisor_.setting(limiter_.stop());
+  amplifier_.write(limiter_.setpoints(),
+                   OutputStages::kOff,
+                   result.fault ? Heartbeat::kWithheld : Heartbeat::kGiven);
+}
+
+Eigen::VectorXd CoilDriver::measure() {
+  Eigen::VectorXd measured = amplifier_.read();
+  supervisor_.observe(measured);
+  return measured;
 }
 
 void CoilDriver::forget() {
-  command_.reset();
-  limiter_.stop();
+  supervisor_.forget();
+  supervisor_.setting(limiter_.stop());
 }
 
-void CoilDriver::tryToDisable() {
-  try {
-    transport_.open();
-    amplifier_.disable();
-  } catch (const Error&) {
-    // The link is lost: connect() begins with zero, and until then the amplifier's own watchdog
-    // must act.
-    transport_.close();
-  }
+void CoilDriver::setZero() {
+  amplifier_.switchOff();
+  amplifier_.zero();
 }
 
-std::string CoilDriver::stop() {
-  forget();
-  std::string reason;
-  for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
+// Two ways to zero, each by a link of its own if need be: an amplifier that cannot answer the first
+// request any more may still take the second. Should both fail, connect() begins with zero, and
+// until then the amplifier's own watchdog must act. Returns why one failed.
+std::string CoilDriver::tryToDisable() {
+  std::string failure;
+  for (const auto way : {&CurrentAmplifier::switchOff, &CurrentAmplifier::zero}) {
     try {
+      allowOneBeat();
       transport_.open();
-      amplifier_.disable();
-      return {};
+      (amplifier_.*way)();
     } catch (const Error& error) {
-      reason = error.what();
+      failure = error.what();
       transport_.close();
     }
   }
-  return reason;
+  return failure;
+}
+
+std::string CoilDriver::stop() {
+  supervisor_.close();
+  forget();
+  std::string failure = tryToDisable();
+  try {
+    allowOneBeat();
+    transport_.open();
+    measure();
+  } catch (const Error& error) {
+    transport_.close();
+    return error.what();
+  }
+  return failure.empty() ? supervisor_.unconfirmedReason() : failure;
 }
 
 }  // namespace sac

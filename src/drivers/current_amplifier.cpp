@@ -13,11 +13,39 @@ constexpr std::size_t kLargestRead = 125;
 
 constexpr std::int64_t kLargestAddress = 65535;
 
+constexpr double kLongestBeat = 1.0;  // [s]
+
 std::optional<int> readAddress(const YamlMap& map, const char* key) {
   if (!map.has(key)) {
     return std::nullopt;
   }
   return static_cast<int>(map.integer(key, 0, kLargestAddress));
+}
+
+SupervisorLimits readSupervision(const YamlMap& map) {
+  SupervisorLimits limits;
+  limits.watchdog = map.number("watchdog", ValueRange::closed(0.01, 1.0, "s"), limits.watchdog);
+  limits.clock_skew =
+      map.number("clock_skew", ValueRange::closed(0.0, 1.0, "s"), limits.clock_skew);
+  if (map.has("deviation")) {
+    const YamlMap deviation = map.map("deviation");
+    limits.deviation = deviation.number("tolerance", ValueRange{0.0, 1000.0, "A", true, false});
+    limits.deviating_beats = static_cast<int>(deviation.integer("beats", 1, 100'000));
+  }
+  return limits;
+}
+
+/// An amplifier without a heartbeat goes on for ever once its driver was killed: that is accepted
+/// in writing, or the driver does not start.
+void requireHeartbeat(const YamlMap& map) {
+  const bool accepted = map.has("unattended_amplifier") &&
+                        map.choice("unattended_amplifier", {"accepted"}) == "accepted";
+  if (!accepted && !map.has("heartbeat_address")) {
+    map.fail(
+        "heartbeat_address",
+        "is missing: without a watchdog of the amplifier nothing ends its currents when this "
+        "program is killed. Where that is accepted, write \"unattended_amplifier: accepted\".");
+  }
 }
 
 /// Numbers of one field that a request of so many words holds.
@@ -30,8 +58,12 @@ std::size_t perRequest(const RegisterField& field, std::size_t words) {
 CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
   CurrentAmplifierOptions options;
   options.link = readModbusLink(map.map("link"));
-  options.rate = map.number("rate", ValueRange::closed(1.0, 5000.0, "Hz"), options.rate);
-  options.watchdog = map.number("watchdog", ValueRange::closed(0.01, 10.0, "s"), options.watchdog);
+  if (options.link.response_timeout > kLongestBeat) {
+    map.map("link").fail("response_timeout",
+                         "more than 1 s: a slow amplifier would keep its currents too long.");
+  }
+  options.rate = map.number("rate", ValueRange::closed(20.0, 5000.0, "Hz"), options.rate);
+  options.supervision = readSupervision(map);
   const YamlMap limits = map.map("limits");
   const ValueRange ampere{0.0, 1000.0, "A", true, false};
   options.limits.coil = limits.number("coil", ampere);
@@ -43,6 +75,7 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
   }
   options.currents = readRegisterField(map.map("currents"));
   options.enable_address = readAddress(map, "enable_address");
+  requireHeartbeat(map);
   options.heartbeat_address = readAddress(map, "heartbeat_address");
   if (map.has("tripped")) {
     options.tripped = readRegisterField(map.map("tripped"));
@@ -55,7 +88,9 @@ CurrentAmplifier::CurrentAmplifier(const CurrentAmplifierOptions& options,
                                    ModbusTransport& transport)
     : options_(options), coils_(coils), transport_(transport) {}
 
-void CurrentAmplifier::write(const Eigen::VectorXd& currents, OutputStages stages) {
+void CurrentAmplifier::write(const Eigen::VectorXd& currents,
+                             OutputStages stages,
+                             Heartbeat heartbeat) {
   const RegisterField& field = options_.setpoints;
   std::vector<std::uint16_t> words;
   words.reserve(coils_ * static_cast<std::size_t>(field.words()));
@@ -64,7 +99,7 @@ void CurrentAmplifier::write(const Eigen::VectorXd& currents, OutputStages stage
     words.insert(words.end(), number.begin(), number.end());
   }
   writeSetpoints(words);
-  if (options_.heartbeat_address) {
+  if (options_.heartbeat_address && heartbeat == Heartbeat::kGiven) {
     transport_.write(field.unit, *options_.heartbeat_address, {++heartbeat_});
   }
   if (options_.enable_address && stages_ != stages) {
@@ -106,13 +141,16 @@ bool CurrentAmplifier::isTripped() {
   return decodeRegisters(words.data(), field.type, field.order) != 0.0;
 }
 
-void CurrentAmplifier::disable() {
+void CurrentAmplifier::switchOff() {
   // Should this fail, nothing is known of the output stages.
   stages_.reset();
-  const RegisterField& field = options_.setpoints;
   if (options_.enable_address) {
-    transport_.write(field.unit, *options_.enable_address, {0});
+    transport_.write(options_.setpoints.unit, *options_.enable_address, {0});
   }
+}
+
+void CurrentAmplifier::zero() {
+  const RegisterField& field = options_.setpoints;
   std::vector<std::uint16_t> words;
   const std::vector<std::uint16_t> zero = field.encode(0.0);
   for (std::size_t coil = 0; coil < coils_; ++coil) {

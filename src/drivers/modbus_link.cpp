@@ -1,8 +1,11 @@
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <modbus/modbus.h>
@@ -15,6 +18,8 @@ namespace {
 
 constexpr int kDataBits = 8;
 constexpr double kMicrosecondsPerSecond = 1e6;
+
+using Clock = std::chrono::steady_clock;
 
 struct ContextDeleter {
   void operator()(modbus_t* context) const { modbus_free(context); }
@@ -46,30 +51,39 @@ const char* tableName(RegisterTable table) {
 class LibmodbusTransport final : public ModbusTransport {
  public:
   explicit LibmodbusTransport(const ModbusLinkOptions& options)
-      : name_(describe(options)), context_(newContext(options)) {
+      : name_(describe(options)),
+        response_timeout_(options.response_timeout),
+        is_serial_(options.type == ModbusLinkOptions::Type::kRtu),
+        context_(newContext(options)) {
     if (!context_) {
       throw ConfigError("link: " + name_ + " cannot be used: " + modbus_strerror(errno) + ".");
     }
-    const double whole = std::floor(options.response_timeout);
-    const auto seconds = static_cast<std::uint32_t>(whole);
-    const auto microseconds =
-        static_cast<std::uint32_t>((options.response_timeout - whole) * kMicrosecondsPerSecond);
-    modbus_set_response_timeout(context_.get(), seconds, microseconds);
-    modbus_set_byte_timeout(context_.get(), seconds, microseconds);
+    // Without a timeout of its own for every byte, the response timeout is that of the whole
+    // answer.
+    modbus_set_byte_timeout(context_.get(), 0, 0);
   }
   ~LibmodbusTransport() override { closeLink(); }
+
+  void allow(double seconds) override {
+    deadline_ = Clock::now() +
+                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
 
   void open() override {
     if (is_open_) {
       return;
     }
+    limitTime();
     if (modbus_connect(context_.get()) != 0) {
       throw TransportError(TransportFailure::kUnreachable,
                            name_ + " cannot be reached: " + modbus_strerror(errno) + ".");
     }
     is_open_ = true;
-    // What an earlier link has left on a serial line is no answer to the next request.
-    modbus_flush(context_.get());
+    if (is_serial_) {
+      // What an earlier link has left on the line is no answer to the next request. A new
+      // connection has nothing, and one that sends without end would never be empty.
+      modbus_flush(context_.get());
+    }
   }
 
   void close() override { closeLink(); }
@@ -107,7 +121,26 @@ class LibmodbusTransport final : public ModbusTransport {
     if (!is_open_) {
       throw TransportError(TransportFailure::kUnreachable, name_ + " is not connected.");
     }
+    limitTime();
     modbus_set_slave(context_.get(), unit);
+  }
+
+  /// What comes next has the response timeout, or what is left of the time that was allowed.
+  void limitTime() {
+    double seconds = response_timeout_;
+    if (deadline_) {
+      const double left = std::chrono::duration<double>(*deadline_ - Clock::now()).count();
+      if (left < kLeastTime) {
+        closeLink();
+        throw TransportError(TransportFailure::kTimeout, name_ + " is too slow.");
+      }
+      seconds = std::min(seconds, left);
+    }
+    const double whole = std::floor(seconds);
+    modbus_set_response_timeout(
+        context_.get(),
+        static_cast<std::uint32_t>(whole),
+        static_cast<std::uint32_t>((seconds - whole) * kMicrosecondsPerSecond));
   }
 
   [[noreturn]] void fail(int unit, const std::string& what) {
@@ -128,7 +161,13 @@ class LibmodbusTransport final : public ModbusTransport {
     }
   }
 
+  /// Less is no time for a request [s].
+  static constexpr double kLeastTime = 1e-4;
+
   std::string name_;
+  double response_timeout_;  ///< [s]
+  bool is_serial_;
+  std::optional<Clock::time_point> deadline_;
   std::unique_ptr<modbus_t, ContextDeleter> context_;
   bool is_open_ = false;
 };

@@ -4,17 +4,21 @@
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 int main(int argc, char** argv) {
-  return sac::runNode(
+  bool zero_confirmed = false;
+  const int status = sac::runNode(
       argc,
       argv,
       "coil_driver",
-      [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+      [&zero_confirmed](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
         const sac::CurrentAmplifierOptions options = sac::loadCurrentAmplifierOptions(private_node);
-        const sac::CoilDriverNode coil_driver(node,
-                                              private_node,
-                                              sac::loadDescriptionParameter(node).actuator,
-                                              options,
-                                              sac::makeTransport(options.link));
+        sac::CoilDriverNode coil_driver(node,
+                                        private_node,
+                                        sac::loadDescriptionParameter(node).actuator,
+                                        options,
+                                        sac::makeTransport(options.link));
         sac::spinUntilTermination();
+        zero_confirmed = coil_driver.stop();
       });
+  // Whoever started this program must not take it for done while current may flow.
+  return status == 0 && !zero_confirmed ? 1 : status;
 }

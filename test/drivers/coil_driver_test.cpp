@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -42,13 +43,25 @@ class CoilDriverTest : public ::testing::Test {
   }
   bool enabled() const { return bus_.at(kUnit, RegisterTable::kHolding, 100) == 1; }
 
+  /// A command that is given at this moment.
+  std::string offer(const Eigen::VectorXd& currents) { return offerTo(driver_, currents); }
+  std::string offerTo(CoilDriver& driver, const Eigen::VectorXd& currents) const {
+    return driver.offer({"/operator", now_, currents}, {now_, now_});
+  }
+
+  /// What the amplifier measures in a coil, from 0 [A].
+  void measures(int coil, double current) {
+    const auto word = static_cast<std::int16_t>(current / 1e-3);
+    bus_.set(kUnit, RegisterTable::kInput, coil, {static_cast<std::uint16_t>(word)});
+  }
+
   /// Beats until the command is reached.
   void follow(const Eigen::VectorXd& command) {
     // A command before the link is up would be forgotten.
     beat();
     for (int n = 0; n < 20; ++n) {
       now_ += 0.005;
-      ASSERT_EQ(driver_.command(command, now_), "");
+      ASSERT_EQ(offer(command), "");
       ASSERT_EQ(driver_.beat(now_).zero_reason, "");
     }
   }
@@ -97,8 +110,8 @@ TEST_F(CoilDriverTest, GoesToZeroWithoutAFreshCommand) {
 
 TEST_F(CoilDriverTest, ARefusedCommandLetsTheOneBeforeRunOut) {
   follow(pattern(3, 1.5));
-  EXPECT_NE(driver_.command(Eigen::VectorXd::Zero(3), now_), "");
-  EXPECT_NE(driver_.command(pattern(3, std::nan("")), now_ + 0.2), "");
+  EXPECT_NE(offer(Eigen::VectorXd::Zero(3)), "");
+  EXPECT_NE(offer(pattern(3, std::nan(""))), "");
   EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
   now_ += 0.26;
   beat();
@@ -134,7 +147,8 @@ TEST_F(CoilDriverTest, ALostLinkMeansZeroFirstAndAFreshCommandAfterwards) {
   EXPECT_NE(beat().zero_reason, "");
   EXPECT_FALSE(driver_.link().isUp());
   // Commands go on during the loss; one from then must not act when the link is back.
-  EXPECT_EQ(driver_.command(pattern(3, 1.5), now_), "");
+  now_ += 0.005;
+  EXPECT_EQ(offer(pattern(3, 1.5)), "");
   bus_.setReachable(true);
   const std::size_t before = bus_.writes().size();
   now_ += 5.0;
@@ -197,30 +211,99 @@ TEST_F(CoilDriverTest, StopsForGood) {
   EXPECT_EQ(driver_.stop(), "");
   EXPECT_TRUE(allZero());
   EXPECT_FALSE(enabled());
+  now_ += 0.005;
+  EXPECT_NE(offer(pattern(3, 1.5)), "");
+  beat();
+  EXPECT_TRUE(allZero());
 }
 
-TEST_F(CoilDriverTest, TriesAgainToStop) {
+TEST_F(CoilDriverTest, HasNotStoppedBeforeZeroIsMeasured) {
   follow(pattern(3, 1.5));
-  bus_.failNext(TransportFailure::kTimeout, 2);
+  measures(3, 1.2);
+  const std::string reason = driver_.stop();
+  EXPECT_NE(reason.find("1.20 A"), std::string::npos) << reason;
+  EXPECT_FALSE(driver_.supervisor().isZeroConfirmed());
+  measures(3, 0.0);
   EXPECT_EQ(driver_.stop(), "");
+  EXPECT_TRUE(driver_.supervisor().isZeroConfirmed());
+}
+
+TEST_F(CoilDriverTest, TriesBothWaysToZeroWhenItStops) {
+  // The switch of the output stages is not answered, the setpoints are: by a link of their own.
+  follow(pattern(3, 1.5));
+  bus_.failNext(TransportFailure::kTimeout);
+  EXPECT_NE(driver_.stop(), "");
   EXPECT_TRUE(allZero());
+  EXPECT_TRUE(driver_.supervisor().isZeroConfirmed());
+  EXPECT_EQ(driver_.stop(), "");
+}
+
+TEST_F(CoilDriverTest, DoesNotTakeALostLinkForZero) {
   follow(pattern(3, 1.5));
   bus_.setReachable(false);
   EXPECT_NE(driver_.stop(), "");
+  EXPECT_FALSE(driver_.supervisor().isZeroConfirmed());
+}
+
+TEST_F(CoilDriverTest, KnowsThatItWasZeroBeforeTheLinkWasLost) {
+  follow(pattern(3, 1.5));
+  now_ += 0.3;
+  beat();
+  bus_.setReachable(false);
+  EXPECT_NE(driver_.stop(), "");
+  EXPECT_TRUE(driver_.supervisor().isZeroConfirmed());
+}
+
+TEST_F(CoilDriverTest, AllRequestsOfABeatHaveOneSpanOfTime) {
+  beat();
+  const int before = bus_.spans();
+  beat();
+  EXPECT_EQ(bus_.spans(), before + 1);
+  EXPECT_EQ(bus_.span(), 0.1);
+}
+
+TEST_F(CoilDriverTest, AnAmplifierThatDoesNotApplyIsToldAndItsHeartbeatWithheld) {
+  follow(pattern(3, 1.5));
+  measures(3, 2.0);
+  int beats = 0;
+  CoilDriver::Beat result;
+  while (!result.fault && beats < 100) {
+    now_ += 0.005;
+    offer(pattern(3, 1.5));
+    result = driver_.beat(now_);
+    ++beats;
+  }
+  // 60 beats beyond the tolerance, and one that acts on it.
+  EXPECT_LE(beats, 61);
+  EXPECT_NE(result.zero_reason.find("coil 4 carries 2.00 A where 1.50 A are set"),
+            std::string::npos)
+      << result.zero_reason;
+  EXPECT_TRUE(allZero());
+  EXPECT_FALSE(enabled());
+  const std::uint16_t heartbeat = bus_.at(kUnit, RegisterTable::kHolding, 101);
+  measures(3, 0.0);
+  for (int n = 0; n < 100; ++n) {
+    now_ += 0.005;
+    offer(pattern(3, 1.5));
+    EXPECT_TRUE(driver_.beat(now_).fault);
+  }
+  EXPECT_EQ(bus_.at(kUnit, RegisterTable::kHolding, 101), heartbeat);
+  EXPECT_TRUE(allZero());
 }
 
 TEST_F(CoilDriverTest, AStalledLoopTakesNoLargeStep) {
   beat();
   now_ += 10.0;
-  driver_.command(pattern(3, 2.5), now_);
+  offer(pattern(3, 2.5));
   driver_.beat(now_);
   // 100 A/s for at most 50 ms would be 5 A: the coil's limit holds; at 20 A/s the step shows.
   CurrentAmplifierOptions slow = shippedOptions();
   slow.limits.slew = 20.0;
   CoilDriver driver(slow, kCoils, bus_);
-  driver.beat(200.0);
-  driver.command(pattern(3, 2.5), 210.0);
-  driver.beat(210.0);
+  driver.beat(now_);
+  now_ += 10.0;
+  offerTo(driver, pattern(3, 2.5));
+  driver.beat(now_);
   EXPECT_LE(setpoint(3), 1.0 + 1e-9);
 }
 
@@ -263,20 +346,40 @@ TEST(CurrentAmplifier, WritesNothingOfACommandThatDoesNotFit) {
   EXPECT_TRUE(bus.writes().empty());
 }
 
+std::string refusalOf(const std::string& text) {
+  return errorMessage<ConfigError>(
+      [&] { readCurrentAmplifierOptions(YamlMap::parse(text, "c.yaml")); });
+}
+
 TEST(CurrentAmplifier, ConfigurationErrorsNameTheKey) {
-  const auto message = [](const std::string& text) {
-    return errorMessage<ConfigError>(
-        [&] { readCurrentAmplifierOptions(YamlMap::parse(text, "c.yaml")); });
-  };
-  EXPECT_NE(message("link: {type: tcp, host: h}\nlimits: {coil: -1.0, total: 1.0, slew: 1.0}\n")
-                .find("limits.coil"),
+  const std::string link = "link: {type: tcp, host: h}\n";
+  EXPECT_NE(refusalOf(link + "limits: {coil: -1.0, total: 1.0, slew: 1.0}\n").find("limits.coil"),
             std::string::npos);
-  EXPECT_NE(message("link: {type: tcp, host: h}\nlimits: {coil: 1.0, total: 1.0, slew: 1.0}\n"
-                    "setpoints: {table: input, address: 0, type: int16, scale: 1.0}\n")
+  EXPECT_NE(refusalOf(link + "limits: {coil: 1.0, total: 1.0, slew: 1.0}\n"
+                             "setpoints: {table: input, address: 0, type: int16, scale: 1.0}\n")
                 .find("setpoints.table"),
             std::string::npos);
-  EXPECT_NE(message("link: {type: tcp, host: h}\nwatchdog: 60.0\n").find("watchdog"),
+  EXPECT_NE(refusalOf(link + "watchdog: 1.1\n").find("watchdog"), std::string::npos);
+  EXPECT_NE(refusalOf(link + "rate: 5.0\n").find("rate"), std::string::npos);
+  EXPECT_NE(refusalOf("link: {type: tcp, host: h, response_timeout: 1.5}\n")
+                .find("link.response_timeout"),
             std::string::npos);
+}
+
+TEST(CurrentAmplifier, GoesWithoutAHeartbeatOnlyWhereThatIsAcceptedInWriting) {
+  const std::string unattended =
+      "link: {type: tcp, host: h}\n"
+      "limits: {coil: 1.0, total: 1.0, slew: 1.0}\n"
+      "setpoints: {address: 0, type: int16, scale: 1.0}\n"
+      "currents: {address: 0, type: int16, scale: 1.0}\n";
+  const std::string refusal = refusalOf(unattended);
+  EXPECT_NE(refusal.find("heartbeat_address"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("unattended_amplifier: accepted"), std::string::npos) << refusal;
+  EXPECT_NE(refusalOf(unattended + "unattended_amplifier: yes please\n").find("accepted"),
+            std::string::npos);
+  EXPECT_FALSE(readCurrentAmplifierOptions(
+                   YamlMap::parse(unattended + "unattended_amplifier: accepted\n", "c.yaml"))
+                   .heartbeat_address);
 }
 
 }  // namespace

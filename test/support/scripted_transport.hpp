@@ -46,6 +46,14 @@ class ScriptedTransport : public ModbusTransport {
   int reads() const { return reads_; }
   int opened() const { return opened_; }
 
+  /// How often a span of time began, and its length [s].
+  int spans() const { return spans_; }
+  double span() const { return span_; }
+
+  void allow(double seconds) override {
+    ++spans_;
+    span_ = seconds;
+  }
   void open() override {
     if (is_open_) {
       return;
@@ -96,6 +104,8 @@ class ScriptedTransport : public ModbusTransport {
   bool is_open_ = false;
   int reads_ = 0;
   int opened_ = 0;
+  int spans_ = 0;
+  double span_ = 0.0;
 };
 
 }  // namespace sac

@@ -8,21 +8,24 @@
 
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 #include "spherical_actuator_calibration/drivers/current_limiter.hpp"
+#include "spherical_actuator_calibration/drivers/current_supervisor.hpp"
 #include "spherical_actuator_calibration/drivers/link_supervisor.hpp"
 
 namespace sac {
 
 /// Drives the coils of one actuator, beat by beat. Currents are zero unless there is every reason
-/// that they should not be: without a fresh command, after a lost link, after a trip, after an
-/// error, at the start and at the end. A command that was given before any of these is forgotten.
+/// that they should not be: without a command that counts (see CurrentSupervisor), after a lost
+/// link, after a trip, after an error, at the start and at the end. A command that was given before
+/// any of these is forgotten. All requests of a beat together have the response timeout.
 ///
-/// Times are seconds of a steady clock of the caller. Not thread-safe.
+/// Times are seconds of a steady clock of the caller. Thread-safe are only offer() and
+/// supervisor().
 class CoilDriver {
  public:
   /// What one beat did.
   struct Beat {
     std::optional<Eigen::VectorXd> measured;  ///< currents [A]; nothing when they could not be read
-    std::string zero_reason;  ///< why the currents are zero; empty while a command is followed
+    std::string zero_reason;  ///< why zero is set; empty while a command is followed
     bool fault = false;       ///< the device is the reason, not the want of commands
   };
 
@@ -30,35 +33,39 @@ class CoilDriver {
   /// are not valid.
   CoilDriver(const CurrentAmplifierOptions& options, std::size_t coils, ModbusTransport& transport);
 
-  /// Takes a command [A] that was given at `now`. Returns why it is refused, or nothing; a refused
-  /// one changes nothing, so that the one before runs into the watchdog.
-  std::string command(const Eigen::VectorXd& currents, double now);
+  /// Takes a command, or tells why it is refused: see CurrentSupervisor::offer().
+  std::string offer(const CoilCommand& command, const Instant& now) {
+    return supervisor_.offer(command, now);
+  }
 
   /// One beat: opens a lost link when it is time to, writes setpoints, reads currents. What devices
   /// and links do wrong ends in zero currents and `zero_reason`, never in an exception.
   Beat beat(double now);
 
-  /// Zero at once and for good, with a few attempts; the reason when none succeeded.
+  /// Zero at once and for good. Returns nothing when the amplifier took it and zero was measured,
+  /// otherwise why not: then it is worth another call, as currents need a moment to fade.
   std::string stop();
 
   const LinkSupervisor& link() const { return link_; }
   const CurrentLimiter& limiter() const { return limiter_; }
+  const CurrentSupervisor& supervisor() const { return supervisor_; }
 
  private:
   void connect();
   Beat exchange(double now);
-  std::string zeroReason(double now) const;
+  void follow(double now, Beat& result);
+  Eigen::VectorXd measure();
   void forget();
-  void tryToDisable();
+  void setZero();
+  void allowOneBeat() { transport_.allow(options_.link.response_timeout); }
+  std::string tryToDisable();
 
   CurrentAmplifierOptions options_;
-  std::size_t coils_;
   ModbusTransport& transport_;
   CurrentAmplifier amplifier_;
   CurrentLimiter limiter_;
+  CurrentSupervisor supervisor_;
   LinkSupervisor link_;
-  std::optional<Eigen::VectorXd> command_;
-  double commanded_at_ = 0.0;
   std::optional<double> last_beat_;
 };
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/drivers/current_limiter.hpp"
+#include "spherical_actuator_calibration/drivers/current_supervisor.hpp"
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
 
@@ -16,10 +17,9 @@ namespace sac {
 /// The current amplifier of all coils, and how it is driven, as a configuration describes them.
 /// Blocks hold one number per coil, in description order, from the field's address on.
 struct CurrentAmplifierOptions {
-  ModbusLinkOptions link;
-  double rate = 200.0;  ///< of the control loop [Hz]
-  /// Without a fresh command for so long all currents go to zero [s].
-  double watchdog = 0.25;
+  ModbusLinkOptions link;  ///< its response timeout is also that of all requests of a beat
+  double rate = 200.0;     ///< of the control loop [Hz]
+  SupervisorLimits supervision;
   CurrentLimits limits;
   RegisterField setpoints;  ///< block of holding registers [A]
   RegisterField currents;   ///< block of measured currents [A]
@@ -28,6 +28,8 @@ struct CurrentAmplifierOptions {
   /// Register that is not 0 when the amplifier has tripped.
   std::optional<RegisterField> tripped;
   /// Holding register that is counted up with every setpoint, for the amplifier's own watchdog.
+  /// Only an operator who accepts that nothing ends the currents when the driver is killed goes
+  /// without.
   std::optional<int> heartbeat_address;
 };
 
@@ -37,6 +39,9 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map);
 
 /// Whether the amplifier's output stages are switched on.
 enum class OutputStages { kOff, kOn };
+
+/// Whether the amplifier's own watchdog is told that all is well.
+enum class Heartbeat { kGiven, kWithheld };
 
 /// The current amplifier over a Modbus link. Not thread-safe.
 class CurrentAmplifier {
@@ -49,15 +54,19 @@ class CurrentAmplifier {
   /// Sets the current of every coil [A], then switches the output stages, where they can be. Throws
   /// TransportError, and DataError when a current does not fit into its register: then none is
   /// written.
-  void write(const Eigen::VectorXd& currents, OutputStages stages);
+  void write(const Eigen::VectorXd& currents,
+             OutputStages stages,
+             Heartbeat heartbeat = Heartbeat::kGiven);
   /// Measured current of every coil [A]. Throws TransportError, and DataError when one is not
   /// finite.
   Eigen::VectorXd read();
   /// Whether the amplifier says that it has tripped; false where it cannot say. Throws
   /// TransportError.
   bool isTripped();
-  /// Output stages off, where they can be switched, and zero currents. Throws TransportError.
-  void disable();
+  /// Output stages off, where they can be switched. Throws TransportError.
+  void switchOff();
+  /// Zero currents. Throws TransportError.
+  void zero();
 
  private:
   void writeSetpoints(const std::vector<std::uint16_t>& words);

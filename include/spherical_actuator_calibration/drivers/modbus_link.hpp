@@ -18,7 +18,7 @@ struct ModbusLinkOptions {
   int baud = 115200;               ///< RTU [bit/s]
   char parity = 'E';               ///< RTU: 'N', 'E' or 'O'
   int stop_bits = 1;               ///< RTU
-  double response_timeout = 0.1;   ///< of connecting and of every request [s]
+  double response_timeout = 0.1;   ///< of connecting, and of a request's whole answer [s]
 };
 
 /// Reads the map `link` of a driver's configuration, for example {type: tcp, host: 127.0.0.1, port:

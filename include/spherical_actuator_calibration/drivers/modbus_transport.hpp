@@ -14,7 +14,8 @@ enum class RegisterTable {
 /// A Modbus bus as its master sees it. One request at a time; not thread-safe.
 ///
 /// Addresses count from 0, as in the protocol. Every request throws TransportError, at the latest
-/// after the response timeout. After kUnreachable, kTimeout and kGarbled the link is closed: open()
+/// when the response timeout is over for its whole answer, however it dribbles in, or when the time
+/// of allow() is. After kUnreachable, kTimeout and kGarbled the link is closed: open()
 /// makes a new one, so that a late answer cannot be taken for the next one.
 class ModbusTransport {
  public:
@@ -22,6 +23,9 @@ class ModbusTransport {
   ModbusTransport(const ModbusTransport&) = delete;
   ModbusTransport& operator=(const ModbusTransport&) = delete;
   virtual ~ModbusTransport() = default;
+
+  /// All that follows, until this is called again, must be done within so many seconds from now.
+  virtual void allow(double seconds) = 0;
 
   /// Does nothing when the link is open. Throws TransportError (kUnreachable).
   virtual void open() = 0;

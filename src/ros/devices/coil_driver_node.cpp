@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/ros/devices/coil_driver_node.hpp"
 
-#include <algorithm>
+#include <chrono>
 #include <exception>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include <ros/console.h>
@@ -9,15 +11,39 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
-#include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 namespace sac {
 namespace {
 
 constexpr double kWarningPeriod = 2.0;  // [s]
+/// For currents to fade, and for an amplifier that does not answer at once, when the node ends [s].
+constexpr double kStopTime = 0.5;
+/// Between two looks whether the currents have faded.
+constexpr std::chrono::milliseconds kStopPause{5};
+/// The commands of all callers that come while a callback runs: none may push out another's.
+constexpr std::uint32_t kWaitingCommands = 100;
+
+constexpr char kUnattended[] =
+    "it has no heartbeat, so that nothing ends its currents when this program is killed.";
+
+Instant instantNow() {
+  return {steadySeconds(), ros::WallTime::now().toSec()};
+}
+
+CoilCommand commandFromRos(const ros::MessageEvent<const msg::CoilCurrents>& event) {
+  const msg::CoilCurrents& message = *event.getConstMessage();
+  CoilCommand command;
+  command.caller = event.getPublisherName();
+  if (!message.header.stamp.isZero()) {
+    command.stamp = message.header.stamp.toSec();
+  }
+  command.currents = Eigen::Map<const Eigen::VectorXd>(
+      message.current.data(), static_cast<Eigen::Index>(message.current.size()));
+  return command;
+}
 
 const Actuator& withCoils(const Actuator& actuator) {
   if (actuator.coils.empty()) {
@@ -41,12 +67,12 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
                                const Actuator& actuator,
                                const CurrentAmplifierOptions& options,
                                std::unique_ptr<ModbusTransport> transport)
-    : watchdog_(options.watchdog),
+    : is_unattended_(!options.heartbeat_address),
       transport_(std::move(transport)),
       driver_(options, withCoils(actuator).coils.size(), *transport_),
       zero_reason_("no command has come"),
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuator.coils.size()))),
-      commands_("coil_command", {0.0, options.watchdog}),
+      commands_("coil_command", {0.0, options.supervision.watchdog}),
       currents_("coil_currents", limitsOfRate(options.rate)),
       link_diagnostics_(describe(options.link)),
       diagnostics_(node, private_node, actuator) {
@@ -56,54 +82,80 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add("output", [this](DiagnosticStatus& status) { diagnoseOutput(status); });
   diagnostics_.add(currents_);
-  // Only the newest command counts.
-  subscriber_ = handle.subscribe(
-      "coil_command", 1, &CoilDriverNode::receive, this, ros::TransportHints().tcpNoDelay());
+  if (is_unattended_) {
+    ROS_WARN_STREAM("The amplifier is unattended: " << kUnattended);
+  }
+  if (ros::Time::isSimTime()) {
+    ROS_WARN("/use_sim_time is set: commands are judged by the wall clock all the same.");
+  }
+  subscriber_ = handle.subscribe("coil_command",
+                                 kWaitingCommands,
+                                 &CoilDriverNode::receive,
+                                 this,
+                                 ros::TransportHints().tcpNoDelay());
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
 }
 
 CoilDriverNode::~CoilDriverNode() {
-  subscriber_.shutdown();
+  stop();
+}
+
+// First the currents, then the rest: to end a subscription, a master is asked that may be gone.
+bool CoilDriverNode::stop() {
+  if (stopped_) {
+    return !failed_ && driver_.supervisor().isZeroConfirmed();
+  }
+  stopped_ = true;
   thread_->stop();
-  const std::string failure = driver_.stop();
-  if (!failure.empty()) {
-    ROS_FATAL_STREAM("The currents could not be set to zero: " << failure
-                                                               << " Switch the amplifier off.");
+  const double end = steadySeconds() + kStopTime;
+  std::string failure = tryToStop();
+  while (!failure.empty() && steadySeconds() < end) {
+    std::this_thread::sleep_for(kStopPause);
+    failure = tryToStop();
+  }
+  subscriber_.shutdown();
+  if (failure.empty()) {
+    return !failed_;
+  }
+  const CurrentSupervisor& supervisor = driver_.supervisor();
+  if (supervisor.isZeroConfirmed()) {
+    ROS_WARN_STREAM(
+        "The amplifier cannot be told once more that its currents are zero, as they "
+        "were when it was heard last: "
+        << failure);
+    return !failed_;
+  }
+  ROS_FATAL_STREAM("The currents are not confirmed to be zero, " << supervisor.unconfirmedReason()
+                                                                 << ": " << failure
+                                                                 << " Switch the amplifier off.");
+  return false;
+}
+
+std::string CoilDriverNode::tryToStop() {
+  try {
+    return driver_.stop();
+  } catch (const std::exception& error) {
+    return error.what();
   }
 }
 
-void CoilDriverNode::receive(const msg::CoilCurrents::ConstPtr& message) {
-  const ros::Time& stamp = message->header.stamp;
-  const double age = stamp.isZero() ? 0.0 : (ros::Time::now() - stamp).toSec();
-  CurrentMeasurement command;
-  currentFromRos(*message, command);
-  std::string refusal = commandDefect(command.current, static_cast<std::size_t>(setpoints_.size()));
-  if (refusal.empty() && age > watchdog_) {
-    refusal = "The command is " + std::to_string(age) + " s old.";
-  }
+void CoilDriverNode::receive(const ros::MessageEvent<const msg::CoilCurrents>& event) {
+  const std::string refusal = driver_.offer(commandFromRos(event), instantNow());
   if (!refusal.empty()) {
     commands_.refuse(refusal);
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, "coil_command is refused: " << refusal);
     return;
   }
   commands_.accept(ros::Time::now());
-  const std::lock_guard<std::mutex> lock(mutex_);
-  waiting_command_ = command.current;
-  waiting_since_ = steadySeconds();
 }
 
-// The devices are slow: the lock is not held while they answer, so that commands never wait.
+// The devices are slow: no lock is held while they answer, so that commands never wait.
 void CoilDriverNode::beat() {
   try {
-    Eigen::VectorXd command;
-    double commanded_at = 0.0;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      command.swap(waiting_command_);
-      commanded_at = waiting_since_;
-    }
-    if (command.size() > 0) {
-      driver_.command(command, commanded_at);
+    if (terminationRequested()) {
+      // At once, whatever the main thread is busy with.
+      driver_.stop();
+      return;
     }
     const ros::Time before = ros::Time::now();
     const CoilDriver::Beat beat = driver_.beat(steadySeconds());
@@ -111,24 +163,32 @@ void CoilDriverNode::beat() {
     if (beat.measured) {
       publish(*beat.measured, before + (after - before) * 0.5);
     }
-    link_diagnostics_.update(driver_.link());
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (beat.zero_reason != zero_reason_) {
-      const std::string state = beat.zero_reason.empty()
-                                    ? "The coils follow the commands."
-                                    : "The currents are zero: " + beat.zero_reason;
-      ROS_INFO_STREAM(state);
-      diagnostics_.tellAtOnce();
-    }
-    zero_reason_ = beat.zero_reason;
-    fault_ = beat.fault;
-    setpoints_ = driver_.limiter().setpoints();
-    clamped_ = driver_.limiter().clamped();
+    tell(beat);
   } catch (const std::exception& error) {
-    ROS_FATAL_STREAM("The control loop failed; the node ends: " << error.what());
-    driver_.stop();
+    failed_ = true;
+    const std::string failure = tryToStop();
+    ROS_FATAL_STREAM("The control loop failed; the node ends: " << error.what() << " " << failure);
     ros::requestShutdown();
   }
+}
+
+void CoilDriverNode::tell(const CoilDriver::Beat& beat) {
+  link_diagnostics_.update(driver_.link());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (beat.zero_reason != zero_reason_) {
+    diagnostics_.tellAtOnce();
+    if (beat.zero_reason.empty()) {
+      ROS_INFO("The coils follow the commands.");
+    } else if (beat.fault) {
+      ROS_ERROR_STREAM("The currents are set to zero: " << beat.zero_reason);
+    } else {
+      ROS_INFO_STREAM("The currents are set to zero: " << beat.zero_reason);
+    }
+  }
+  zero_reason_ = beat.zero_reason;
+  fault_ = beat.fault;
+  setpoints_ = driver_.limiter().setpoints();
+  clamped_ = driver_.limiter().clamped();
 }
 
 void CoilDriverNode::publish(const Eigen::VectorXd& currents, const ros::Time& stamp) {
@@ -142,13 +202,21 @@ void CoilDriverNode::publish(const Eigen::VectorXd& currents, const ros::Time& s
 void CoilDriverNode::diagnoseOutput(DiagnosticStatus& status) {
   // Rate, age and refusals of the commands; that none come is a state, no error.
   commands_.run(status);
-  const std::lock_guard<std::mutex> lock(mutex_);
   const bool is_refusing = status.level == DiagnosticStatus::WARN;
-  if (!is_refusing) {
-    status.summary(
-        fault_ ? DiagnosticStatus::ERROR : DiagnosticStatus::OK,
-        zero_reason_.empty() ? "commands are followed" : "currents are zero: " + zero_reason_);
+  const CurrentSupervisor& supervisor = driver_.supervisor();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!is_refusing || fault_) {
+    const char* state = supervisor.isZeroConfirmed() ? "currents are zero: "
+                                                     : "zero is set, but was not measured yet: ";
+    status.summary(fault_ ? DiagnosticStatus::ERROR : DiagnosticStatus::OK,
+                   zero_reason_.empty() ? "commands are followed" : state + zero_reason_);
   }
+  if (is_unattended_) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        std::string("unattended amplifier: ") + kUnattended);
+  }
+  addTextOrNone(status, "commander", supervisor.owner(steadySeconds()));
+  status.add("zero measured", supervisor.isZeroConfirmed() ? "yes" : "no");
   status.add("largest setpoint [A]", setpoints_.cwiseAbs().maxCoeff());
   status.add("sum of setpoints [A]", setpoints_.cwiseAbs().sum());
   status.add("commands clamped", clamped_);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
@@ -25,7 +27,8 @@ CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& priva
 
 /// Follows `coil_command` within the limits and publishes the measured `coil_currents`. See
 /// CoilDriver for when currents are zero; they are, too, when the node ends in any way but a kill,
-/// which only the amplifier's own watchdog can answer.
+/// which only the amplifier's own watchdog can answer. Commands are judged by the wall clock, even
+/// where /use_sim_time is set: coils are real.
 class CoilDriverNode {
  public:
   /// Throws ConfigError when the description has no coils or the options are not valid.
@@ -38,18 +41,25 @@ class CoilDriverNode {
   CoilDriverNode(const CoilDriverNode&) = delete;
   CoilDriverNode& operator=(const CoilDriverNode&) = delete;
 
+  /// Sets the currents to zero and ends the control loop, for good. True when all went well: the
+  /// loop had not failed, and zero was measured since anything else was set. What is dangerous is
+  /// told on the console.
+  bool stop();
+
  private:
-  void receive(const msg::CoilCurrents::ConstPtr& message);
+  void receive(const ros::MessageEvent<const msg::CoilCurrents>& event);
   void beat();
+  void tell(const CoilDriver::Beat& beat);
+  std::string tryToStop();
   void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
   void diagnoseOutput(DiagnosticStatus& status);
 
-  const double watchdog_;
+  const bool is_unattended_;  ///< the amplifier has no watchdog of its own, which was accepted
   std::unique_ptr<ModbusTransport> transport_;
-  std::mutex mutex_;  ///< of what follows, down to setpoints_
   CoilDriver driver_;
-  Eigen::VectorXd waiting_command_;  ///< not handed to the driver yet; empty: none
-  double waiting_since_ = 0.0;
+  bool stopped_ = false;
+  std::atomic<bool> failed_{false};  ///< the control loop, by an exception
+  std::mutex mutex_;                 ///< of what follows, down to clamped_
   std::string zero_reason_;
   bool fault_ = false;
   Eigen::VectorXd setpoints_;

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace sac {
+
+/// When currents may flow, and when what flows is not what was set.
+struct SupervisorLimits {
+  double watchdog = 0.25;    ///< a command holds for so long from its stamp on [s]
+  double clock_skew = 0.1;   ///< the clocks of commander and driver may differ by [s]
+  double deviation = 0.15;   ///< of a measured current from the one that is set, at most [A]
+  int deviating_beats = 60;  ///< in a row beyond it, of one coil, are an error
+};
+
+/// Throws ConfigError that names the limit and its range.
+void validate(const SupervisorLimits& limits);
+
+/// Currents that somebody wants.
+struct CoilCommand {
+  std::string caller;  ///< name of who gave it
+  /// When it was given, by the wall clock [s since 1970]; nothing: it does not say.
+  std::optional<double> stamp;
+  Eigen::VectorXd currents;  ///< [A], one per coil
+};
+
+/// The same moment by two clocks.
+struct Instant {
+  double steady = 0.0;  ///< of a clock that never jumps [s]
+  double wall = 0.0;    ///< since 1970 [s]; somebody may set this clock
+};
+
+/// Judges whether the coils of one actuator may have current, by what is commanded, and whether
+/// they have what was set, by what is measured.
+///
+/// A command counts when it is well formed, stamped by the wall clock, neither old nor of the
+/// future, newer than the one before, and given by the only one who commands: whoever was last
+/// accepted owns the coils until the last command has run out. It holds for the watchdog's time
+/// from its stamp on, however late it arrived; a steady clock watches that. Nothing depends on a
+/// simulated clock, so that a recording which is played again drives no coil.
+///
+/// Thread-safe: commands arrive in one thread, and are followed in another.
+class CurrentSupervisor {
+ public:
+  /// Throws ConfigError when a limit is out of its range.
+  CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils);
+
+  /// Takes a command that arrives now. Returns why it is refused, in a sentence for its sender, or
+  /// nothing. A refused one changes nothing, so that the one before runs out.
+  std::string offer(const CoilCommand& command, const Instant& now);
+  /// The command in force [A]; nothing when the currents must be zero, see zeroReason().
+  std::optional<Eigen::VectorXd> command(double steady) const;
+  /// Why there is no command in force; empty when there is one.
+  std::string zeroReason(double steady) const;
+  /// Who commands the coils at present; empty: nobody.
+  std::string owner(double steady) const;
+  /// What was commanded until now is void. Who owns the coils stays.
+  void forget();
+  /// For good: no command is accepted any more.
+  void close();
+
+  /// These setpoints [A] go to the amplifier next: from now on current may flow.
+  void setting(const Eigen::VectorXd& setpoints);
+  /// These currents [A] were measured after the last setpoints were written.
+  void observe(const Eigen::VectorXd& measured);
+  /// What flows against what was set, and what to do. Once it is not empty it stays, until the
+  /// amplifier was looked after and the driver is started anew. The heartbeat must be withheld, so
+  /// that the amplifier's own watchdog acts.
+  std::string fault() const;
+  /// Whether zero was measured in all coils since anything else was set.
+  bool isZeroConfirmed() const;
+  /// In words, why it is not; empty when it is.
+  std::string unconfirmedReason() const;
+
+ private:
+  std::string refusal(const CoilCommand& command, const Instant& now) const;
+  bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
+  void noticeClockJump(const Instant& now);
+  std::string describeDeviation(std::size_t coil, double measured) const;
+
+  const SupervisorLimits limits_;
+  const std::size_t coils_;
+  mutable std::mutex mutex_;  ///< of all that follows
+  bool closed_ = false;
+  std::optional<Eigen::VectorXd> command_;
+  bool was_commanded_ = false;
+  double expires_at_ = 0.0;            ///< the last command, by the steady clock
+  std::string owner_;                  ///< who gave it
+  std::optional<double> last_stamp_;   ///< its stamp
+  std::optional<double> wall_offset_;  ///< wall less steady clock, when it came
+  Eigen::VectorXd setpoints_;
+  std::optional<Eigen::VectorXd> measured_;
+  bool zero_confirmed_ = false;
+  std::vector<int> deviating_;  ///< beats in a row, for each coil
+  std::string fault_;
+};
+
+}  // namespace sac

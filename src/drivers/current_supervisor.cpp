@@ -1,0 +1,187 @@
+#include "spherical_actuator_calibration/drivers/current_supervisor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/drivers/current_limiter.hpp"
+
+namespace sac {
+namespace {
+
+/// More than clocks of a computer drift apart between two commands [s].
+constexpr double kClockJump = 0.05;
+
+std::string withTwoDigits(double value) {
+  return format("%.2f", value);
+}
+
+}  // namespace
+
+void validate(const SupervisorLimits& limits) {
+  requireInRange("watchdog", limits.watchdog, ValueRange::closed(0.01, 1.0, "s"));
+  requireInRange("clock_skew", limits.clock_skew, ValueRange::closed(0.0, 1.0, "s"));
+  requireInRange(
+      "deviation.tolerance", limits.deviation, ValueRange{0.0, 1000.0, "A", true, false});
+  requireInRange("deviation.beats", limits.deviating_beats, ValueRange::closed(1.0, 1e5));
+}
+
+CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils)
+    : limits_(limits),
+      coils_(coils),
+      setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))),
+      deviating_(coils, 0) {
+  validate(limits);
+}
+
+std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& now) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  noticeClockJump(now);
+  std::string reason = refusal(command, now);
+  if (!reason.empty()) {
+    return reason;
+  }
+  const double age = std::max(now.wall - *command.stamp, 0.0);
+  command_ = command.currents;
+  was_commanded_ = true;
+  owner_ = command.caller;
+  last_stamp_ = command.stamp;
+  expires_at_ = now.steady + limits_.watchdog - age;
+  return {};
+}
+
+// Whoever sets the wall clock back must not lock the commander out until its stamps have caught up.
+void CurrentSupervisor::noticeClockJump(const Instant& now) {
+  const double offset = now.wall - now.steady;
+  if (wall_offset_ && std::abs(offset - *wall_offset_) > kClockJump) {
+    last_stamp_.reset();
+  }
+  wall_offset_ = offset;
+}
+
+std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant& now) const {
+  if (closed_) {
+    return "The driver ends.";
+  }
+  const std::string who = "The command of " + command.caller + " ";
+  std::string defect = commandDefect(command.currents, coils_);
+  if (!defect.empty()) {
+    return defect + " It came from " + command.caller + ".";
+  }
+  if (!command.stamp) {
+    return who + "has no stamp: it may be of any time. Stamp commands by the wall clock.";
+  }
+  const double age = now.wall - *command.stamp;
+  if (!(age <= limits_.watchdog)) {
+    return who + "is " + withTwoDigits(age) +
+           " s old by the wall clock, which alone counts; a simulated one or a recording drives no "
+           "coils.";
+  }
+  if (age < -limits_.clock_skew) {
+    return who + "is stamped " + withTwoDigits(-age) +
+           " s ahead of the wall clock: the clocks differ.";
+  }
+  if (now.steady <= expires_at_ && command.caller != owner_) {
+    return who + "does not count: " + owner_ +
+           " commands the coils, until nothing has come from there for " +
+           withTwoDigits(limits_.watchdog) + " s.";
+  }
+  if (last_stamp_ && *command.stamp <= *last_stamp_) {
+    return who + "is not newer than the one before.";
+  }
+  return {};
+}
+
+std::optional<Eigen::VectorXd> CurrentSupervisor::command(double steady) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool may_flow = isInForce(steady) && fault_.empty() && !closed_;
+  return may_flow ? command_ : std::nullopt;
+}
+
+std::string CurrentSupervisor::zeroReason(double steady) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!fault_.empty()) {
+    return fault_;
+  }
+  if (closed_) {
+    return "the driver ends";
+  }
+  if (isInForce(steady)) {
+    return {};
+  }
+  return was_commanded_ ? "no fresh command" : "no command has come";
+}
+
+void CurrentSupervisor::forget() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  command_.reset();
+  was_commanded_ = false;
+}
+
+void CurrentSupervisor::close() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  closed_ = true;
+}
+
+void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  setpoints_ = setpoints;
+  if (!setpoints.isZero(0.0)) {
+    zero_confirmed_ = false;
+  }
+}
+
+void CurrentSupervisor::observe(const Eigen::VectorXd& measured) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  measured_ = measured;
+  for (std::size_t coil = 0; coil < coils_; ++coil) {
+    const auto index = static_cast<Eigen::Index>(coil);
+    const bool deviates = std::abs(measured[index] - setpoints_[index]) > limits_.deviation;
+    deviating_[coil] = deviates ? deviating_[coil] + 1 : 0;
+    if (fault_.empty() && deviating_[coil] >= limits_.deviating_beats) {
+      fault_ = describeDeviation(coil, measured[index]);
+    }
+  }
+  const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
+  // Current that flows though zero is set is no longer confirmed to be zero.
+  zero_confirmed_ = !flows && setpoints_.isZero(0.0);
+}
+
+std::string CurrentSupervisor::describeDeviation(std::size_t coil, double measured) const {
+  return "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
+         " A where " + withTwoDigits(setpoints_[static_cast<Eigen::Index>(coil)]) +
+         " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
+         "Switch it off, look after it and its wires, then start the driver anew";
+}
+
+std::string CurrentSupervisor::owner(double steady) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return steady <= expires_at_ ? owner_ : std::string();
+}
+
+std::string CurrentSupervisor::fault() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return fault_;
+}
+
+bool CurrentSupervisor::isZeroConfirmed() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return zero_confirmed_;
+}
+
+std::string CurrentSupervisor::unconfirmedReason() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (zero_confirmed_) {
+    return {};
+  }
+  if (!measured_) {
+    return "no current was ever measured";
+  }
+  const double largest = measured_->cwiseAbs().maxCoeff();
+  return "the last measurement has a current of " + withTwoDigits(largest) +
+         " A, and no zero came after it";
+}
+
+}  // namespace sac
