@@ -273,8 +273,8 @@ TEST_F(CoilDriverTest, AnAmplifierThatDoesNotApplyIsToldAndItsHeartbeatWithheld)
     result = driver_.beat(now_);
     ++beats;
   }
-  // 60 beats beyond the tolerance, and one that acts on it.
-  EXPECT_LE(beats, 61);
+  // 40 beats beyond the tolerance, and one that acts on it.
+  EXPECT_LE(beats, 41);
   EXPECT_NE(result.zero_reason.find("coil 4 carries 2.00 A where 1.50 A are set"),
             std::string::npos)
       << result.zero_reason;

@@ -11,20 +11,38 @@ import unittest
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
-from driver_node import ERROR, OK, RESPONSE_TIMEOUT, DriverNode
-from modbus_device import ModbusDevice, RudeServer, SerialPair, free_port
+from driver_node import ERROR, OK, DriverNode
+from modbus_device import Block, ModbusDevice, RudeServer, SerialPair, free_port
 from spherical_actuator_calibration.msg import CoilCurrents
+from spherical_actuator_calibration.wall_stamp import wall_stamp
 
 UNIT = 2
 COILS = 24
 ENABLE = 100
+HEARTBEAT = 101
 TRIPPED = 100
 MILLI = 1e-3
-PATIENT = 10.0  # [s] of the watchdog where it must not be what makes zero, nor end a current on a busy computer
+PATIENT = 1.0  # [s] of the watchdog where it must not be what makes zero, nor end a current on a busy computer
+RESPONSE_TIMEOUT = 1.0  # [s] likewise; both are the longest that the driver allows
+PATIENT_BEATS = 100000  # of the comparison of currents, where it is not what is tested
 
 
 def amperes(word):
     return (word - 0x10000 if word & 0x8000 else word) * MILLI
+
+
+class Setpoints(Block):
+    """Registers of an amplifier without inductance: what is set is measured at once."""
+
+    def __init__(self, measured):
+        super().__init__()
+        self.measured = measured
+        self.are_applied = True
+
+    def setValues(self, address, values):  # noqa: N802, pylint: disable=invalid-name
+        super().setValues(address, values)
+        if self.are_applied and address < COILS:
+            self.measured.setValues(address, values)
 
 
 class Commander:
@@ -44,7 +62,7 @@ class Commander:
         while not self._ended.wait(0.02):
             if self.command is not None:
                 message = CoilCurrents(current=self.command)
-                message.header.stamp = rospy.Time.now() - rospy.Duration(self.age)
+                message.header.stamp = wall_stamp() - rospy.Duration(self.age)
                 self.publisher.publish(message)
 
     def close(self):
@@ -56,7 +74,8 @@ class Commander:
 class CoilDriver(unittest.TestCase):
     def setUp(self):
         self.measured = []
-        self.device = ModbusDevice(UNIT)
+        measured = Block()
+        self.device = ModbusDevice(UNIT, measured, Setpoints(measured))
         self.port = free_port()
         self.commander = Commander()
         subscriber = rospy.Subscriber(
@@ -70,6 +89,7 @@ class CoilDriver(unittest.TestCase):
         parameters = rospy.get_param("/shipped/coil_driver")
         parameters["diagnostic_period"] = 0.1
         parameters["link"].update(port=self.port, response_timeout=response_timeout)
+        parameters["deviation"]["beats"] = PATIENT_BEATS
         parameters.update(changes)
         node = DriverNode("coil_driver", parameters)
         self.addCleanup(node.close)
@@ -109,12 +129,14 @@ class CoilDriver(unittest.TestCase):
 
     def test_follows_commands_and_publishes_what_is_measured(self):
         node = self.started(watchdog=PATIENT)
-        self.device.input.setValues(2, [1490])
         self.follow(3, 1.5)
+        self.device.holding.are_applied = False
+        self.device.input.setValues(2, [1490])
         wait_for(lambda: self.measured and abs(self.measured[-1].current[2] - 1.49) < 1e-9, "1.49 A")
         self.assertEqual(len(self.measured[-1].current), COILS)
         stamps = [message.header.stamp for message in self.measured]
         self.assertEqual(stamps, sorted(set(stamps)))
+        self.device.holding.are_applied = True
         self.follow(3, -0.7)
         self.assertEqual(self.device.holding_at(ENABLE), [1])
         node.wait_for_level("output", OK)
@@ -163,9 +185,32 @@ class CoilDriver(unittest.TestCase):
     def test_zero_on_sigterm(self):
         node = self.started(watchdog=PATIENT)
         self.follow()
-        node.end(signal.SIGTERM)
+        written = node.end(signal.SIGTERM)
         self.assertTrue(self.is_zero())
         self.assertEqual(self.device.holding_at(ENABLE), [0])
+        self.assertEqual(node.process.returncode, 0)
+        self.assertNotIn("FATAL", written)
+
+    def test_no_status_of_success_while_current_flows(self):
+        node = self.started(watchdog=PATIENT)
+        self.follow()
+        self.device.holding.are_applied = False
+        written = node.end(signal.SIGTERM)
+        self.assertTrue(self.is_zero())
+        self.assertNotEqual(node.process.returncode, 0)
+        self.assertIn("FATAL", written)
+        self.assertIn("1.50 A", written)
+
+    def test_a_device_that_has_gone_at_zero_is_no_danger(self):
+        node = self.started(watchdog=PATIENT)
+        self.follow()
+        wait_for(lambda: node.value("output", "zero measured") == "no", "current")
+        self.commander.command = self.pattern(3, 0.0)
+        wait_for(lambda: node.value("output", "zero measured") == "yes", "zero")
+        self.device.stop()
+        written = node.end(signal.SIGINT)
+        self.assertEqual(node.process.returncode, 0)
+        self.assertNotIn("FATAL", written)
 
     def test_zero_on_sigint(self):
         node = self.started(watchdog=PATIENT)
@@ -218,6 +263,58 @@ class CoilDriver(unittest.TestCase):
             wait_for(self.is_zero, "zero currents")
             wait_for(lambda: reason in node.value("output", "last refusal"), reason)  # noqa: B023
 
+    def test_what_is_not_applied_is_told_and_the_heartbeat_withheld(self):
+        deviation = {"tolerance": 0.15, "beats": 20}
+        node = self.started(watchdog=PATIENT, deviation=deviation)
+        self.follow()
+        self.device.holding.are_applied = False
+        self.commander.command = None
+        self.wait_for_zero()
+        node.wait_for_level("output", ERROR)
+        self.assertIn("coil 3 carries 1.50 A where 0.00 A are set", node.message("output"))
+        self.assertIn("not measured", node.message("output"))
+        heartbeat = self.device.holding_at(HEARTBEAT)
+        measured = len(self.measured)
+        wait_for(lambda: len(self.measured) > measured + 5, "further beats")
+        self.assertEqual(self.device.holding_at(HEARTBEAT), heartbeat)
+
+    def test_an_unattended_amplifier_must_be_accepted(self):
+        parameters = rospy.get_param("/shipped/coil_driver")
+        parameters["link"].update(port=self.port)
+        del parameters["heartbeat_address"]
+        self.device.start_tcp(self.port)
+        refused = DriverNode("coil_driver", parameters)
+        self.assertIn("unattended_amplifier", refused.wait_for_end())
+        self.assertNotEqual(refused.process.returncode, 0)
+        refused.close()
+        accepted = DriverNode("coil_driver", {**parameters, "unattended_amplifier": "accepted"})
+        self.addCleanup(accepted.close)
+        wait_for(lambda: "unattended amplifier" in accepted.message("output"), "a warning")
+
+    def test_a_second_commander_is_refused_by_name(self):
+        node = self.started(watchdog=PATIENT)
+        self.follow()
+        other = subprocess.Popen(
+            [
+                "rostopic",
+                "pub",
+                "--substitute-keywords",
+                "--rate=50",
+                f"{NAMESPACE}/coil_command",
+                f"{PACKAGE}/CoilCurrents",
+                f"{{header: {{stamp: now}}, current: {self.pattern(3, -1.0)}}}",
+            ],
+            stdout=subprocess.DEVNULL,
+        )
+        self.addCleanup(other.wait)
+        self.addCleanup(other.terminate)
+        wait_for(lambda: "rostopic" in node.value("output", "last refusal"), "a refusal by name")
+        self.assertIn(rospy.get_name() + " commands", node.value("output", "last refusal"))
+        self.assertEqual(node.value("output", "commander"), rospy.get_name())
+        self.assertAlmostEqual(self.setpoints()[2], 1.5, delta=MILLI)
+        self.commander.command = None
+        wait_for(lambda: self.setpoints()[2] < -0.9, "the second one's turn")
+
     def test_stale_commands_are_refused(self):
         node = self.started()
         self.follow()
@@ -230,7 +327,7 @@ class CoilDriver(unittest.TestCase):
         node = self.started(currents=field)
         self.commander.command = self.pattern(3, 1.5)
         node.wait_for_level("link", ERROR)
-        self.assertIn("Illegal data address", node.message("link"))
+        wait_for(lambda: "Illegal data address" in node.message("link"), "the reason")
         wait_for(lambda: int(node.value("link", "failures")) >= 3, "further attempts")
         self.wait_for_zero()
         self.assertEqual(self.measured, [])

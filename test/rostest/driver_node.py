@@ -15,7 +15,7 @@ RESPONSE_TIMEOUT = 5.0  # [s] for a device that answers, on however busy a compu
 class DriverNode:
     """A node's program with private parameters from a map, started and ended by the test."""
 
-    def __init__(self, name, parameters):
+    def __init__(self, name, parameters, environment=None):
         self.name = f"{NAMESPACE}/{name}"
         if rospy.has_param(self.name):
             rospy.delete_param(self.name)
@@ -24,7 +24,8 @@ class DriverNode:
         self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive)
         self.process = subprocess.Popen(
             [program(name), f"__name:={name}"],
-            env={**os.environ, "ROS_NAMESPACE": NAMESPACE},
+            env={**os.environ, "ROS_NAMESPACE": NAMESPACE, **(environment or {})},
+            stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
         )
@@ -34,8 +35,12 @@ class DriverNode:
             if status.name.startswith(self.name.lstrip("/") + ": "):
                 self._status[status.name.split(": ", 1)[1]] = status
 
+    def latest(self, task):
+        """The last report; None before the first."""
+        return self._status.get(task)
+
     def level(self, task):
-        status = self._status.get(task)
+        status = self.latest(task)
         return None if status is None else status.level
 
     def message(self, task):

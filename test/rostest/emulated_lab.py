@@ -10,12 +10,15 @@ from calibration_client import NAMESPACE, wait_for
 from launch_client import Launch, launch_file
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
+from spherical_actuator_calibration.wall_stamp import wall_stamp
 from std_srvs.srv import SetBool, Trigger
 
 COILS = 24
 JOINTS = ["joint_1", "joint_2", "joint_3"]
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
-RESPONSE_TIMEOUT = 5.0  # [s] of the devices, on however busy a computer
+RESPONSE_TIMEOUT = 5.0  # [s] of the joint sensor, on however busy a computer
+AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
+PATIENT_BEATS = 5000  # of the comparison of currents, as threads of the emulator may have to wait
 
 
 def free_port():
@@ -33,6 +36,9 @@ def configuration_with_free_ports(folder):
         content = yaml.safe_load(file.read_text())
         if isinstance(content.get("link"), dict):
             content["link"].update(port=free_port(), response_timeout=RESPONSE_TIMEOUT)
+        if "deviation" in content:
+            content["link"]["response_timeout"] = AMPLIFIER_TIMEOUT
+            content["deviation"]["beats"] = PATIENT_BEATS
         (copy / file.name).write_text(yaml.safe_dump(content))
     return str(copy)
 
@@ -88,7 +94,7 @@ class EmulatedLab:
         return self._currents is not None and max(map(abs, self._currents)) < 0.02
 
     def _repeat(self, _event):
-        self._command.header.stamp = rospy.Time.now()
+        self._command.header.stamp = wall_stamp()
         self._commands.publish(self._command)
 
     def excite(self, coil, current):

@@ -47,9 +47,9 @@ class Registers(ModbusSlaveContext):
 class ModbusDevice:
     """One unit with input and holding registers; lives in a thread of the test."""
 
-    def __init__(self, unit):
-        self.input = Block()
-        self.holding = Block()
+    def __init__(self, unit, input_registers=None, holding_registers=None):
+        self.input = input_registers or Block()
+        self.holding = holding_registers or Block()
         slave = Registers(ir=self.input, hr=self.holding)
         self._context = ModbusServerContext(slaves={unit: slave}, single=False)
         self._server = None

@@ -15,7 +15,7 @@ struct SupervisorLimits {
   double watchdog = 0.25;    ///< a command holds for so long from its stamp on [s]
   double clock_skew = 0.1;   ///< the clocks of commander and driver may differ by [s]
   double deviation = 0.15;   ///< of a measured current from the one that is set, at most [A]
-  int deviating_beats = 60;  ///< in a row beyond it, of one coil, are an error
+  int deviating_beats = 40;  ///< in a row beyond it, of one coil, are an error
 };
 
 /// Throws ConfigError that names the limit and its range.

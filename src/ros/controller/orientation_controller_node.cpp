@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+#include "spherical_actuator_calibration/ros/node/wall_stamp.hpp"
 
 namespace sac {
 namespace {
@@ -83,7 +84,7 @@ OrientationControllerNode::~OrientationControllerNode() {
   thread_->stop();
   if (was_active_) {
     controller_.disable();
-    publish(controller_.update(0), ros::Time::now());
+    publish(controller_.update(0));
   }
 }
 
@@ -167,7 +168,7 @@ void OrientationControllerNode::beat() {
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM("The control failed; the node ends: " << error.what());
     controller_.disable();
-    publish(controller_.update(0), ros::Time::now());
+    publish(controller_.update(0));
     was_active_ = false;
     ros::requestShutdown();
   }
@@ -185,7 +186,7 @@ void OrientationControllerNode::cycle() {
   // The end of control is a command as well: zero, once.
   if (is_active || was_active_) {
     statistics_.add(begin, steadySeconds());
-    publish(currents, now);
+    publish(currents);
   } else {
     statistics_.interrupt();
   }
@@ -196,8 +197,9 @@ void OrientationControllerNode::cycle() {
   was_active_ = is_active;
 }
 
-void OrientationControllerNode::publish(const Eigen::VectorXd& currents, const ros::Time& stamp) {
-  message_.header.stamp = stamp;
+// The coil driver judges commands by the wall clock alone.
+void OrientationControllerNode::publish(const Eigen::VectorXd& currents) {
+  message_.header.stamp = wallStamp();
   message_.current.assign(currents.begin(), currents.end());
   publisher_.publish(message_);
 }

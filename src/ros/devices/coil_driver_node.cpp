@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
+#include "spherical_actuator_calibration/ros/node/wall_stamp.hpp"
 
 namespace sac {
 namespace {
@@ -30,7 +31,7 @@ constexpr char kUnattended[] =
     "it has no heartbeat, so that nothing ends its currents when this program is killed.";
 
 Instant instantNow() {
-  return {steadySeconds(), ros::WallTime::now().toSec()};
+  return {steadySeconds(), wallStamp().toSec()};
 }
 
 CoilCommand commandFromRos(const ros::MessageEvent<const msg::CoilCurrents>& event) {

@@ -5,6 +5,7 @@ import threading
 import rospy
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
+from spherical_actuator_calibration.wall_stamp import wall_stamp
 
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
@@ -45,7 +46,7 @@ class Laboratory:
     def _repeat(self, _event):
         with self._lock:
             message = CoilCurrents(current=list(self._command))
-        message.header.stamp = rospy.Time.now()
+        message.header.stamp = wall_stamp()
         self._commands.publish(message)
 
     def joints(self):

@@ -69,7 +69,7 @@ class OrientationControllerNode {
   void beat();
   /// One cycle of control. Precondition: mutex_ is held.
   void cycle();
-  void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
+  void publish(const Eigen::VectorXd& currents);
   void diagnose(DiagnosticStatus& status);
 
   const Actuator design_;

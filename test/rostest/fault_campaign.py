@@ -1,0 +1,342 @@
+#!/usr/bin/python3
+"""Tries faults of commands, processes, amplifiers and sensors against the drivers: fault_campaign --help.
+
+For each fault the table tells how long there was current at most after it began: by the registers of the amplifier,
+and of an amplifier with a watchdog of 0.5 s of its own; then, how long it took until the driver told it; each beside
+its limit [s]. Exit status: 0 all is within the limits, 1 something is not.
+"""
+
+import argparse
+import dataclasses
+import math
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+from typing import Callable
+
+import rospy
+from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command
+from modbus_device import free_port
+from sensor_faults import sensor_fault
+
+SIMULATED = rospy.Time(978307200)  # the year 2001
+JUMP = 3600  # [s] of the wall clock
+TOLD_DEVIATION = "A are set: the amplifier does not do what it acknowledges"
+
+
+@dataclasses.dataclass(frozen=True)
+class Fault:
+    """One fault, how it is tried, and its limits [s]; None: no limit."""
+
+    name: str
+    run: Callable[[Laboratory], Outcome]
+    limits: tuple  # registers, watchdog, told
+    is_short: bool = False  # part of the short form
+    preload: bool = False
+    needs_laboratory: bool = True
+
+
+def outcome(laboratory, begin, **details):
+    return Outcome(*laboratory.amplifier.on_until(begin), **details)
+
+
+# -- commands ---------------------------------------------------------------------------------------------------
+
+
+def commands(make):
+    """From now on these commands instead of good ones."""
+
+    def run(laboratory):
+        begin = laboratory.commander.change(make)
+        laboratory.watch(1.2)
+        return outcome(laboratory, begin)
+
+    return run
+
+
+def stamped(stamp):
+    def make():
+        message = command()
+        message.header.stamp = stamp
+        return message
+
+    return make
+
+
+def repeated(laboratory):
+    return commands(stamped(command().header.stamp))(laboratory)
+
+
+def flood(laboratory):
+    laboratory.commander.pause = 0.0
+    time.sleep(1.0)
+    begin = laboratory.commander.change()
+    laboratory.watch(1.2)
+    return outcome(laboratory, begin)
+
+
+def second_commander(rate):
+    """It must not get through while the first one commands, and both end together."""
+
+    def run(laboratory):
+        other = laboratory.second_commander(-CURRENT, rate)
+        time.sleep(2.0)
+        owner = laboratory.driver.value("output", "commander")
+        other.kill()
+        begin = laboratory.commander.change()
+        other.wait()
+        laboratory.watch(1.2)
+        defect = "" if owner == rospy.get_name() else f"{owner} commands"
+        if any(word >= 0x8000 for word in laboratory.amplifier.words_of(3)):
+            defect = "the second one drove the coil"
+        return outcome(laboratory, begin, defect=defect)
+
+    return run
+
+
+# -- the driver's process -----------------------------------------------------------------------------------------
+
+
+def killed(number):
+    def run(laboratory):
+        begin = time.monotonic()
+        laboratory.driver.process.send_signal(number)
+        laboratory.watch(1.5)
+        return outcome(laboratory, begin)
+
+    return run
+
+
+def stopped(laboratory):
+    """Stopped, and continued when the commands are old."""
+    begin = time.monotonic()
+    laboratory.driver.process.send_signal(signal.SIGSTOP)
+    time.sleep(0.3)
+    laboratory.commander.change()
+    time.sleep(1.2)
+    laboratory.driver.process.send_signal(signal.SIGCONT)
+    laboratory.watch(1.0)
+    return outcome(laboratory, begin)
+
+
+def status_of(laboratory):
+    laboratory.driver.process.wait()
+    return laboratory.driver.process.returncode
+
+
+def ended(number):
+    def run(laboratory):
+        begin = time.monotonic()
+        laboratory.driver.process.send_signal(number)
+        status = status_of(laboratory)
+        return outcome(laboratory, begin, defect=f"exit status {status}" if status != 0 else "")
+
+    return run
+
+
+def ended_while_stuck(laboratory):
+    """Current flows on for ever, and whoever ended the driver must know."""
+    laboratory.amplifier.watchdog = math.inf
+    laboratory.amplifier.stick()
+    laboratory.driver.process.send_signal(signal.SIGTERM)
+    return Outcome(defect="exit status 0" if status_of(laboratory) == 0 else "")
+
+
+def thrown(laboratory):
+    begin = laboratory.faults.throw()
+    status = status_of(laboratory)
+    return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
+
+
+def clock_jump(seconds):
+    """Of the driver alone: the commands are of another time."""
+
+    def run(laboratory):
+        begin = laboratory.faults.jump(seconds)
+        laboratory.watch(1.2)
+        return outcome(laboratory, begin)
+
+    return run
+
+
+def common_clock_jump(laboratory):
+    """Of driver and commander: they go on."""
+    laboratory.commander.change()
+    laboratory.faults.jump(-JUMP)
+    laboratory.commander.change(lambda: command(age=JUMP))
+    time.sleep(2.0)
+    defect = "" if laboratory.amplifier.is_on() else "commands are not followed any more"
+    begin = laboratory.commander.change()
+    laboratory.watch(1.2)
+    return outcome(laboratory, begin, defect=defect)
+
+
+# -- the amplifier ------------------------------------------------------------------------------------------------
+
+
+def misbehaving(behaviour):
+    """Commands go on all the time."""
+
+    def run(laboratory):
+        begin = time.monotonic()
+        laboratory.amplifier.behaviour = behaviour
+        laboratory.watch(3.0)
+        return outcome(laboratory, begin)
+
+    return run
+
+
+def dribbling_to_the_end(laboratory):
+    """Commands end when the answers begin to dribble."""
+    begin = laboratory.commander.change()
+    laboratory.amplifier.behaviour = "dribble"
+    laboratory.watch(3.0)
+    return outcome(laboratory, begin)
+
+
+def not_applied(zero):
+    """Zero is commanded, or nothing any more, and acknowledged."""
+
+    def run(laboratory):
+        laboratory.amplifier.stick()
+        begin = laboratory.commander.change(zero)
+        told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
+        laboratory.watch(1.5)
+        return Outcome(watchdog=laboratory.amplifier.on_until(begin)[1], told=told)
+
+    return run
+
+
+# -- the master -----------------------------------------------------------------------------------------------------
+
+
+def master_hangs(master):
+    def run(laboratory):
+        master.process.send_signal(signal.SIGSTOP)
+        time.sleep(0.5)
+        defect = "" if laboratory.amplifier.is_on() else "there is no current without it"
+        begin = time.monotonic()
+        laboratory.driver.process.send_signal(signal.SIGTERM)
+        time.sleep(1.0)
+        master.process.send_signal(signal.SIGCONT)
+        status_of(laboratory)
+        return outcome(laboratory, begin, defect=defect)
+
+    return run
+
+
+def master_gone(master):
+    def run(laboratory):
+        master.close()
+        time.sleep(0.5)
+        defect = "" if laboratory.amplifier.is_on() else "there is no current without it"
+        begin = laboratory.commander.change()
+        laboratory.watch(1.2)
+        laboratory.driver.process.terminate()
+        status = status_of(laboratory)
+        return outcome(laboratory, begin, defect=defect or (f"exit status {status}" if status else ""))
+
+    return run
+
+
+def faults_of(master):
+    """All faults. That of the lost master is the last."""
+    stop, kill, end, amplifier = (0.3, 0.3, None), (None, 0.6, None), (0.1, 0.1, None), (0.5, 0.7, None)
+    return [
+        Fault("commands stop", commands(lambda: None), stop, is_short=True),
+        Fault("commands are NaN", commands(lambda: command(current=math.nan)), stop),
+        Fault("commands for three coils", commands(lambda: command(coils=3)), stop),
+        Fault("commands without a stamp", commands(stamped(rospy.Time(0))), stop, is_short=True),
+        Fault("commands of 1 s ago", commands(lambda: command(age=1.0)), stop, is_short=True),
+        Fault("commands of tomorrow", commands(lambda: command(age=-86400.0)), stop, is_short=True),
+        Fault("commands of a simulated clock", commands(stamped(SIMULATED)), stop, is_short=True),
+        Fault("one command again and again", repeated, stop),
+        Fault("flood of commands, until it ends", flood, stop),
+        Fault("second commander, until both end", second_commander(100.0), stop, is_short=True),
+        Fault("second commander that floods", second_commander(0.0), stop),
+        Fault("driver: SIGKILL", killed(signal.SIGKILL), kill, is_short=True),
+        Fault("driver: SIGABRT", killed(signal.SIGABRT), kill),
+        Fault("driver: SIGSTOP, then SIGCONT", stopped, kill, is_short=True),
+        Fault("driver: SIGTERM", ended(signal.SIGTERM), end, is_short=True),
+        Fault("driver: SIGINT", ended(signal.SIGINT), end),
+        Fault("driver: SIGTERM, never applied", ended_while_stuck, (None, None, None), is_short=True),
+        Fault("driver: exception", thrown, end, is_short=True, preload=True),
+        Fault("driver's clock +1 h", clock_jump(JUMP), stop, preload=True),
+        Fault("driver's clock -1 h", clock_jump(-JUMP), stop, preload=True),
+        Fault("all clocks -1 h, then commands stop", common_clock_jump, stop, preload=True),
+        Fault("amplifier: silence", misbehaving("silence"), amplifier),
+        Fault("amplifier: slow", misbehaving("slow"), amplifier, is_short=True),
+        Fault("amplifier: dribble", misbehaving("dribble"), amplifier),
+        Fault("amplifier: dribble, commands stop", dribbling_to_the_end, amplifier, is_short=True),
+        Fault("amplifier: resets", misbehaving("reset"), amplifier),
+        Fault("amplifier: wrong ids", misbehaving("wrong id"), amplifier, is_short=True),
+        Fault("amplifier: endless answers", misbehaving("endless"), amplifier),
+        Fault("amplifier: link cut", misbehaving("cut"), (None, 0.7, None)),
+        Fault("zero acknowledged, not applied", not_applied(lambda: command(current=0.0)), (None, 1.0, 0.5), is_short=True),
+        Fault("the same, commands stop", not_applied(lambda: None), (None, 1.0, 0.75)),
+        *(
+            Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
+            for how in ("silence", "dribble", "reset", "wrong id", "endless")
+        ),
+        Fault("master hangs, driver: SIGTERM", master_hangs(master), end),
+        Fault("master gone, then commands stop", master_gone(master), stop),
+    ]
+
+
+def cell(value, limit):
+    if limit is None:
+        return "–"
+    return "never" if math.isinf(value) else f"{value:.3f} / {limit:.2f}"
+
+
+def is_good(result, limits):
+    values = (result.registers, result.watchdog, result.told)
+    return not result.defect and all(limit is None or value <= limit for value, limit in zip(values, limits))
+
+
+def tried(fault, folder, limits):
+    if not fault.needs_laboratory:
+        return fault.run(folder)
+    laboratory = Laboratory(folder, fault.preload, max(limit or 0.0 for limit in limits))
+    try:
+        return fault.run(laboratory)
+    finally:
+        laboratory.close()
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="fault_campaign", description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("--short", action="store_true", help="one of each kind")
+    parser.add_argument("--only", default="", help="faults whose names have this part")
+    parser.add_argument("--patience", type=float, default=1.0, help="factor of all limits, for a busy computer (%(default)s)")
+    return parser.parse_args(arguments)
+
+
+def main():
+    """Returns the exit status."""
+    options = parse(sys.argv[1:])
+    master = Master(free_port())
+    rospy.init_node("first_commander", disable_signals=True)
+    failures = count = 0
+    row = "{:38}{:>16}{:>16}{:>16}  {}"
+    print(row.format("fault", "registers", "watchdog 0.5 s", "told", ""), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for fault in faults_of(master):
+            if options.only not in fault.name or (options.short and not fault.is_short):
+                continue
+            limits = tuple(limit and limit * options.patience for limit in fault.limits)
+            result = tried(fault, pathlib.Path(folder), limits)
+            good = is_good(result, limits)
+            count += 1
+            failures += not good
+            cells = map(cell, (result.registers, result.watchdog, result.told), limits)
+            print(row.format(fault.name, *cells, "" if good else f"FAILED {result.defect}"), flush=True)
+    master.close()
+    print(f"{count} faults, {failures} beyond their limits")
+    return 1 if failures or not count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
