@@ -196,12 +196,16 @@ def dribbling_to_the_end(laboratory):
     return outcome(laboratory, begin)
 
 
-def not_applied(zero):
+def zero():
+    return command(current=0.0)
+
+
+def not_applied(make):
     """Zero is commanded, or nothing any more, and acknowledged."""
 
     def run(laboratory):
         laboratory.amplifier.stick()
-        begin = laboratory.commander.change(zero)
+        begin = laboratory.commander.change(make)
         told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
         laboratory.watch(1.5)
         return Outcome(watchdog=laboratory.amplifier.on_until(begin)[1], told=told)
@@ -274,7 +278,7 @@ def faults_of(master):
         Fault("amplifier: wrong ids", misbehaving("wrong id"), amplifier, is_short=True),
         Fault("amplifier: endless answers", misbehaving("endless"), amplifier),
         Fault("amplifier: link cut", misbehaving("cut"), (None, 0.7, None)),
-        Fault("zero acknowledged, not applied", not_applied(lambda: command(current=0.0)), (None, 1.0, 0.5), is_short=True),
+        Fault("zero acknowledged, not applied", not_applied(zero), (None, 1.0, 0.5), is_short=True),
         Fault("the same, commands stop", not_applied(lambda: None), (None, 1.0, 0.75)),
         *(
             Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
@@ -310,7 +314,7 @@ def parse(arguments):
     parser = argparse.ArgumentParser(prog="fault_campaign", description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("--short", action="store_true", help="one of each kind")
     parser.add_argument("--only", default="", help="faults whose names have this part")
-    parser.add_argument("--patience", type=float, default=1.0, help="factor of all limits, for a busy computer (%(default)s)")
+    parser.add_argument("--patience", type=float, default=1.0, help="factor of all limits (%(default)s)")
     return parser.parse_args(arguments)
 
 

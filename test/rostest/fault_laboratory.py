@@ -88,8 +88,8 @@ class ProcessFaults:
         self._library = folder / "process_faults.so"
         self._file = folder / "process_faults"
         if not self._library.exists():
-            compiler = ["c++", "-std=c++17", "-shared", "-fPIC", "-o", self._library, FOLDER / "process_faults.cpp", "-ldl"]
-            subprocess.run(compiler, check=True)
+            compiler = ["c++", "-std=c++17", "-shared", "-fPIC", "-o", self._library]
+            subprocess.run([*compiler, FOLDER / "process_faults.cpp", "-ldl"], check=True)
         self._file.write_bytes(bytes(self.FIELDS.size))
         with self._file.open("r+b") as file:
             self._map = mmap.mmap(file.fileno(), self.FIELDS.size)
