@@ -290,7 +290,7 @@ def faults_of(master):
 
 
 def cell(value, limit):
-    if limit is None:
+    if limit is None or value is None:
         return "–"
     return "never" if math.isinf(value) else f"{value:.3f} / {limit:.2f}"
 
@@ -306,6 +306,8 @@ def tried(fault, folder, limits):
     laboratory = Laboratory(folder, fault.preload, max(limit or 0.0 for limit in limits))
     try:
         return fault.run(laboratory)
+    except AssertionError as error:
+        return Outcome(defect=str(error))
     finally:
         laboratory.close()
 

@@ -28,6 +28,7 @@ COIL = 3
 CURRENT = 1.0  # [A]
 RATE = 100.0  # [Hz] of commands
 DIAGNOSTIC_PERIOD = 0.05  # [s]
+PATIENCE = 30.0  # [s] for what takes a moment
 
 
 def command(age=0.0, current=CURRENT, coils=COILS):
@@ -143,7 +144,15 @@ class Laboratory:
     def second_commander(self, current, rate):
         """Another one, as soon as the driver has refused it by its name."""
         process = subprocess.Popen([sys.executable, FOLDER / "commander.py", str(current), str(rate)])
-        wait_for(lambda: "/second_commander" in self.driver.value("output", "last refusal"), "a refusal by name")
+
+        def is_refused():
+            return "/second_commander" in self.driver.value("output", "last refusal")
+
+        try:
+            wait_for(is_refused, "a refusal of the second commander by its name", PATIENCE)
+        except AssertionError:
+            process.kill()
+            raise
         return process
 
     def told(self, part, begin, patience):

@@ -140,7 +140,7 @@ class JointSensor(unittest.TestCase):
         encoder = {"joint": 3, "unit": UNIT, "table": "input", "address": 5000, "type": "uint32"}
         node = self.start(encoders=[{**encoder, "scale": 1.0}])
         node.wait_for_level("link", ERROR)
-        self.assertIn("Illegal data address", node.message("link"))
+        wait_for(lambda: "Illegal data address" in node.message("link"), "the reason")
         self.assertEqual(self.received, [])
 
     def test_a_silent_device_is_told(self):

@@ -44,10 +44,11 @@ class Laboratory:
             self._currents = tuple(message.current)
 
     def _repeat(self, _event):
+        # Under the lock, so that commands go out in the order of their stamps.
         with self._lock:
             message = CoilCurrents(current=list(self._command))
-        message.header.stamp = wall_stamp()
-        self._commands.publish(message)
+            message.header.stamp = wall_stamp()
+            self._commands.publish(message)
 
     def joints(self):
         """Joint angles [rad]; None without fresh ones."""
