@@ -10,12 +10,16 @@ from calibration_client import DEADLINE
 from roslib.packages import find_node
 
 
-def nodes_of(path, **arguments):
-    """Nodes that a launch file starts. Raises when it is wrong, or lacks what it loads."""
+def configuration_of(path, **arguments):
+    """Nodes and parameters of a launch file. Raises when it is wrong, or lacks what it loads."""
     config = roslaunch.config.ROSLaunchConfig()
     options = [f"{name}:={value}" for name, value in arguments.items()]
     roslaunch.xmlloader.XmlLoader().load(path, config, argv=[path] + options, verbose=False)
-    return config.nodes
+    return config
+
+
+def nodes_of(path, **arguments):
+    return configuration_of(path, **arguments).nodes
 
 
 def missing_programs(nodes):

@@ -12,7 +12,7 @@ import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from geometry_msgs.msg import PoseStamped, QuaternionStamped
-from launch_client import Launch, launch_file, missing_programs, nodes_of
+from launch_client import Launch, configuration_of, launch_file, missing_programs, nodes_of
 
 NODES = ["calibration", "coil_driver", "joint_sensor", "tracker_bridge"]
 RECORDED = {"measured_orientation", "parameters", "status", "tracker/pose"}
@@ -42,6 +42,21 @@ class LaunchLab(unittest.TestCase):
         self.assertEqual(names(nodes_of(path, drivers=False)), ["calibration", "tracker_bridge"])
         self.assertIn("rviz", names(nodes_of(path, rviz=True)))
         self.assertEqual({node.namespace for node in nodes_of(path, ns="second")}, {"/second/"})
+
+    def test_emulated_laboratories_run_side_by_side_and_end_with_their_emulators(self):
+        config = configuration_of(
+            launch_file("emulated_lab.launch"), joint_sensor_port=4711, coil_driver_port=4712
+        )
+        required = {node.name for node in config.nodes if node.required}
+        self.assertEqual(required, {"lab_emulator"})
+        ports = {name: value.value for name, value in config.params.items() if name.endswith("link/port")}
+        expected = {
+            "joint_sensor/link/port": 4711,
+            "lab_emulator/joint_sensor/link/port": 4711,
+            "coil_driver/link/port": 4712,
+            "lab_emulator/coil_driver/link/port": 4712,
+        }
+        self.assertEqual(ports, {f"{NAMESPACE}/{name}": port for name, port in expected.items()})
 
     def test_runs_and_records(self):
         with tempfile.TemporaryDirectory() as folder:
