@@ -212,7 +212,7 @@ TEST(CurrentSupervisor, ZeroIsConfirmedOnlyByAMeasurementAfterwards) {
 }
 
 TEST(CurrentSupervisor, RefusesLimitsOutOfRangeByName) {
-  const auto message = [](SupervisorLimits wrong) {
+  const auto message = [](const SupervisorLimits& wrong) {
     return errorMessage<ConfigError>([&] { CurrentSupervisor(wrong, 2); });
   };
   EXPECT_NE(message({10.0, 0.1, 0.15, 4}).find("watchdog"), std::string::npos);
