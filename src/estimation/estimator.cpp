@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "axis_modes.hpp"
 #include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -17,6 +18,8 @@ namespace sac {
 namespace {
 
 constexpr int kComponents = 3;  // of one observation
+/// Half width of the search for other modes of a pole or coil: six usual tolerances [rad].
+constexpr double kModeRange = 0.18;
 
 void checkProblem(const EstimationProblem& problem) {
   const ParameterSpace& space = problem.model->space();
@@ -53,7 +56,10 @@ double medianOf(std::vector<double> values) {
 class Estimator {
  public:
   Estimator(const EstimationProblem& problem, const EstimationOptions& options)
-      : problem_(problem), options_(options), observations_(problem, options) {
+      : problem_(problem),
+        options_(options),
+        observations_(problem, options),
+        start_(problem.prior.x) {
     solution_.problem = &problem;
     solution_.options = &options;
     solution_.observations = &observations_;
@@ -70,13 +76,17 @@ class Estimator {
   bool solveReweighted();
   bool solveRobustly(double transition);
   bool solveWithoutOutliers();
+  void takeBetterModes();
+  double robustMisfit() const;
   double outlierLimit() const;
+  double transition() const;
   bool rejectOutliers();
   bool hasEnoughObservations();
 
   const EstimationProblem& problem_;
   const EstimationOptions& options_;
   WeightedObservations observations_;
+  Eigen::VectorXd start_;   ///< the prior, but for axes that were found elsewhere
   std::vector<bool> held_;  ///< per coordinate: not estimated
   Solution solution_;
   Estimate result_;
@@ -94,6 +104,9 @@ void Estimator::setFree(const UnidentifiedPart& part) {
   held_.assign(static_cast<std::size_t>(problem_.prior.x.size()), true);
   for (const Eigen::Index parameter : solution_.estimated) {
     held_[static_cast<std::size_t>(parameter)] = false;
+  }
+  for (Eigen::Index p = 0; p < start_.size(); ++p) {
+    start_[p] = held_[static_cast<std::size_t>(p)] ? problem_.prior.x[p] : start_[p];
   }
   solution_.prior.directions = part.directions;
   solution_.prior.mean = part.directions.transpose() * problem_.prior.x;
@@ -127,14 +140,17 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   result_.solve_time += result.solve_time;
   result_.termination = result.termination;
   std::vector<Eigen::VectorXd>& path = solution_.path;
-  path.insert(path.end(), result.path.begin() + (path.empty() ? 0 : 1), result.path.end());
+  if (path.empty()) {
+    path.push_back(problem_.prior.x);
+  }
+  path.insert(path.end(), result.path.begin() + (path.back() == start ? 1 : 0), result.path.end());
 }
 
 /// Solves on from where the path is, and once more with the weights at the solution where they
 /// depend on it.
 bool Estimator::solveReweighted() {
   const auto solve_on = [this] {
-    const Eigen::VectorXd start = solution_.path.empty() ? problem_.prior.x : solution_.x();
+    const Eigen::VectorXd start = solution_.path.empty() ? start_ : solution_.x();
     solve(start, Loss::kSquared, 0.0);
   };
   solve_on();
@@ -174,11 +190,18 @@ bool Estimator::hasEnoughObservations() {
   return false;
 }
 
-/// A robust pass from the prior finds the outliers, and a plain solution runs without them.
+/// Whitened norm at which robust losses take over: somewhat below the limit, where faultless
+/// observations are rare.
+double Estimator::transition() const {
+  constexpr double kTransitionShare = 0.75;
+  return std::sqrt(kTransitionShare * outlierLimit());
+}
+
+/// A robust pass from the start finds the outliers, and a plain solution runs without them.
 bool Estimator::solveRobustly(double transition) {
   constexpr int kMaxRounds = 5;
   solution_.path.clear();
-  solve(problem_.prior.x, Loss::kHuber, transition);
+  solve(start_, Loss::kHuber, transition);
   updateWeights(solution_.x());
   const double median = medianOf(observations_.squares(solution_.x()));
   const double scatter = std::max(1.0, std::sqrt(median / kComponents));
@@ -194,12 +217,10 @@ bool Estimator::solveRobustly(double transition) {
 /// A plain solution where all observations fit it, a robust one otherwise. Returns whether it
 /// converged.
 bool Estimator::solveWithoutOutliers() {
-  // The robust losses take over somewhat below the limit, where faultless observations are rare.
-  constexpr double kTransitionShare = 0.75;
-  const double transition = std::sqrt(kTransitionShare * outlierLimit());
+  const double transition = this->transition();
   observations_.activateAll();
   solution_.path.clear();
-  updateWeights(problem_.prior.x);
+  updateWeights(start_);
   if (!hasEnoughObservations()) {
     return false;
   }
@@ -210,6 +231,51 @@ bool Estimator::solveWithoutOutliers() {
     }
   }
   return solveRobustly(transition);
+}
+
+/// Σ ρ over all observations, those that do not serve included, by which two solutions compare.
+double Estimator::robustMisfit() const {
+  const double limit = std::pow(transition(), 2);
+  double sum = 0.0;
+  for (const double square : observations_.squares(solution_.x())) {
+    sum += limit * std::log1p(square / limit);
+  }
+  return sum;
+}
+
+/// Moves poles and coils whose torques, also those rejected, fit far better elsewhere, and solves
+/// again from there; else an axis that rests in a wrong place rejects the very samples that would
+/// call it back. Keeps the better of both solutions.
+void Estimator::takeBetterModes() {
+  constexpr int kMaxRounds = 3;
+  ModeSearch search;
+  search.range = kModeRange;
+  search.transition = transition();
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const double worthwhile = outlierLimit();
+    Eigen::VectorXd moved = solution_.x();
+    for (const AxisMode& mode :
+         otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
+      if (mode.gain > worthwhile) {
+        moved.segment<2>(mode.first) = mode.place;
+      }
+    }
+    if (moved == solution_.x()) {
+      return;
+    }
+    const double before = robustMisfit();
+    const WeightedObservations::Setting setting_before = observations_.setting();
+    const Solution solution_before = solution_;
+    const Estimate result_before = result_;
+    const Eigen::VectorXd start_before = std::exchange(start_, moved);
+    if (!solveWithoutOutliers() || robustMisfit() > before) {
+      observations_.restore(setting_before);
+      solution_ = solution_before;
+      result_ = result_before;
+      start_ = start_before;
+      return;
+    }
+  }
 }
 
 /// Looks from the solution at what is open: it may see what the prior did not, and the other way
@@ -254,6 +320,7 @@ Estimate Estimator::run() {
     if (!solveWithoutOutliers()) {
       return result_;
     }
+    takeBetterModes();
   } while (refineOpen(round++, open));
   conclude(solution_, result_);
   return result_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,6 +31,17 @@ class WeightedObservations {
   void activateAll();
   /// Returns whether that changed anything.
   bool setActive(std::size_t observation, bool active);
+
+  /// What calls have changed so far.
+  struct Setting {
+    std::vector<Eigen::Matrix3d> whitening;
+    std::vector<bool> active;
+  };
+  Setting setting() const { return {whitening_, active_}; }
+  void restore(Setting setting) {
+    whitening_ = std::move(setting.whitening);
+    active_ = std::move(setting.active);
+  }
 
   /// Squared whitened norms of all observations at x.
   std::vector<double> squares(const Eigen::VectorXd& x) const;
