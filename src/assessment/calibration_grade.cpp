@@ -25,6 +25,7 @@ class Examiner {
         }));
     for (const CycleReport& report : session.reports()) {
       last_success_ = report.success ? &report : last_success_;
+      refused_ = report.contradicted ? &report : (mends(report) ? nullptr : refused_);
     }
   }
 
@@ -34,11 +35,18 @@ class Examiner {
   }
 
  private:
+  /// A refinement takes all samples: where it succeeds, what was refused before is mended.
+  bool mends(const CycleReport& report) const {
+    const bool is_same =
+        refused_ != nullptr && report.cycle == refused_->cycle && report.coil == refused_->coil;
+    return report.success && (is_same || report.cycle == Cycle::kRefine);
+  }
+
   Grade grade() const {
     if (identified_ == 0) {
       return Grade::kFailed;
     }
-    if (isContradicted()) {
+    if (refused_ != nullptr || isContradicted()) {
       return Grade::kContradicted;
     }
     if (!isValidated()) {
@@ -75,7 +83,36 @@ class Examiner {
     if (identified_ < parameters_.size()) {
       return ", the others are not";
     }
-    return missedAccuracy();
+    const std::string missed = missedAccuracy();
+    if (!missed.empty()) {
+      return missed;
+    }
+    if (last_success_ != nullptr && !last_success_->doubts.empty()) {
+      return ", but " + last_success_->doubts.front();
+    }
+    return unstatedRegistration();
+  }
+
+  /// Registrations that count as exact because nothing is stated of them.
+  std::string unstatedRegistration() const {
+    const RegistrationUncertainty& registration = session_.config().registration;
+    std::string names;
+    const auto add = [&names](const char* name) {
+      names += std::string(names.empty() ? "" : ", ") + name;
+    };
+    if (!registration.stator_tracker) {
+      add("stator_tracker");
+    }
+    if (!registration.rotor_marker) {
+      add("rotor_marker");
+    }
+    if (isTorqueIdentified() && !registration.rotor_ft_sensor) {
+      add("rotor_ft_sensor");
+    }
+    return names.empty() ? names
+                         : ", but their uncertainty is relative to the registrations, which count "
+                           "as exact because registration." +
+                               names + " is not stated";
   }
 
   std::string missedAccuracy() const {
@@ -100,6 +137,9 @@ class Examiner {
         return session_.reports().empty() ? "Nothing is calibrated: no cycle was run."
                                           : "Nothing is calibrated: no cycle succeeded.";
       case Grade::kContradicted:
+        if (refused_ != nullptr) {
+          return "Do not use this calibration: " + refused_->message;
+        }
         return "Do not use this calibration yet: " + identified() +
                ", but the held-out samples contradict them.";
       case Grade::kNotValidated:
@@ -145,6 +185,7 @@ class Examiner {
   const std::optional<HeldOutValidation> validation_;
   std::size_t identified_ = 0;
   const CycleReport* last_success_ = nullptr;
+  const CycleReport* refused_ = nullptr;
 };
 
 }  // namespace

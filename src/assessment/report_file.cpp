@@ -98,6 +98,7 @@ void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.optional(3, "orientation_rms", residualRms(report, Quantity::kOrientation));
   writer.optional(3, "torque_rms", residualRms(report, Quantity::kTorque));
   writer.entry(3, "reduced_chi_square", yamlNumber(report.reduced_chi_square));
+  writer.entry(3, "degrees_of_freedom", std::to_string(report.degrees_of_freedom));
   writer.entry(3, "condition_number", yamlNumber(report.condition_number));
   writer.entry(3, "solve_time", yamlNumber(report.solve_time));
   writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,10 @@ void visitEstimation(Config& c, Visitor& visit) {
   visit.option("max_reduced_chi_square",
                c.estimation.max_reduced_chi_square,
                ValueRange{1.0, std::numeric_limits<double>::infinity(), "", true, false});
+  visit.option("max_deviation",
+               c.estimation.max_deviation,
+               ValueRange{0.0, std::numeric_limits<double>::infinity(), "tolerances", true, false});
+  visit.option("shared_errors", c.estimation.shared_errors);
   visit.option("min_joint_motion", c.estimation.min_joint_motion, ValueRange::positive("rad"));
   visit.option("default_orientation_stddev",
                c.estimation.default_orientation_stddev,
@@ -104,6 +109,11 @@ void visitOptions(Config& c, Visitor& visit) {
   for (const std::string& effect : effectNames()) {
     visit.option(effect, c.effects[effect]);
   }
+  const ValueRange registration = ValueRange::closed(0.0, 0.5, "rad");
+  visit.section("registration");
+  visit.option("stator_tracker", c.registration.stator_tracker, registration);
+  visit.option("rotor_marker", c.registration.rotor_marker, registration);
+  visit.option("rotor_ft_sensor", c.registration.rotor_ft_sensor, registration);
   visit.section("validation");
   visit.option("hold_out_every", c.hold_out_every, 0);
   visit.section("wanted_accuracy");
@@ -125,6 +135,13 @@ class OptionReader {
   void option(const std::string& key, double& value, const ValueRange& range) const {
     if (has_section_) {
       value = section_.number(key, range, value);
+    }
+  }
+  void option(const std::string& key,
+              std::optional<double>& stddev,
+              const ValueRange& range) const {
+    if (has_section_ && section_.has(key)) {
+      stddev = section_.map(key).number("stddev", range);
     }
   }
   void option(const std::string& key, int& value, std::int64_t minimum) const {
@@ -160,10 +177,20 @@ class OptionWriter {
  public:
   void section(const std::string& name) {
     section_ = name;
-    writer_.map(0, name);
+    has_begun_ = false;
   }
   void option(const std::string& key, double value, const ValueRange& /*range*/) {
     add(key, yamlNumber(value));
+  }
+  /// What is not stated has no key: any value would state something.
+  void option(const std::string& key,
+              const std::optional<double>& stddev,
+              const ValueRange& /*range*/) {
+    if (stddev) {
+      beginSection();
+      writer_.map(1, key);
+      writer_.entry(2, "stddev", yamlNumber(*stddev));
+    }
   }
   void option(const std::string& key, int value, std::int64_t /*minimum*/) {
     add(key, std::to_string(value));
@@ -180,12 +207,18 @@ class OptionWriter {
  private:
   void add(const std::string& key, const std::string& value) {
     options_.emplace_back(section_ + "." + key, value);
+    // Not before it has an entry: an empty section would be no map.
+    if (!has_begun_) {
+      writer_.map(0, section_);
+      has_begun_ = true;
+    }
     writer_.entry(1, key, value);
   }
 
   std::string section_;
   std::vector<std::pair<std::string, std::string>> options_;
   YamlWriter writer_;
+  bool has_begun_ = false;  ///< the section, in the text
 };
 
 CalibrationConfig readWholeConfig(const YamlMap& file, const std::string& name) {
@@ -214,11 +247,20 @@ void validate(const CalibrationConfig& config) {
   }
 }
 
+void stateRegistration(CalibrationConfig& config, const RegistrationUncertainty& registration) {
+  config.registration = registration;
+  config.effects.setStddev("tracker_registration", registration.stator_tracker.value_or(0.0));
+  config.effects.setStddev("marker_registration", registration.rotor_marker.value_or(0.0));
+  config.effects.setStddev("torque_registration", registration.rotor_ft_sensor.value_or(0.0));
+}
+
 CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& name) {
   CalibrationConfig config;
   OptionReader reader(file);
   visitOptions(config, reader);
   config.estimation.current_threshold = config.samples.current_threshold;
+  config.estimation.tolerance = config.tolerance;
+  stateRegistration(config, config.registration);
   try {
     validate(config);
   } catch (const ConfigError& error) {

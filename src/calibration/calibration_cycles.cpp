@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "cycle_checks.hpp"
 #include "cycle_words.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
@@ -106,6 +107,7 @@ void fillReport(const std::vector<Sample>& samples,
   report.error_measure = errorMeasure(observations);
   report.error_history = estimate.error_history;
   report.reduced_chi_square = estimate.reduced_chi_square;
+  report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.condition_number = estimate.condition_number;
   report.solve_time = estimate.solve_time;
   report.residuals = sampleResiduals(samples, estimate);
@@ -117,6 +119,12 @@ std::vector<Eigen::Index> without(const std::vector<Eigen::Index>& all,
   std::vector<Eigen::Index> rest;
   std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
   return rest;
+}
+
+/// Whether an estimate failed for what was measured, rather than for how little.
+bool isContradiction(const EstimationProblem& problem, const Estimate& estimate) {
+  const bool are_few = 3 * problem.observations.size() < problem.free.size();
+  return estimate.termination != Termination::kNothingObservable && !are_few;
 }
 
 /// Coordinates that a cycle asks for, and what became of them.
@@ -193,7 +201,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
   problem.free = without(coordinates.requested, coordinates.unexcited);
 
   const Estimate estimate = sac::estimate(problem, options);
-  report.message = failure(estimate, request, options);
+  report.message = failure(problem, estimate, request, options);
   std::set_union(estimate.unobservable.begin(),
                  estimate.unobservable.end(),
                  coordinates.unexcited.begin(),
@@ -207,12 +215,19 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 options.current_threshold,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
+    // The one place where a cycle is refused after its estimate: who names causes starts here.
+    report.contradicted = isContradiction(problem, estimate);
     for (const std::string& sentence : advice) {
       report.message += " " + sentence;
     }
     return outcome;
   }
   fillReport(samples, problem.observations, estimate, report);
+  report.doubts = doubts(problem, estimate);
+  for (const Eigen::Index first : estimate.ambiguous) {
+    coordinates.unobservable.insert(coordinates.unobservable.end(), {first, first + 1});
+  }
+  std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
   conclude(model, estimate, coordinates, outcome);
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice);

@@ -176,10 +176,21 @@ const CycleReport& CalibrationSession::run(const CycleRequest& request) {
 }
 
 bool CalibrationSession::isComplete() const {
-  return std::all_of(reports_.begin(),
-                     reports_.end(),
-                     [](const CycleReport& report) { return report.success; }) &&
-         openParameters().empty();
+  const auto is_mended = [this](std::size_t failed) {
+    return std::any_of(reports_.begin() + static_cast<std::ptrdiff_t>(failed),
+                       reports_.end(),
+                       [&](const CycleReport& later) {
+                         const bool is_same = later.cycle == reports_[failed].cycle &&
+                                              later.coil == reports_[failed].coil;
+                         return later.success && (is_same || later.cycle == Cycle::kRefine);
+                       });
+  };
+  for (std::size_t n = 0; n < reports_.size(); ++n) {
+    if (!is_mended(n)) {
+      return false;
+    }
+  }
+  return openParameters().empty();
 }
 
 std::vector<std::string> CalibrationSession::openParameters() const {

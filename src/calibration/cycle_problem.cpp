@@ -23,6 +23,11 @@ bool concerns(const EffectLayout& effects,
          placed.effect->isToldBy(coordinate - placed.first, excited);
 }
 
+bool isCycleOf(Cycle cycle, LaboratoryEffect::ActsOn acts_on) {
+  return acts_on == LaboratoryEffect::ActsOn::kOrientations ? cycle == Cycle::kJoint
+                                                            : cycle == Cycle::kPoles;
+}
+
 /// Per coil: a sample that serves the cycle excites it.
 std::vector<bool> excitedInCycle(const ParameterSpace& space,
                                  const std::vector<Sample>& samples,
@@ -103,8 +108,13 @@ std::vector<Eigen::Index> selectCoordinates(const ParameterSpace& space,
   const bool any_orientation = std::any_of(samples.begin(), samples.end(), [](const Sample& s) {
     return s.has_orientation && !s.validation;
   });
-  for (Eigen::Index e = 0; refines && e < space.effects().size(); ++e) {
-    if (concerns(space.effects(), e, any_orientation, excited)) {
+  const bool any_effect = refines || request.cycle != Cycle::kCoil;
+  for (Eigen::Index e = 0; any_effect && e < space.effects().size(); ++e) {
+    // What is stated beforehand belongs to every cycle that it acts on; but a coil follows the
+    // poles, whose cycle knows the force/torque sensor's frame already.
+    const bool is_tried = refines || (space.effects().statedVariance(e) > 0.0 &&
+                                      isCycleOf(request.cycle, space.effects().at(e).acts_on));
+    if (is_tried && concerns(space.effects(), e, any_orientation, excited)) {
       coordinates.push_back(space.effect() + e);
     }
   }

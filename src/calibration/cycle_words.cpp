@@ -1,8 +1,8 @@
 #include "cycle_words.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "cycle_checks.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
@@ -36,7 +36,10 @@ std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::s
     words += open[k].name;
     words += format(" (± %.2g mrad)", 1e3 * open[k].stddev);
   }
-  return words + ". Measure the orientation at 3 or more poses.";
+  const bool is_turned = open.front().name.find("rotation") != std::string::npos;
+  return words + (is_turned ? ". Measure the orientation at 3 or more poses."
+                            : ". No sample tells them apart: add poses with all joints moved; what "
+                              "is stated of each of them is certain only together.");
 }
 
 std::string errorInWords(const CycleReport& report) {
@@ -95,7 +98,8 @@ std::string refusal(const CalibrationModel& model,
   return {};
 }
 
-std::string failure(const Estimate& estimate,
+std::string failure(const EstimationProblem& problem,
+                    const Estimate& estimate,
                     const CycleRequest& request,
                     const EstimationOptions& options) {
   const std::string cycle = cycleInWords(request);
@@ -114,25 +118,8 @@ std::string failure(const Estimate& estimate,
     case Termination::kConverged:
       break;
   }
-  const auto rejected = static_cast<double>(
-      std::count_if(estimate.residuals.begin(),
-                    estimate.residuals.end(),
-                    [](const ObservationResidual& residual) { return residual.rejected; }));
-  const double fraction = rejected / static_cast<double>(estimate.residuals.size());
-  if (fraction > options.max_rejected_fraction) {
-    return cycle + format(
-                       ": the samples contradict each other (%.0f %% would be outliers); check "
-                       "sensors, frames and currents.",
-                       100.0 * fraction);
-  }
-  if (estimate.reduced_chi_square > options.max_reduced_chi_square) {
-    return cycle + format(
-                       ": residuals are %.0f times their stated uncertainty; the samples do not "
-                       "fit the model. Check units, frames, polarity and the nominal "
-                       "description.",
-                       std::sqrt(estimate.reduced_chi_square));
-  }
-  return {};
+  const std::string words = contradiction(problem, estimate, options);
+  return words.empty() ? words : cycle + words;
 }
 
 std::string successInWords(const CycleRequest& request,
@@ -148,6 +135,9 @@ std::string successInWords(const CycleRequest& request,
     words += format(" %u samples rejected as outliers.", report.samples_rejected);
   }
   words += openDirectionsInWords(report.open_directions, unknowns);
+  for (const std::string& sentence : report.doubts) {
+    words += " " + sentence;
+  }
   for (const std::string& sentence : advice) {
     words += " " + sentence;
   }

@@ -19,7 +19,8 @@ std::string refusal(const CalibrationModel& model,
                     const std::vector<Observation>& observations);
 
 /// Why the numbers of an estimate must not be used, or empty.
-std::string failure(const Estimate& estimate,
+std::string failure(const EstimationProblem& problem,
+                    const Estimate& estimate,
                     const CycleRequest& request,
                     const EstimationOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -9,6 +10,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -77,6 +79,24 @@ bool isJudged(const Observation& observation,
   });
 }
 
+/// Adds what observations of dwells tell beside the errors that they share.
+void addDwells(const SharedErrorModel& shared,
+               const std::map<std::size_t, WhitenedObservation>& sharing,
+               const std::map<std::size_t, SharedLoading>& loading,
+               InformationSum& misfit) {
+  DwellSum sum(misfit.gradient().size());
+  for (const std::vector<std::size_t>& dwell : shared.dwells) {
+    sum.begin();
+    for (const std::size_t n : dwell) {
+      const auto found = sharing.find(n);
+      if (found != sharing.end()) {
+        sum.add(found->second, loading.at(n));
+      }
+    }
+    sum.addTo(misfit);
+  }
+}
+
 double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
@@ -102,6 +122,9 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   double torque_sum = 0.0;
   const ChosenCoordinates all = ChosenCoordinates::all(model.space().size());
   InformationSum misfit(all.size());
+  const SharedErrorModel shared = groupByDwell(problem, options);
+  std::map<std::size_t, WhitenedObservation> sharing;  ///< judged ones of dwells
+  std::map<std::size_t, SharedLoading> loading;
   WhitenedObservation whitened;
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
@@ -112,8 +135,16 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
                  model.space(),
                  state.identified,
                  options.current_threshold)) {
-      whiten(linear, whiteningOf(evaluator.noise(n, linear)), all, whitened);
-      misfit.add(whitened);
+      const Eigen::Matrix3d noise =
+          shared.shares[n] ? evaluator.ownNoise(n) : evaluator.noise(n, linear);
+      const Eigen::Matrix3d whitening = whiteningOf(noise);
+      whiten(linear, whitening, all, whitened);
+      if (shared.shares[n]) {
+        sharing[n] = whitened;
+        loading[n] = whitening * evaluator.sharedErrors(n, linear);
+      } else {
+        misfit.add(whitened);
+      }
     } else {
       ++result.unjudged_torques;
     }
@@ -123,6 +154,7 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
     (is_orientation ? result.orientations : result.torques) += 1;
     (is_orientation ? orientation_sum : torque_sum) += linear.residual.squaredNorm();
   }
+  addDwells(shared, sharing, loading, misfit);
   result.orientation_rms = rootMean(orientation_sum, result.orientations);
   result.torque_rms = rootMean(torque_sum, result.torques);
   const std::size_t judged = problem.observations.size() - result.unjudged_torques;

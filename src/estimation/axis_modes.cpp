@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "effects_at.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
@@ -92,6 +93,7 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
     coils_stator_.emplace_back(space_.coilChart(j).axis(x[at], x[at + 1]));
   }
   const JointGeometry joints = jointGeometry(space_.actuatorAt(x).joints);
+  const std::vector<Eigen::Vector3d> residuals = observations.residuals(x);
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     if (problem.observations[n].quantity != Quantity::kTorque) {
       continue;
@@ -99,9 +101,10 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
     const Eigen::Vector3d& reading =
         (*problem.samples)[problem.observations[n].sample].joint_position;
     const Eigen::Vector3d q = reading + effects_.readingColumns(reading) * effects_.values();
-    torques_.push_back({observations.evaluator().residual(n, x),
+    const Eigen::Matrix3d& W = observations.whitening()[n];
+    torques_.push_back({W.partialPivLu().solve(residuals[n]),
                         rotorOrientation(joints, q).transpose(),
-                        observations.whitening()[n],
+                        W,
                         &observations.evaluator().excitations(n)});
   }
 }
@@ -340,8 +343,8 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
                         const AxisChart& chart,
                         bool is_pole,
                         std::vector<ScannedTorque> torques) {
-    const AxisScan scan(model.curve(), chart, is_pole, std::move(torques), search);
-    if (std::optional<AxisMode> mode = scan.best(x.segment<2>(first))) {
+    const AxisScan search_here(model.curve(), chart, is_pole, std::move(torques), search);
+    if (std::optional<AxisMode> mode = search_here.best(x.segment<2>(first))) {
       mode->first = first;
       modes.push_back(*mode);
     }

@@ -137,6 +137,22 @@ Eigen::Vector3d linearizePairTorques(const ParameterSpace& space,
   return torque;
 }
 
+/// A measured torque in the rotor's frame, T_measured = e^{ẑ} T, and its ∂/∂values of the effects.
+Eigen::Vector3d torqueInRotor(const Eigen::Vector3d& measured,
+                              const EffectsAt& effects,
+                              Eigen::Matrix3Xd* d_effects) {
+  if (effects.empty()) {
+    return measured;
+  }
+  const Eigen::Matrix3Xd d_frame = effects.torqueFrameColumns();
+  const Eigen::Vector3d frame = d_frame * effects.values();
+  const Eigen::Matrix3d back = rotationExp(-frame);
+  if (d_effects != nullptr) {
+    *d_effects += back * skew(measured) * leftJacobian(frame) * d_frame;
+  }
+  return back * measured;
+}
+
 }  // namespace
 
 std::vector<Excitation> excitedCoils(const Sample& sample, double threshold) {
@@ -200,7 +216,8 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
   if (jacobian == nullptr) {
     const Eigen::Matrix3d R_rotor_stator = rotorOrientation(point.geometry, q).transpose();
     const CoilTerms terms = coilTerms(space_, excitations, x, R_rotor_stator);
-    return sample.torque - pairTorques(space_, curve, x, effects, terms) -
+    return torqueInRotor(sample.torque, effects, nullptr) -
+           pairTorques(space_, curve, x, effects, terms) -
            effects.loadColumns(R_rotor_stator) * effects.values();
   }
   const JointLinearization linear = linearizeRotorOrientation(point.geometry, q);
@@ -212,6 +229,7 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
   const Eigen::Vector3d torque =
       linearizePairTorques(space_, curve, x, effects, terms, *jacobian, d_effects) +
       d_load * effects.values();
+  const Eigen::Vector3d measured = torqueInRotor(sample.torque, effects, &d_effects);
   // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰ and ∂s/∂s⁰ = Rᵀ; the residual carries the minus sign.
   Eigen::Matrix3d d_rotation = -effects.loadRotation(R_rotor_stator);
   for (const CoilTerm& term : terms) {
@@ -223,7 +241,7 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
   if (!effects.empty()) {
     effects.write(d_effects + offsetColumns(linear, d_rotation) * d_reading, *jacobian);
   }
-  return sample.torque - torque;
+  return measured - torque;
 }
 
 }  // namespace sac

@@ -7,6 +7,15 @@
 namespace sac {
 namespace {
 
+void require(double value, const char* key) {
+  if (!(value >= 0.0 && value <= 1.0)) {
+    throw ConfigError(std::string("tolerance.") + key + ": " + std::to_string(value) +
+                      " is outside [0, 1] rad.");
+  }
+}
+
+}  // namespace
+
 double toleranceOf(ParameterKind kind, const ManufacturingTolerance& tolerance) {
   switch (kind) {
     case ParameterKind::kJointOffset:
@@ -26,15 +35,6 @@ double toleranceOf(ParameterKind kind, const ManufacturingTolerance& tolerance) 
   return tolerance.effect;
 }
 
-void require(double value, const char* key) {
-  if (!(value >= 0.0 && value <= 1.0)) {
-    throw ConfigError(std::string("tolerance.") + key + ": " + std::to_string(value) +
-                      " is outside [0, 1] rad.");
-  }
-}
-
-}  // namespace
-
 void validate(const ManufacturingTolerance& tolerance) {
   require(tolerance.joint_offset, "joint_offset");
   require(tolerance.joint_axis, "joint_axis");
@@ -50,7 +50,9 @@ CalibrationState nominalState(const ParameterSpace& space,
   state.belief.covariance = Eigen::MatrixXd::Zero(space.size(), space.size());
   for (Eigen::Index p = 0; p < space.size(); ++p) {
     const double stddev = toleranceOf(space.id(p).kind, tolerance);
-    state.belief.covariance(p, p) = stddev * stddev;
+    const double stated =
+        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
+    state.belief.covariance(p, p) = stated > 0.0 ? stated : stddev * stddev;
   }
   state.identified.assign(static_cast<std::size_t>(space.size()), false);
   return state;

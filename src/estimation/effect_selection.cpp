@@ -15,4 +15,9 @@ bool EffectSelection::any() const {
       modelled_.begin(), modelled_.end(), [](const auto& entry) { return entry.second; });
 }
 
+double EffectSelection::stddev(const std::string& effect) const {
+  const auto found = stddevs_.find(effect);
+  return found == stddevs_.end() ? 0.0 : found->second;
+}
+
 }  // namespace sac

@@ -36,6 +36,12 @@ Eigen::Matrix3Xd EffectsAt::markerColumns() const {
   });
 }
 
+Eigen::Matrix3Xd EffectsAt::torqueFrameColumns() const {
+  return collect([](const LaboratoryEffect& effect, LaboratoryEffect::Columns columns) {
+    effect.addTorqueFrameColumns(columns);
+  });
+}
+
 Eigen::Matrix3Xd EffectsAt::loadColumns(const Eigen::Matrix3d& R_rotor_stator) const {
   return collect([&](const LaboratoryEffect& effect, LaboratoryEffect::Columns columns) {
     effect.addLoadColumns(R_rotor_stator, columns);

@@ -23,6 +23,7 @@ class EffectsAt {
   Eigen::Matrix3Xd readingColumns(const Eigen::Vector3d& reading) const;
   Eigen::Matrix3Xd trackerColumns() const;
   Eigen::Matrix3Xd markerColumns() const;
+  Eigen::Matrix3Xd torqueFrameColumns() const;
   Eigen::Matrix3Xd loadColumns(const Eigen::Matrix3d& R_rotor_stator) const;
   Eigen::Matrix3d loadRotation(const Eigen::Matrix3d& R_rotor_stator) const;
 

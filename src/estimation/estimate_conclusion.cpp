@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "chi_square_limit.hpp"
 #include "observability.hpp"
@@ -41,7 +43,12 @@ class Conclusion {
   };
 
   void judgeMisfit();
-  Information sumInformation() const;
+  double priorMisfit() const;
+  double statedMisfit() const;
+  Information sumInformation();
+  void addDwell(const std::vector<std::size_t>& dwell,
+                InformationSum& data,
+                Eigen::MatrixXd& noise);
   Eigen::MatrixXd priorInformation() const;
   void findCovariance();
   void fillBelief(const Eigen::MatrixXd& own, Eigen::MatrixXd covariance);
@@ -59,17 +66,16 @@ class Conclusion {
   Eigen::MatrixXd inverse_;         ///< F×F: inverse information of the estimated coordinates
   Eigen::MatrixXd own_covariance_;  ///< F×F: theirs, from stated noise and held coordinates
   Eigen::MatrixXd with_held_;       ///< F×P: between them and held coordinates
+  /// R V⁻¹J, 3×F, of the observations of dwells: R the covariance of the sensors alone.
+  std::map<std::size_t, Eigen::MatrixXd> weighed_;
 };
 
 void Conclusion::judgeMisfit() {
   constexpr double kSignificance = 1e-3;
-  const std::vector<double> squares = observations_.squares(solution_.x());
-  double chi_square = 0.0;
-  for (std::size_t n = 0; n < squares.size(); ++n) {
-    chi_square += observations_.active()[n] ? squares[n] : 0.0;
-  }
+  const double chi_square = observations_.chiSquare(solution_.x()) + priorMisfit();
   const auto unknowns = static_cast<int>(solution_.estimated.size());
   const auto held_directions = static_cast<int>(solution_.prior.directions.cols());
+  result_.stated_misfit = statedMisfit();
   result_.degrees_of_freedom =
       kComponents * static_cast<int>(observations_.activeCount()) - (unknowns - held_directions);
   if (result_.degrees_of_freedom == 0) {
@@ -82,7 +88,32 @@ void Conclusion::judgeMisfit() {
   }
 }
 
-Conclusion::Information Conclusion::sumInformation() const {
+/// Squared misfit of what was known before, which is one more observation.
+double Conclusion::priorMisfit() const {
+  const LinearPrior& prior = solution_.prior;
+  if (prior.directions.cols() == 0) {
+    return 0.0;
+  }
+  const Eigen::VectorXd apart = prior.directions.transpose() * solution_.x() - prior.mean;
+  return apart.dot(prior.covariance.ldlt().solve(apart));
+}
+
+double Conclusion::statedMisfit() const {
+  const ParameterSpace& space = solution_.problem->model->space();
+  double sum = 0.0;
+  int count = 0;
+  for (const Eigen::Index p : solution_.estimated) {
+    const double variance =
+        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
+    if (variance > 0.0) {
+      sum += solution_.x()[p] * solution_.x()[p] / variance;
+      ++count;
+    }
+  }
+  return count == 0 ? 0.0 : std::sqrt(sum / count);
+}
+
+Conclusion::Information Conclusion::sumInformation() {
   const Eigen::Index size = solution_.x().size();
   const ChosenCoordinates every = ChosenCoordinates::all(size);
   InformationSum data(size);
@@ -90,7 +121,7 @@ Conclusion::Information Conclusion::sumInformation() const {
   LinearizedObservation linear;
   WhitenedObservation whitened;
   for (std::size_t n = 0; n < observations_.size(); ++n) {
-    if (!observations_.active()[n]) {
+    if (!observations_.active()[n] || observations_.shared().shares[n]) {
       continue;
     }
     observations_.evaluator().linearize(n, solution_.x(), linear);
@@ -103,13 +134,56 @@ Conclusion::Information Conclusion::sumInformation() const {
     whiten(linear, lower.transpose() * W, chosen_, whitened);
     noise.add(whitened);
   }
+  Eigen::MatrixXd noise_of_dwells = Eigen::MatrixXd::Zero(chosen_.size(), chosen_.size());
+  for (const std::vector<std::size_t>& dwell : observations_.shared().dwells) {
+    addDwell(dwell, data, noise_of_dwells);
+  }
   const Eigen::MatrixXd information = data.information();
   Information result;
   result.data = information(solution_.estimated, solution_.estimated);
-  result.noise = noise.information();
+  result.noise = noise.information() + noise_of_dwells;
   result.others = information(solution_.estimated, Eigen::all);
   result.others(Eigen::all, solution_.estimated).setZero();
   return result;
+}
+
+/// With V the covariance of the stacked residuals of a dwell, Y = V⁻¹J has the rows Wᵀ(A − G M⁻¹C)
+/// for A = W J, M = I + Σ GᵀG and C = Σ GᵀA, and the shared errors weigh in it as M⁻¹C.
+void Conclusion::addDwell(const std::vector<std::size_t>& dwell,
+                          InformationSum& data,
+                          Eigen::MatrixXd& noise) {
+  const Eigen::Index size = solution_.x().size();
+  const ChosenCoordinates every = ChosenCoordinates::all(size);
+  DwellSum sum(size);
+  sum.begin();
+  LinearizedObservation linear;
+  WhitenedObservation whitened;
+  for (const std::size_t n : dwell) {
+    if (observations_.active()[n]) {
+      observations_.evaluator().linearize(n, solution_.x(), linear);
+      whiten(linear, observations_.whitening()[n], every, whitened);
+      sum.add(whitened, observations_.shared().loading[n]);
+    }
+  }
+  sum.addTo(data);
+  const Eigen::MatrixXd shares =
+      (sum.elimination().covariance() * sum.crossed())(Eigen::all, solution_.estimated);
+  Eigen::MatrixXd information = shares.transpose() * shares;
+  for (const std::size_t n : dwell) {
+    if (!observations_.active()[n]) {
+      continue;
+    }
+    const ObservationEvaluator& evaluator = observations_.evaluator();
+    evaluator.linearize(n, solution_.x(), linear);
+    const Eigen::Matrix3d& W = observations_.whitening()[n];
+    const SharedLoading& G = observations_.shared().loading[n];
+    Eigen::MatrixXd& weighed = weighed_[n];
+    weighed = W.transpose() * (W * linear.jacobian(Eigen::all, solution_.estimated) - G * shares);
+    information += weighed.transpose() * evaluator.ownNoise(n) * weighed;
+    // Σ over the dwell of cov(e_n, e_m) Y_m.
+    weighed = (evaluator.ownNoise(n) * weighed + W.inverse() * G * shares).eval();
+  }
+  noise += information;
 }
 
 /// F×F: what the prior of held directions tells of the estimated coordinates.
@@ -170,8 +244,11 @@ Eigen::Matrix3d Conclusion::residualCovariance(std::size_t observation,
   if (observations_.active()[observation]) {
     const Eigen::Matrix3d& W = observations_.whitening()[observation];
     const Eigen::Matrix3d noise = evaluator.noise(observation, linear);
-    const Eigen::Matrix3d shared =
-        noise * W.transpose() * W * J.lazyProduct(inverse_).eval().lazyProduct(J.transpose());
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> weighed =
+        observations_.shared().shares[observation]
+            ? Eigen::Matrix<double, 3, Eigen::Dynamic>(weighed_.at(observation))
+            : Eigen::Matrix<double, 3, Eigen::Dynamic>(noise * W.transpose() * W * J);
+    const Eigen::Matrix3d shared = weighed.lazyProduct(inverse_).eval().lazyProduct(J.transpose());
     covariance -= shared + shared.transpose();
     // A residual that its own parameters absorb wholly has no variance left: keep a floor.
     constexpr double kFloor = 1e-6;
@@ -197,23 +274,17 @@ void Conclusion::listResiduals() {
 }
 
 double Conclusion::errorAt(const Eigen::VectorXd& x, ErrorMeasure measure) const {
+  if (measure == ErrorMeasure::kStandardized) {
+    const auto values = static_cast<double>(kComponents * observations_.activeCount());
+    return std::sqrt(observations_.chiSquare(x) / values);
+  }
   double sum = 0.0;
   for (std::size_t n = 0; n < observations_.size(); ++n) {
     if (!observations_.active()[n]) {
       continue;
     }
     const Eigen::Vector3d residual = observations_.evaluator().residual(n, x);
-    switch (measure) {
-      case ErrorMeasure::kOrientation:
-        sum += residual.norm();
-        break;
-      case ErrorMeasure::kTorque:
-        sum += residual.squaredNorm();
-        break;
-      case ErrorMeasure::kStandardized:
-        sum += (observations_.whitening()[n] * residual).squaredNorm() / kComponents;
-        break;
-    }
+    sum += measure == ErrorMeasure::kOrientation ? residual.norm() : residual.squaredNorm();
   }
   const double mean = sum / static_cast<double>(observations_.activeCount());
   return measure == ErrorMeasure::kOrientation ? mean : std::sqrt(mean);

@@ -20,6 +20,8 @@ void validate(const EstimationOptions& options) {
   require(options.max_rejected_fraction >= 0.0 && options.max_rejected_fraction < 0.5,
           "estimation.max_rejected_fraction must lie in [0, 0.5).");
   require(options.max_reduced_chi_square > 1.0, "estimation.max_reduced_chi_square must exceed 1.");
+  require(options.max_deviation > 0.0, "estimation.max_deviation must be positive.");
+  validate(options.tolerance);
   require(options.current_threshold > 0.0, "estimation.current_threshold must be positive [A].");
   require(options.min_joint_motion > 0.0, "estimation.min_joint_motion must be positive [rad].");
   require(options.default_orientation_stddev > 0.0,

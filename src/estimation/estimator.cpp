@@ -70,8 +70,13 @@ class Estimator {
  private:
   void setFree(const UnidentifiedPart& part);
   bool updateWeights(const Eigen::VectorXd& x) { return observations_.updateWeights(x, held_); }
-  UnidentifiedPart unidentifiedAt(const Eigen::VectorXd& x) const;
-  bool refineOpen(int round, UnidentifiedPart& open) const;
+  using Which = WeightedObservations::Which;
+  UnidentifiedPart unidentifiedAt(const Eigen::VectorXd& x, Which which = Which::kActive) const;
+  void noteRejectedAway(const UnidentifiedPart& seen);
+  bool refineOpen(int round, UnidentifiedPart& open);
+  double statedVariance(Eigen::Index coordinate) const;
+  std::vector<Eigen::Index> stated(const std::vector<Eigen::Index>& coordinates) const;
+  void widenAmbiguous();
   void solve(const Eigen::VectorXd& start, Loss loss, double transition);
   bool solveReweighted();
   bool solveRobustly(double transition);
@@ -108,18 +113,66 @@ void Estimator::setFree(const UnidentifiedPart& part) {
   for (Eigen::Index p = 0; p < start_.size(); ++p) {
     start_[p] = held_[static_cast<std::size_t>(p)] ? problem_.prior.x[p] : start_[p];
   }
-  solution_.prior.directions = part.directions;
-  solution_.prior.mean = part.directions.transpose() * problem_.prior.x;
-  solution_.prior.covariance =
+  const std::vector<Eigen::Index> stated = this->stated(solution_.estimated);
+  const Eigen::Index open = part.directions.cols();
+  const Eigen::Index all = open + static_cast<Eigen::Index>(stated.size());
+  LinearPrior& prior = solution_.prior;
+  prior.directions.setZero(part.directions.rows(), all);
+  prior.mean.setZero(all);
+  prior.covariance.setZero(all, all);
+  prior.directions.leftCols(open) = part.directions;
+  prior.mean.head(open) = part.directions.transpose() * problem_.prior.x;
+  prior.covariance.topLeftCorner(open, open) =
       part.directions.transpose() * problem_.prior.covariance * part.directions;
+  for (Eigen::Index k = open; k < all; ++k) {
+    const Eigen::Index p = stated[static_cast<std::size_t>(k - open)];
+    prior.directions(p, k) = 1.0;
+    prior.covariance(k, k) = statedVariance(p);
+  }
 }
 
-/// What the active observations leave open of the free coordinates of the problem, at x.
-UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x) const {
-  return unidentifiedPart(observations_.information(x, problem_.free),
-                          problem_.free,
-                          problem_.model->space(),
-                          options_.unobservable_stddev);
+double Estimator::statedVariance(Eigen::Index coordinate) const {
+  const ParameterSpace& space = problem_.model->space();
+  return coordinate < space.effect() ? 0.0
+                                     : space.effects().statedVariance(coordinate - space.effect());
+}
+
+/// Those whose size is stated beforehand. That counts in every cycle as if none had run before: a
+/// cycle that estimates them uses all samples that tell them.
+std::vector<Eigen::Index> Estimator::stated(const std::vector<Eigen::Index>& coordinates) const {
+  std::vector<Eigen::Index> result;
+  std::copy_if(
+      coordinates.begin(), coordinates.end(), std::back_inserter(result), [this](Eigen::Index p) {
+        return statedVariance(p) > 0.0;
+      });
+  return result;
+}
+
+/// What observations leave open of the free coordinates of the problem, at x.
+UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x, Which which) const {
+  Eigen::MatrixXd information = observations_.information(x, problem_.free, which);
+  for (std::size_t k = 0; k < problem_.free.size(); ++k) {
+    const double variance = statedVariance(problem_.free[k]);
+    const auto place = static_cast<Eigen::Index>(k);
+    information(place, place) += variance > 0.0 ? 1.0 / variance : 0.0;
+  }
+  return unidentifiedPart(
+      information, problem_.free, problem_.model->space(), options_.unobservable_stddev);
+}
+
+/// Keeps in mind what only the rejection of observations has left open.
+void Estimator::noteRejectedAway(const UnidentifiedPart& seen) {
+  const UnidentifiedPart by_all = unidentifiedAt(solution_.x(), Which::kAll);
+  std::vector<Eigen::Index>& away = result_.rejected_away;
+  away.clear();
+  const Eigen::Index first = problem_.model->space().pole(0);
+  const Eigen::Index last = problem_.model->space().effect();
+  for (const Eigen::Index p : seen.coordinates) {
+    if (p >= first && p < last &&
+        !std::binary_search(by_all.coordinates.begin(), by_all.coordinates.end(), p)) {
+      away.push_back(p);
+    }
+  }
 }
 
 /// One least-squares solution over the active observations; its path is kept for the error history.
@@ -127,6 +180,7 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   LeastSquaresInput input;
   input.evaluator = &observations_.evaluator();
   input.whitening = &observations_.whitening();
+  input.shared = &observations_.shared();
   input.active = observations_.active();
   input.free = solution_.estimated;
   input.start = start;
@@ -170,10 +224,11 @@ double Estimator::outlierLimit() const {
 /// whether the set changed.
 bool Estimator::rejectOutliers() {
   constexpr double kMedianOfThree = 2.366;  // of the χ² distribution with three degrees of freedom
-  const std::vector<double> squares = observations_.squares(solution_.x());
+  const double median = medianOf(observations_.squares(solution_.x(), outlierLimit()));
   // Where the stated noise is too small for most observations, outliers stand out of the actual
   // scatter; the misfit itself is told by the reduced χ².
-  const double limit = outlierLimit() * std::max(1.0, medianOf(squares) / kMedianOfThree);
+  const double limit = outlierLimit() * std::max(1.0, median / kMedianOfThree);
+  const std::vector<double> squares = observations_.squares(solution_.x(), limit);
   bool changed = false;
   for (std::size_t n = 0; n < squares.size(); ++n) {
     changed = observations_.setActive(n, squares[n] <= limit) || changed;
@@ -182,8 +237,8 @@ bool Estimator::rejectOutliers() {
 }
 
 bool Estimator::hasEnoughObservations() {
-  if (static_cast<std::size_t>(kComponents) * observations_.activeCount() >=
-      solution_.estimated.size()) {
+  const std::size_t unknowns = solution_.estimated.size() - stated(solution_.estimated).size();
+  if (static_cast<std::size_t>(kComponents) * observations_.activeCount() >= unknowns) {
     return true;
   }
   result_.termination = Termination::kTooFewObservations;
@@ -203,7 +258,7 @@ bool Estimator::solveRobustly(double transition) {
   solution_.path.clear();
   solve(start_, Loss::kHuber, transition);
   updateWeights(solution_.x());
-  const double median = medianOf(observations_.squares(solution_.x()));
+  const double median = medianOf(observations_.squares(solution_.x(), outlierLimit()));
   const double scatter = std::max(1.0, std::sqrt(median / kComponents));
   solve(solution_.x(), Loss::kCauchy, transition * scatter);
   for (int round = 0; round < kMaxRounds && (rejectOutliers() || round == 0); ++round) {
@@ -237,7 +292,7 @@ bool Estimator::solveWithoutOutliers() {
 double Estimator::robustMisfit() const {
   const double limit = std::pow(transition(), 2);
   double sum = 0.0;
-  for (const double square : observations_.squares(solution_.x())) {
+  for (const double square : observations_.squares(solution_.x(), outlierLimit())) {
     sum += limit * std::log1p(square / limit);
   }
   return sum;
@@ -248,9 +303,7 @@ double Estimator::robustMisfit() const {
 /// call it back. Keeps the better of both solutions.
 void Estimator::takeBetterModes() {
   constexpr int kMaxRounds = 3;
-  ModeSearch search;
-  search.range = kModeRange;
-  search.transition = transition();
+  const ModeSearch search{kModeRange, transition()};
   for (int round = 0; round < kMaxRounds; ++round) {
     const double worthwhile = outlierLimit();
     Eigen::VectorXd moved = solution_.x();
@@ -281,9 +334,12 @@ void Estimator::takeBetterModes() {
 /// Looks from the solution at what is open: it may see what the prior did not, and the other way
 /// round. Should the two views not agree soon, what either calls weak stays at the prior, and the
 /// set can only grow. Returns whether `open` changed.
-bool Estimator::refineOpen(int round, UnidentifiedPart& open) const {
+bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
   constexpr int kFreeRounds = 2;
   UnidentifiedPart seen = unidentifiedAt(solution_.x());
+  if (round == 0) {
+    noteRejectedAway(seen);
+  }
   const bool same_directions = seen.directions.cols() == open.directions.cols();
   if (round >= kFreeRounds) {
     std::vector<Eigen::Index> either;
@@ -299,6 +355,20 @@ bool Estimator::refineOpen(int round, UnidentifiedPart& open) const {
   }
   open = std::move(seen);
   return true;
+}
+
+/// Axes that another place explains nearly as well are told, with both places in their uncertainty.
+void Estimator::widenAmbiguous() {
+  constexpr double kNearlyAsWell = 16.0;  // of χ²: four standard deviations
+  const ModeSearch search{kModeRange, transition()};
+  for (const AxisMode& mode :
+       otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
+    if (mode.gain > -kNearlyAsWell) {
+      const Eigen::Vector2d apart = mode.place - solution_.x().segment<2>(mode.first);
+      result_.belief.covariance.block<2, 2>(mode.first, mode.first) += apart * apart.transpose();
+      result_.ambiguous.push_back(mode.first);
+    }
+  }
 }
 
 Estimate Estimator::run() {
@@ -322,7 +392,15 @@ Estimate Estimator::run() {
     }
     takeBetterModes();
   } while (refineOpen(round++, open));
+  std::vector<Eigen::Index> lost;
+  std::set_intersection(result_.rejected_away.begin(),
+                        result_.rejected_away.end(),
+                        open.coordinates.begin(),
+                        open.coordinates.end(),
+                        std::back_inserter(lost));
+  result_.rejected_away = std::move(lost);
   conclude(solution_, result_);
+  widenAmbiguous();
   return result_;
 }
 

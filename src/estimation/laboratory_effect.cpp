@@ -13,6 +13,8 @@ void LaboratoryEffect::addTrackerColumns(Columns /*columns*/) const {}
 
 void LaboratoryEffect::addMarkerColumns(Columns /*columns*/) const {}
 
+void LaboratoryEffect::addTorqueFrameColumns(Columns /*columns*/) const {}
+
 void LaboratoryEffect::addLoadColumns(const Eigen::Matrix3d& /*R_rotor_stator*/,
                                       Columns /*columns*/) const {}
 

@@ -70,20 +70,34 @@ std::string describe(const EffectSelection& selection) {
 }
 
 EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selection) {
-  for (const auto& entry : selection.all()) {
-    if (std::count(effectNames().begin(), effectNames().end(), entry.first) == 0) {
-      throw ConfigError("effects." + entry.first + ": there is no such laboratory effect.");
+  const auto require = [](const std::string& name) {
+    if (std::count(effectNames().begin(), effectNames().end(), name) == 0) {
+      throw ConfigError("effects." + name + ": there is no such laboratory effect.");
     }
+  };
+  for (const auto& entry : selection.all()) {
+    require(entry.first);
+  }
+  for (const auto& entry : selection.stddevs()) {
+    require(entry.first);
   }
   for (const EffectKind& kind : kinds()) {
     if (!selection.has(kind.name)) {
       continue;
     }
     if (kind.acts_on == LaboratoryEffect::ActsOn::kTorques && !nominal.hasTorqueModel()) {
+      if (!selection[kind.name]) {
+        continue;  // stated for all, but nothing here feels it
+      }
       throw ConfigError(std::string("effects.") + kind.name +
                         ": the description has no poles, coils or torque curve.");
     }
-    effects_.push_back({kind.name, kind.unit, kind.acts_on, size_, kind.make(nominal, selection)});
+    effects_.push_back({kind.name,
+                        kind.unit,
+                        kind.acts_on,
+                        size_,
+                        kind.make(nominal, selection),
+                        selection.stddev(kind.name)});
     size_ += effects_.back().size();
   }
 }
@@ -104,6 +118,12 @@ const PlacedEffect& EffectLayout::at(Eigen::Index coordinate) const {
     }
   }
   throw DataError("Effect coordinate " + std::to_string(coordinate) + " does not exist.");
+}
+
+double EffectLayout::statedVariance(Eigen::Index coordinate) const {
+  const PlacedEffect& placed = at(coordinate);
+  const double stddev = placed.stddev / placed.effect->scale();
+  return stddev * stddev;
 }
 
 const std::string& EffectLayout::name(Eigen::Index coordinate) const {

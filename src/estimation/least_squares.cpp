@@ -73,10 +73,14 @@ class Objective {
   double cost(const Eigen::VectorXd& x) const {
     double cost = priorResidual(x).squaredNorm();
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
-      if (input_.active[n]) {
-        const double s = ((*input_.whitening)[n] * input_.evaluator->residual(n, x)).squaredNorm();
-        cost += lossAt(input_.loss, input_.loss_transition, s).value;
+      if (input_.active[n] && !shares(n)) {
+        cost += loss(whitenedResidual(n, x).squaredNorm()).value;
       }
+    }
+    std::vector<DwellMember> members;
+    for (std::size_t d = 0; d < dwells(); ++d) {
+      collect(d, members, [&](std::size_t n) { return whitenedResidual(n, x); });
+      cost += weigh(members);
     }
     return cost;
   }
@@ -87,15 +91,15 @@ class Objective {
     LinearizedObservation linear;
     WhitenedObservation whitened;
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
-      if (input_.active[n]) {
+      if (input_.active[n] && !shares(n)) {
         input_.evaluator->linearize(n, x, linear);
         whiten(linear, (*input_.whitening)[n], free_, whitened);
-        const LossValue loss =
-            lossAt(input_.loss, input_.loss_transition, whitened.residual.squaredNorm());
-        result.cost += loss.value;
-        sum.add(whitened, loss.weight);
+        const LossValue value = loss(whitened.residual.squaredNorm());
+        result.cost += value.value;
+        sum.add(whitened, value.weight);
       }
     }
+    addDwells(x, sum, result.cost);
     result.information = sum.information();
     result.gradient = sum.gradient();
     if (prior_.rows() > 0) {
@@ -115,6 +119,82 @@ class Objective {
   }
 
  private:
+  /// One active observation of a dwell.
+  struct DwellMember {
+    std::size_t observation = 0;
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  ///< whitened
+    double weight = 1.0;
+  };
+
+  std::size_t dwells() const { return input_.shared == nullptr ? 0 : input_.shared->dwells.size(); }
+  bool shares(std::size_t n) const { return input_.shared != nullptr && input_.shared->shares[n]; }
+  LossValue loss(double s) const { return lossAt(input_.loss, input_.loss_transition, s); }
+  Eigen::Vector3d whitenedResidual(std::size_t n, const Eigen::VectorXd& x) const {
+    return (*input_.whitening)[n] * input_.evaluator->residual(n, x);
+  }
+
+  template <typename Residual>
+  void collect(std::size_t dwell,
+               std::vector<DwellMember>& members,
+               const Residual& residual) const {
+    members.clear();
+    for (const std::size_t n : input_.shared->dwells[dwell]) {
+      if (input_.active[n]) {
+        members.push_back({n, residual(n), 1.0});
+      }
+    }
+  }
+
+  /// Weights of the members at the errors u of least cost, by reweighting from u = 0, where a gross
+  /// error does not hide behind them. Returns the cost, that of u included.
+  double weigh(std::vector<DwellMember>& members) const {
+    constexpr int kMaxRounds = 20;
+    constexpr double kSettled = 1e-6;
+    SharedErrors errors = SharedErrors::Zero();
+    double cost = 0.0;
+    const int rounds = input_.loss == Loss::kSquared ? 1 : kMaxRounds;
+    for (int round = 0; round < rounds; ++round) {
+      DwellElimination elimination;
+      for (DwellMember& member : members) {
+        const SharedLoading& G = input_.shared->loading[member.observation];
+        member.weight = loss((member.residual - G * errors).squaredNorm()).weight;
+        elimination.add(G, member.residual, member.weight);
+      }
+      const SharedErrors before = std::exchange(errors, elimination.errors());
+      cost = errors.squaredNorm();
+      for (const DwellMember& member : members) {
+        const SharedLoading& G = input_.shared->loading[member.observation];
+        cost += loss((member.residual - G * errors).squaredNorm()).value;
+      }
+      if ((errors - before).norm() < kSettled) {
+        break;
+      }
+    }
+    return cost;
+  }
+
+  void addDwells(const Eigen::VectorXd& x, InformationSum& sum, double& cost) const {
+    LinearizedObservation linear;
+    std::vector<DwellMember> members;
+    std::vector<WhitenedObservation> whitened;
+    DwellSum dwell(free_.size());
+    for (std::size_t d = 0; d < dwells(); ++d) {
+      whitened.clear();
+      collect(d, members, [&](std::size_t n) {
+        input_.evaluator->linearize(n, x, linear);
+        whitened.emplace_back();
+        whiten(linear, (*input_.whitening)[n], free_, whitened.back());
+        return whitened.back().residual;
+      });
+      cost += weigh(members);
+      dwell.begin();
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        dwell.add(whitened[m], input_.shared->loading[members[m].observation], members[m].weight);
+      }
+      dwell.addTo(sum);
+    }
+  }
+
   Eigen::VectorXd priorResidual(const Eigen::VectorXd& x) const {
     return prior_.rows() > 0 ? (prior_ * x - prior_mean_).eval() : Eigen::VectorXd();
   }

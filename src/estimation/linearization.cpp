@@ -1,5 +1,7 @@
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 
+#include <algorithm>
+
 #include <boost/container/small_vector.hpp>
 
 namespace sac {
@@ -56,16 +58,22 @@ void ObservationEvaluator::linearize(std::size_t observation,
   out.residual = evaluate(observation, x, &out.jacobian);
 }
 
+double ObservationEvaluator::stddev(std::size_t observation) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const bool is_orientation = what.quantity == Quantity::kOrientation;
+  const double stated = is_orientation ? sample.orientation_stddev : sample.torque_stddev;
+  const double fallback =
+      is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
+  return stated > 0.0 ? stated : fallback;
+}
+
 Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
                                             const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   const ParameterSpace& space = problem_.model->space();
-  const bool is_orientation = what.quantity == Quantity::kOrientation;
-  const double stated = is_orientation ? sample.orientation_stddev : sample.torque_stddev;
-  const double fallback =
-      is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
-  const double stddev = stated > 0.0 ? stated : fallback;
+  const double stddev = this->stddev(observation);
   Eigen::Matrix3d noise = stddev * stddev * Eigen::Matrix3d::Identity();
   for (std::size_t k = 0; k < kJoints; ++k) {
     // A joint sensor's error acts as an offset of that joint does.
@@ -76,9 +84,37 @@ Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
   return noise;
 }
 
-Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
-                                                 const LinearizedObservation& linear,
-                                                 const std::vector<bool>& held) const {
+Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation) const {
+  // What is shared can be all of it only by rounding: a weight must stay finite.
+  constexpr double kLeastShare = 1e-6;
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  const double stddev = this->stddev(observation);
+  const double all = stddev * stddev;
+  const double shared = what.quantity == Quantity::kTorque
+                            ? sample.torque_shared_stddev * sample.torque_shared_stddev
+                            : 0.0;
+  return std::max(all - shared, kLeastShare * all) * Eigen::Matrix3d::Identity();
+}
+
+Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(
+    std::size_t observation, const LinearizedObservation& linear) const {
+  const Observation& what = problem_.observations[observation];
+  const Sample& sample = (*problem_.samples)[what.sample];
+  Eigen::Matrix<double, 3, 6> result = Eigen::Matrix<double, 3, 6>::Zero();
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    result.col(column) =
+        sample.joint_stddev[column] * linear.jacobian.col(problem_.model->space().joint(k));
+  }
+  if (what.quantity == Quantity::kTorque) {
+    result.rightCols<3>() = sample.torque_shared_stddev * Eigen::Matrix3d::Identity();
+  }
+  return result;
+}
+
+Eigen::Matrix3d ObservationEvaluator::heldCovariance(const LinearizedObservation& linear,
+                                                     const std::vector<bool>& held) const {
   // Most poles are out of reach of a coil: their columns are zero.
   boost::container::small_vector<Eigen::Index, 32> columns;
   for (const Eigen::Index a : linear.columns) {
@@ -87,7 +123,7 @@ Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
       columns.push_back(a);
     }
   }
-  Eigen::Matrix3d covariance = noise(observation, linear);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Index a : columns) {
     Eigen::Vector3d effect = Eigen::Vector3d::Zero();
     for (const Eigen::Index b : columns) {
@@ -96,6 +132,12 @@ Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
     covariance += linear.jacobian.col(a) * effect.transpose();
   }
   return covariance;
+}
+
+Eigen::Matrix3d ObservationEvaluator::covariance(std::size_t observation,
+                                                 const LinearizedObservation& linear,
+                                                 const std::vector<bool>& held) const {
+  return noise(observation, linear) + heldCovariance(linear, held);
 }
 
 }  // namespace sac

@@ -50,6 +50,9 @@ Eigen::Matrix<double, 9, 3> jointRotations(const ParameterSpace& space, const Ei
 
 std::string combinationName(const ParameterSpace& space, const Eigen::VectorXd& direction) {
   constexpr std::size_t kNamed = 3;
+  constexpr double kParticipation = 0.1;
+  const auto taking_part =
+      static_cast<std::size_t>((direction.array().abs() > kParticipation).count());
   std::vector<Eigen::Index> order(static_cast<std::size_t>(direction.size()));
   std::iota(order.begin(), order.end(), 0);
   std::partial_sort(
@@ -57,11 +60,11 @@ std::string combinationName(const ParameterSpace& space, const Eigen::VectorXd& 
         return std::abs(direction[a]) > std::abs(direction[b]);
       });
   std::string name = "a combination of";
-  for (std::size_t k = 0; k < kNamed; ++k) {
+  for (std::size_t k = 0; k < std::min(kNamed, std::max<std::size_t>(taking_part, 1)); ++k) {
     name += k == 0 ? " " : ", ";
     name += space.name(order[k]);
   }
-  return name + " and others";
+  return taking_part > kNamed ? name + " and others" : name;
 }
 
 }  // namespace

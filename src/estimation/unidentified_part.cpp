@@ -7,11 +7,6 @@
 namespace sac {
 namespace {
 
-/// Open directions in more coordinates each than an axis has are held as directions.
-constexpr std::size_t kFewCoordinates = 2;
-/// A coordinate whose square lies in open directions to this share is held whole.
-constexpr double kWholly = 0.9;
-
 /// The free coordinates that are not held yet, and their information.
 class OpenCoordinates {
  public:
@@ -24,6 +19,12 @@ class OpenCoordinates {
 
   Observability judged(double limit) const {
     return judgeInformation(information_(places_, places_), limit);
+  }
+
+  /// Whether the data would leave a coordinate open though all else were known.
+  bool tellNothing(Eigen::Index k, double limit) const {
+    const Eigen::Index place = places_[static_cast<std::size_t>(k)];
+    return information_(place, place) * limit * limit < 1.0;
   }
 
   Eigen::Index coordinate(Eigen::Index k) const {
@@ -53,12 +54,6 @@ class OpenCoordinates {
   std::vector<Eigen::Index> places_;  ///< in free_
 };
 
-/// Whether open directions are shared by so many coordinates that no few of them are to blame.
-bool isSpread(const Observability& observability) {
-  const auto directions = static_cast<std::size_t>(observability.open_directions.cols());
-  return observability.weak.size() > kFewCoordinates * directions;
-}
-
 }  // namespace
 
 std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions) {
@@ -87,21 +82,15 @@ UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
     }
     std::vector<Eigen::Index> held =
         open.hold(weak, [&](Eigen::Index k) { return open.coordinate(k) >= space.effect(); });
-    const bool spread = isSpread(observability);
-    if (held.empty() && spread) {
-      held = open.hold(weak, [&](Eigen::Index k) {
-        return observability.open_directions.row(k).squaredNorm() > kWholly;
-      });
+    if (held.empty()) {
+      held = open.hold(weak, [&](Eigen::Index k) { return open.tellNothing(k, limit); });
     }
-    if (held.empty() && spread) {
+    if (held.empty()) {
       part.directions.setZero(space.size(), observability.open_directions.cols());
       for (Eigen::Index k = 0; k < observability.open_directions.rows(); ++k) {
         part.directions.row(open.coordinate(k)) = observability.open_directions.row(k);
       }
       break;
-    }
-    if (held.empty()) {
-      held = open.hold(weak, [](Eigen::Index) { return true; });
     }
     part.coordinates.insert(part.coordinates.end(), held.begin(), held.end());
   }

@@ -9,6 +9,7 @@ namespace sac {
 WeightedObservations::WeightedObservations(const EstimationProblem& problem,
                                            const EstimationOptions& options)
     : evaluator_(problem, options),
+      shared_(groupByDwell(problem, options)),
       whitening_(problem.observations.size(), Eigen::Matrix3d::Zero()),
       active_(problem.observations.size(), true) {}
 
@@ -18,7 +19,14 @@ bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::ve
   LinearizedObservation linear;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     evaluator_.linearize(n, x, linear);
-    const Eigen::Matrix3d whitening = whiteningOf(evaluator_.covariance(n, linear, held));
+    const Eigen::Matrix3d noise =
+        shared_.shares[n] ? evaluator_.ownNoise(n) : evaluator_.noise(n, linear);
+    const Eigen::Matrix3d whitening = whiteningOf(noise + evaluator_.heldCovariance(linear, held));
+    if (shared_.shares[n]) {
+      const SharedLoading loading = whitening * evaluator_.sharedErrors(n, linear);
+      changed = changed || !loading.isApprox(shared_.loading[n], kNoticeable);
+      shared_.loading[n] = loading;
+    }
     changed = changed || !whitening.isApprox(whitening_[n], kNoticeable);
     whitening_[n] = whitening;
   }
@@ -39,26 +47,114 @@ bool WeightedObservations::setActive(std::size_t observation, bool active) {
   return changes;
 }
 
-std::vector<double> WeightedObservations::squares(const Eigen::VectorXd& x) const {
+std::vector<double> WeightedObservations::squares(const Eigen::VectorXd& x, double limit) const {
   std::vector<double> squares(whitening_.size());
   for (std::size_t n = 0; n < squares.size(); ++n) {
-    squares[n] = (whitening_[n] * evaluator_.residual(n, x)).squaredNorm();
+    squares[n] = shared_.shares[n] ? 0.0 : whitenedResidual(n, x).squaredNorm();
+  }
+  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+    squaresOfDwell(dwell, x, limit, squares);
   }
   return squares;
 }
 
-Eigen::MatrixXd WeightedObservations::information(
-    const Eigen::VectorXd& x, const std::vector<Eigen::Index>& coordinates) const {
+void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
+                                          const Eigen::VectorXd& x,
+                                          double limit,
+                                          std::vector<double>& squares) const {
+  DwellElimination elimination;
+  std::vector<Eigen::Vector3d> residuals;
+  for (const std::size_t n : dwell) {
+    residuals.push_back(whitenedResidual(n, x));
+    elimination.add(shared_.loading[n], residuals.back());
+  }
+  std::vector<bool> kept(dwell.size(), true);
+  while (true) {
+    std::size_t worst = dwell.size();
+    for (std::size_t k = 0; k < dwell.size(); ++k) {
+      const SharedLoading& G = shared_.loading[dwell[k]];
+      DwellElimination others = elimination;
+      if (kept[k]) {
+        others.remove(G, residuals[k]);
+      }
+      const Eigen::Vector3d rest = residuals[k] - G * others.errors();
+      const Eigen::Matrix3d covariance =
+          Eigen::Matrix3d::Identity() + G * others.covariance() * G.transpose();
+      squares[dwell[k]] = rest.dot(covariance.llt().solve(rest));
+      if (kept[k] && (worst == dwell.size() || squares[dwell[k]] > squares[dwell[worst]])) {
+        worst = k;
+      }
+    }
+    if (worst == dwell.size() || squares[dwell[worst]] <= limit) {
+      return;
+    }
+    kept[worst] = false;
+    elimination.remove(shared_.loading[dwell[worst]], residuals[worst]);
+  }
+}
+
+DwellElimination WeightedObservations::eliminated(const std::vector<std::size_t>& dwell,
+                                                  const Eigen::VectorXd& x) const {
+  DwellElimination elimination;
+  for (const std::size_t n : dwell) {
+    if (active_[n]) {
+      elimination.add(shared_.loading[n], whitenedResidual(n, x));
+    }
+  }
+  return elimination;
+}
+
+double WeightedObservations::chiSquare(const Eigen::VectorXd& x) const {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < whitening_.size(); ++n) {
+    sum += active_[n] && !shared_.shares[n] ? whitenedResidual(n, x).squaredNorm() : 0.0;
+  }
+  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+    sum += eliminated(dwell, x).squaredMisfit();
+  }
+  return sum;
+}
+
+std::vector<Eigen::Vector3d> WeightedObservations::residuals(const Eigen::VectorXd& x) const {
+  std::vector<Eigen::Vector3d> residuals(whitening_.size());
+  for (std::size_t n = 0; n < residuals.size(); ++n) {
+    residuals[n] = whitenedResidual(n, x);
+  }
+  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+    const SharedErrors errors = eliminated(dwell, x).errors();
+    for (const std::size_t n : dwell) {
+      residuals[n] -= shared_.loading[n] * errors;
+    }
+  }
+  return residuals;
+}
+
+Eigen::MatrixXd WeightedObservations::information(const Eigen::VectorXd& x,
+                                                  const std::vector<Eigen::Index>& coordinates,
+                                                  Which which) const {
   const ChosenCoordinates chosen(x.size(), coordinates);
   InformationSum sum(chosen.size());
   LinearizedObservation linear;
   WhitenedObservation whitened;
+  const auto serves = [&](std::size_t n) { return which == Which::kAll || active_[n]; };
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    if (active_[n]) {
+    if (serves(n) && !shared_.shares[n]) {
       evaluator_.linearize(n, x, linear);
       whiten(linear, whitening_[n], chosen, whitened);
       sum.add(whitened);
     }
+  }
+  DwellSum dwell_sum(chosen.size());
+  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+    dwell_sum.begin();
+    for (const std::size_t n : dwell) {
+      if (serves(n)) {
+        evaluator_.linearize(n, x, linear);
+        whiten(linear, whitening_[n], chosen, whitened);
+        dwell_sum.add(whitened, shared_.loading[n]);
+      }
+    }
+    dwell_sum.addTo(sum);
   }
   return sum.information();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,7 @@
 
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 
 namespace sac {
 
@@ -23,8 +25,9 @@ class WeightedObservations {
   /// Recomputes the weights at x, where the coordinates marked in `held` stay at the prior. Returns
   /// whether one changed noticeably.
   bool updateWeights(const Eigen::VectorXd& x, const std::vector<bool>& held);
-  /// W per observation.
+  /// W per observation: of what it does not share.
   const std::vector<Eigen::Matrix3d>& whitening() const { return whitening_; }
+  const SharedErrorModel& shared() const { return shared_; }
 
   const std::vector<bool>& active() const { return active_; }
   std::size_t activeCount() const;
@@ -35,22 +38,46 @@ class WeightedObservations {
   /// What calls have changed so far.
   struct Setting {
     std::vector<Eigen::Matrix3d> whitening;
+    std::vector<SharedLoading> loading;
     std::vector<bool> active;
   };
-  Setting setting() const { return {whitening_, active_}; }
+  Setting setting() const { return {whitening_, shared_.loading, active_}; }
   void restore(Setting setting) {
     whitening_ = std::move(setting.whitening);
+    shared_.loading = std::move(setting.loading);
     active_ = std::move(setting.active);
   }
 
-  /// Squared whitened norms of all observations at x.
-  std::vector<double> squares(const Eigen::VectorXd& x) const;
-  /// Information of the active observations on chosen coordinates (ascending) at x.
+  /// Squared whitened norms of all observations at x, χ² with three degrees of freedom each where
+  /// they fit. Within a dwell that of an observation given the others there, whose squares do not
+  /// exceed `limit`: the least likely is set aside, one after the other. The residual by itself
+  /// would be blind to faults that are smaller than the errors which the dwell shares, and with all
+  /// others one fault would accuse the whole dwell.
+  std::vector<double> squares(const Eigen::VectorXd& x,
+                              double limit = std::numeric_limits<double>::infinity()) const;
+  /// χ² of the active observations at x, shared errors eliminated.
+  double chiSquare(const Eigen::VectorXd& x) const;
+  /// Whitened residuals at x less the errors that their dwells share, by the active ones.
+  std::vector<Eigen::Vector3d> residuals(const Eigen::VectorXd& x) const;
+  enum class Which { kActive, kAll };
+  /// Information of the active or all observations on chosen coordinates (ascending) at x.
   Eigen::MatrixXd information(const Eigen::VectorXd& x,
-                              const std::vector<Eigen::Index>& coordinates) const;
+                              const std::vector<Eigen::Index>& coordinates,
+                              Which which = Which::kActive) const;
 
  private:
+  void squaresOfDwell(const std::vector<std::size_t>& dwell,
+                      const Eigen::VectorXd& x,
+                      double limit,
+                      std::vector<double>& squares) const;
+  DwellElimination eliminated(const std::vector<std::size_t>& dwell,
+                              const Eigen::VectorXd& x) const;
+  Eigen::Vector3d whitenedResidual(std::size_t observation, const Eigen::VectorXd& x) const {
+    return whitening_[observation] * evaluator_.residual(observation, x);
+  }
+
   ObservationEvaluator evaluator_;
+  SharedErrorModel shared_;
   std::vector<Eigen::Matrix3d> whitening_;
   std::vector<bool> active_;
 };

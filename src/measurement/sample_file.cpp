@@ -45,6 +45,8 @@ Sample readSample(const YamlMap& map, const DefaultStddevs& defaults) {
     sample.torque = vector3(map, "torque", ValueRange::finite("N m"));
     sample.torque_stddev =
         map.number("torque_stddev", ValueRange::nonNegative("N m"), defaults.torque);
+    sample.torque_shared_stddev = map.number(
+        "torque_shared_stddev", ValueRange::closed(0.0, sample.torque_stddev, "N m"), 0.0);
   }
   if (map.has("current")) {
     const std::vector<double> current = map.numbers("current", ValueRange::finite("A"));

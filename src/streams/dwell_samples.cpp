@@ -198,7 +198,8 @@ class DwellSampler {
       if (needs_removal(candidate)) {
         sample.torque -= zero.torque;
         sample.current -= zero.current;
-        sample.torque_stddev = std::hypot(sample.torque_stddev, std::sqrt(zero.torque_variance));
+        sample.torque_shared_stddev = std::sqrt(zero.torque_variance);
+        sample.torque_stddev = std::hypot(sample.torque_stddev, sample.torque_shared_stddev);
       } else if (!candidate.excited) {
         sample.has_torque = false;
         sample.torque.setZero();

@@ -26,9 +26,15 @@ std::vector<Sample> sessionSamples() {
   return samples;
 }
 
+CalibrationConfig registered() {
+  CalibrationConfig config;
+  stateRegistration(config, {0.0, 0.0, 0.0});
+  return config;
+}
+
 GradedCalibration gradeOf(const std::vector<Sample>& samples,
                           const std::vector<CycleRequest>& requests,
-                          const CalibrationConfig& config = {}) {
+                          const CalibrationConfig& config = registered()) {
   CalibrationSession session({scenarios::paperNominal()}, samples, config);
   for (const CycleRequest& request : requests) {
     session.run(request);
@@ -81,7 +87,7 @@ TEST(CalibrationGrade, UsableWherePartsAreMissing) {
 }
 
 TEST(CalibrationGrade, UsableWhereTheWantedAccuracyIsMissed) {
-  CalibrationConfig config;
+  CalibrationConfig config = registered();
   config.wanted.orientation = 1e-7;
   const GradedCalibration one = gradeOf(sessionSamples(), wholeCalibration(), config);
   EXPECT_EQ(one.grade, Grade::kUsable);

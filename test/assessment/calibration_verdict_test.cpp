@@ -26,7 +26,9 @@ std::vector<Sample> sessionSamples() {
 
 CalibrationSession sessionWith(const std::vector<Sample>& samples,
                                const std::vector<CycleRequest>& requests) {
-  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  CalibrationConfig config;
+  stateRegistration(config, {0.0, 0.0, 0.0});
+  CalibrationSession session({scenarios::paperNominal()}, samples, config);
   for (const CycleRequest& request : requests) {
     session.run(request);
   }

@@ -68,6 +68,7 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
                         &estimation.false_alarm_probability,
                         &estimation.max_rejected_fraction,
                         &estimation.max_reduced_chi_square,
+                        &estimation.max_deviation,
                         &estimation.current_threshold,
                         &estimation.min_joint_motion,
                         &estimation.default_orientation_stddev,
@@ -75,6 +76,7 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
     *value *= 1.25;
   }
   estimation.max_iterations = 7;
+  estimation.shared_errors = false;
   config.tolerance = {0.01, 0.02, 0.04, 0.05, 0.06};
   for (const std::string& effect : effectNames()) {
     config.effects[effect] = true;
@@ -92,6 +94,24 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
     const bool is_section = line.front() != ' ';
     EXPECT_EQ(line == other, is_section) << line;
   }
+}
+
+TEST(CalibrationConfig, WhatIsNotStatedOfRegistrationsStaysUnstated) {
+  const CalibrationConfig config =
+      parseCalibrationConfig("registration: {rotor_marker: {stddev: 0.001}}", "c.yaml");
+  EXPECT_FALSE(config.registration.stator_tracker);
+  EXPECT_EQ(config.registration.rotor_marker, 0.001);
+  EXPECT_EQ(config.effects.stddev("marker_registration"), 0.001);
+  EXPECT_EQ(config.effects.stddev("tracker_registration"), 0.0);
+  const CalibrationConfig back =
+      parseCalibrationConfig(renderCalibrationConfig(config), "rendered.yaml");
+  EXPECT_FALSE(back.registration.stator_tracker);
+  EXPECT_EQ(back.registration.rotor_marker, 0.001);
+  EXPECT_NE(parseError("registration: {rotor_marker: {stddev: -1.0}}")
+                .find("registration.rotor_marker.stddev"),
+            std::string::npos);
+  EXPECT_NE(parseError("registration: {marker: {stddev: 1.0}}").find("registration.marker"),
+            std::string::npos);
 }
 
 TEST(CalibrationConfig, AbsentKeysHaveTheirDefaults) {

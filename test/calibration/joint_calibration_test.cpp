@@ -93,14 +93,24 @@ TEST_F(JointCalibration, RemainingErrorLiesBelowTheAddedNoiseFromTenOrientations
   }
 }
 
-TEST_F(JointCalibration, ConvergesFromHalfARadian) {
+TEST_F(JointCalibration, ConvergesFromHalfARadianWhereThatIsWithinTolerances) {
+  EstimationOptions coarse;
+  coarse.tolerance.joint_offset = 0.3;
+  coarse.tolerance.joint_axis = 0.3;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     scenarios::Generator generator(seed);
     const Actuator far = scenarios::perturbed(scenarios::paperNominal(), 0.5, 0.0, generator);
     std::vector<Eigen::Vector3d> q = scenarios::randomPoses(10, 0.6, generator);
-    const CycleOutcome outcome = run(scenarios::orientationSamples(far, q, 0.0, 1e-3, generator));
+    const std::vector<Sample> data = scenarios::orientationSamples(far, q, 0.0, 1e-3, generator);
+    const CycleOutcome outcome = runCycle(model_, data, nominal_, kJointCycle, coarse);
     ASSERT_TRUE(outcome.report.success) << outcome.report.message;
     EXPECT_LT((outcome.state.belief.x - space_.coordinatesOf(far)).head(9).norm(), 1e-10);
+    const CycleOutcome refused = run(data);
+    EXPECT_FALSE(refused.report.success);
+    EXPECT_TRUE(refused.report.contradicted);
+    EXPECT_NE(refused.report.message.find("tolerances"), std::string::npos)
+        << refused.report.message;
+    EXPECT_EQ(refused.state.belief.x, nominal_.belief.x);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
@@ -22,6 +23,14 @@ struct WantedAccuracy {
   double torque = 0.0;       ///< [N·m/A]
 };
 
+/// How well the registrations are known: standard deviation of each component of their rotation
+/// [rad]; 0: exact; nothing: not stated, which counts as exact and is told.
+struct RegistrationUncertainty {
+  std::optional<double> stator_tracker;
+  std::optional<double> rotor_marker;
+  std::optional<double> rotor_ft_sensor;
+};
+
 /// Everything about a calibration that is a matter of choice. The defaults are those of the members
 /// and of the shipped config/calibration.yaml.
 struct CalibrationConfig {
@@ -30,12 +39,17 @@ struct CalibrationConfig {
   SampleBuilderOptions samples;
   EstimationOptions estimation;
   ManufacturingTolerance tolerance;
-  /// Laboratory effects that the refinement identifies beside the geometry.
+  /// Laboratory effects that the refinement identifies beside the geometry, and those that
+  /// `registration` states (stateRegistration()).
   EffectSelection effects;
+  RegistrationUncertainty registration;
   /// Every so manieth sample is held out for validation; 0: none but those recorded so.
   int hold_out_every = 0;
   WantedAccuracy wanted;
 };
+
+/// Enters what is known of the registrations, in `effects` as well.
+void stateRegistration(CalibrationConfig& config, const RegistrationUncertainty& registration);
 
 /// Throws ConfigError that names the option, its value and the allowed range.
 void validate(const CalibrationConfig& config);

@@ -40,13 +40,18 @@ struct CycleReport {
   Cycle cycle = Cycle::kJoint;
   std::optional<std::size_t> coil = std::nullopt;  ///< excited coil; none where the cycle has none
   bool success = false;
+  /// Refused because the samples contradict each other, the model or the drawing.
+  bool contradicted = false;
   std::string message;  ///< a sentence or two that an operator can act on
   std::uint32_t samples_used = 0;
   std::uint32_t samples_rejected = 0;
   std::uint32_t iterations = 0;
   ErrorMeasure error_measure = ErrorMeasure::kOrientation;
   std::vector<double> error_history;
+  /// What keeps a successful cycle from being good, a sentence each.
+  std::vector<std::string> doubts;
   double reduced_chi_square = 0.0;
+  int degrees_of_freedom = 0;
   double condition_number = 0.0;
   double solve_time = 0.0;  ///< [s]
   std::vector<ParameterEstimate> estimates;

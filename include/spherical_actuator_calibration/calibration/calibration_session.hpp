@@ -71,7 +71,8 @@ class CalibrationSession {
   /// Of all cycles run, in their order.
   const std::vector<CycleReport>& reports() const { return reports_; }
 
-  /// True when every cycle succeeded and openParameters() is empty.
+  /// True when every cycle succeeded, or a later one of its kind or a refinement did, and
+  /// openParameters() is empty.
   bool isComplete() const;
   /// Parameters that some cycle was to estimate and none could.
   std::vector<std::string> openParameters() const;

@@ -26,9 +26,17 @@ struct Estimate {
   /// P×d, orthonormal columns: directions across many coordinates, held at the prior likewise.
   /// Their prior uncertainty is in `belief`.
   Eigen::MatrixXd open_directions;
+  /// Free coordinates of poles and coils whose torques were rejected, so that the rest tells
+  /// nothing of them.
+  std::vector<Eigen::Index> rejected_away;
+  /// First coordinates of poles and coils that another place explains as well; `belief` is widened
+  /// by the distance to it.
+  std::vector<Eigen::Index> ambiguous;
   int iterations = 0;
   std::vector<double> error_history;  ///< ε before the first and after each iteration
   int degrees_of_freedom = 0;
+  /// Normalised misfit of the stated standard deviations of effects, root mean square; 0 without.
+  double stated_misfit = 0.0;
   double reduced_chi_square = 0.0;  ///< 0 without degrees of freedom
   /// Factor ≥ 1 on standard deviations where the residuals exceed their stated noise significantly.
   double covariance_scale = 1.0;

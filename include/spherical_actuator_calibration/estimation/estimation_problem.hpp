@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/manufacturing_tolerance.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
@@ -49,9 +50,13 @@ struct EstimationOptions {
   /// Probability that a faultless set of observations loses any one of them as an outlier.
   double false_alarm_probability = 1e-3;
   /// More outliers than this share: the samples contradict each other.
+  /// Holds for all observations and for those of each stream, coil and pole.
   double max_rejected_fraction = 0.3;
   /// Larger remaining misfit than this: the samples contradict the model.
-  double max_reduced_chi_square = 25.0;
+  double max_reduced_chi_square = 9.0;
+  /// Farther from the drawing than so many tolerances nothing was made: it was measured wrongly.
+  double max_deviation = 6.0;
+  ManufacturingTolerance tolerance;
   /// A coil below this current counts as off [A].
   double current_threshold = 0.05;
   /// A joint that moves less than this tells nothing about its axis [rad].
@@ -59,6 +64,9 @@ struct EstimationOptions {
   /// Assumed where a sample states no uncertainty [rad], [N·m].
   double default_orientation_stddev = 5e-4;
   double default_torque_stddev = 5e-4;
+  /// Whether measurements of one dwell share the error of the joints' reading and of the torque
+  /// without current. Off, they count as independent.
+  bool shared_errors = true;
 };
 
 /// Throws ConfigError that names the option and its range.

@@ -46,6 +46,11 @@ class LaboratoryEffect {
   /// ∂m/∂v: rotation vector of the marker in the rotor, rotor frame [rad].
   virtual void addMarkerColumns(Columns columns) const;
 
+  // ---- the force/torque sensor: T_measured = exp(z) T
+
+  /// ∂z/∂v: rotation vector of the force/torque sensor in the rotor, rotor frame [rad].
+  virtual void addTorqueFrameColumns(Columns columns) const;
+
   // ---- torque without current: T = (∂T/∂v) v
 
   /// ∂T/∂v [N·m], rotor frame.

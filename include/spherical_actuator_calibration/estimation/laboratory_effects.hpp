@@ -28,6 +28,7 @@ struct PlacedEffect {
   LaboratoryEffect::ActsOn acts_on = LaboratoryEffect::ActsOn::kEverything;
   Eigen::Index first = 0;  ///< among the coordinates of all effects
   std::shared_ptr<const LaboratoryEffect> effect;
+  double stddev = 0.0;  ///< of each value, as stated beforehand; 0: nothing is known
 
   Eigen::Index size() const { return effect->size(); }
 };
@@ -50,6 +51,8 @@ class EffectLayout {
 
   /// torque_bias/x, pole_3/gain, coil_7/gain, joint_3/cos_1, torque_curve/t2 and so on.
   const std::string& name(Eigen::Index coordinate) const;
+  /// Variance of a coordinate as stated beforehand; 0: nothing is known.
+  double statedVariance(Eigen::Index coordinate) const;
   /// Value of the effect per coordinate.
   double scale(Eigen::Index coordinate) const { return at(coordinate).effect->scale(); }
   /// Values of one effect at coordinates of all effects.

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 
 namespace sac {
 
@@ -35,6 +36,7 @@ struct LinearPrior {
 struct LeastSquaresInput {
   const ObservationEvaluator* evaluator = nullptr;
   const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< W per observation
+  const SharedErrorModel* shared = nullptr;                 ///< nothing: no errors are shared
   std::vector<bool> active;                                 ///< per observation
   std::vector<Eigen::Index> free;                           ///< coordinates to find, ascending
   Eigen::VectorXd start;                                    ///< all coordinates
@@ -53,7 +55,8 @@ struct LeastSquaresResult {
   const Eigen::VectorXd& solution() const { return path.back(); }
 };
 
-/// Minimises Σ ρ(‖W r(x)‖²) + ‖prior‖² by Levenberg–Marquardt on normal equations, which are summed
+/// Minimises Σ ρ(‖W r(x) − G u‖²) + ‖u‖² + ‖prior‖² over x and the errors u that dwells share (they
+/// are eliminated dwell by dwell) by Levenberg–Marquardt on normal equations, which are summed
 /// up observation by observation: memory does not grow with their number. Normal equations square
 /// the condition number, but in each step only: steps go on with fresh residuals until the next one
 /// would change nothing, so that the solution keeps the digits of an orthogonal factorisation.

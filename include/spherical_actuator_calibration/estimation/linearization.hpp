@@ -35,6 +35,16 @@ class ObservationEvaluator {
   /// Covariance of an observation from the sensors' noise alone, joint sensors included.
   Eigen::Matrix3d noise(std::size_t observation, const LinearizedObservation& linear) const;
 
+  /// Of noise() what the observations of a dwell do not share.
+  Eigen::Matrix3d ownNoise(std::size_t observation) const;
+  /// ∂residual/∂u for the errors that they share, in standard deviations: joints, then torque.
+  Eigen::Matrix<double, 3, 6> sharedErrors(std::size_t observation,
+                                           const LinearizedObservation& linear) const;
+
+  /// What the prior uncertainty of the coordinates marked in `held` adds.
+  Eigen::Matrix3d heldCovariance(const LinearizedObservation& linear,
+                                 const std::vector<bool>& held) const;
+
   /// noise() plus what the prior uncertainty of the coordinates marked in `held` adds to it.
   Eigen::Matrix3d covariance(std::size_t observation,
                              const LinearizedObservation& linear,
@@ -44,6 +54,7 @@ class ObservationEvaluator {
   Eigen::Vector3d evaluate(std::size_t observation,
                            const Eigen::VectorXd& x,
                            ResidualJacobian* jacobian) const;
+  double stddev(std::size_t observation) const;
 
   const EstimationProblem& problem_;
   const EstimationOptions& options_;

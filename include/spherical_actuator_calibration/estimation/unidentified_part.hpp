@@ -24,11 +24,12 @@ std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions);
 /// Judges the information matrix (F×F) of the coordinates `free` (ascending): a standard deviation
 /// above `limit` [rad] is open.
 ///
-/// A laboratory effect that takes part in an open direction is held first: it was an option. Where
-/// few coordinates share the open directions, as those of a pole that no sample sees, they are held
-/// whole. Where many do, as when only torques were measured and the stator may be turned against
-/// the joint as a whole (doc/method.md, Gauge), holding them whole would throw away what the data
-/// tell: only the directions are held.
+/// A laboratory effect that takes part in an open direction is held first: it was an option. Then
+/// coordinates are held whole that the data leave open by themselves, as those of a pole that no
+/// sample sees. Of all others only the open directions are held: two parallel joints have offsets
+/// whose sum the data tell though not their difference, and torques alone leave open how the stator
+/// is turned as a whole (doc/method.md, Gauge). Held whole, the prior of such coordinates would
+/// count as noise of each sample by itself, and hide every misfit.
 UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
                                   const std::vector<Eigen::Index>& free,
                                   const ParameterSpace& space,

@@ -61,6 +61,15 @@ class InformationSum {
   /// `weight`: of the observation beside its noise.
   void add(const WhitenedObservation& observation, double weight = 1.0);
 
+  /// Takes CᵀKC off the information, what was spent on quantities beside the coordinates; they add
+  /// `misfit` of their own.
+  template <typename Crossed, typename Covariance>
+  void takeOff(const Crossed& crossed, const Covariance& covariance, double misfit) {
+    upper_.template triangularView<Eigen::Upper>() -=
+        crossed.transpose() * (covariance * crossed).eval();
+    squared_misfit_ += misfit;
+  }
+
   /// Σ JᵀS⁻¹J, F×F.
   Eigen::MatrixXd information() const;
   /// Σ JᵀS⁻¹r, half the derivative of Σ rᵀS⁻¹r.

@@ -35,6 +35,9 @@ struct Sample {
   std::uint32_t measurements = 0;                    ///< averaged into it
   double orientation_stddev = 0.0;                   ///< of the mean, per component [rad]
   double torque_stddev = 0.0;                        ///< of the mean, per component [N·m]
+  /// The part of it that all samples of the dwell share: of the torque without current that was
+  /// taken off, per component [N·m].
+  double torque_shared_stddev = 0.0;
 };
 
 /// Throws DataError that names the sample and the field: not finite, a rotation that is none

@@ -18,6 +18,7 @@ namespace sac {
 ///         [orientation_stddev: s]             # per component [rad], default 0: not stated
 ///         [torque: [x, y, z]]                 # on the rotor, rotor frame [N·m]
 ///         [torque_stddev: s]                  # per component [N·m], default 0: not stated
+///         [torque_shared_stddev: s]           # part of it that the dwell's torques share [N·m]
 ///         [current: [i1, i2, ...]]            # per coil [A], needed with torque
 ///         [validation: true]                  # held out, default false
 ///     [orientation_stddev: s]                 # default for all samples

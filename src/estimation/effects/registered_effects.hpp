@@ -11,6 +11,7 @@
 #include "tilt_cross_axis.hpp"
 #include "torque_bias.hpp"
 #include "torque_curve_change.hpp"
+#include "torque_registration.hpp"
 #include "tracker_registration.hpp"
 
 namespace sac::effects {
@@ -30,6 +31,7 @@ using Registered = std::tuple<TorqueBias,
                               TiltCrossAxis,
                               TorqueCurveChange,
                               MarkerRegistration,
-                              TrackerRegistration>;
+                              TrackerRegistration,
+                              TorqueRegistration>;
 
 }  // namespace sac::effects

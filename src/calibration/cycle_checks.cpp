@@ -1,0 +1,299 @@
+#include "cycle_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+
+namespace sac {
+namespace {
+
+/// Chance findings among all groups together are rarer than this.
+constexpr double kChance = 1e-3;
+
+/// Observations that a common cause would spoil together.
+struct Group {
+  std::string name;
+  std::size_t count = 0;
+  std::size_t rejected = 0;
+  double squares = 0.0;  ///< standardised, of those not rejected
+};
+
+void count(const ObservationResidual& residual, Group& group) {
+  ++group.count;
+  if (residual.rejected) {
+    ++group.rejected;
+  } else {
+    group.squares += residual.standardized * residual.standardized;
+  }
+}
+
+/// Per pole: whether the drawing lets it pull noticeably in a sample.
+std::vector<bool> pullingPoles(const CalibrationModel& model,
+                               const Sample& sample,
+                               const std::vector<Excitation>& excitations,
+                               double noticeable) {
+  const Actuator& nominal = model.space().nominal();
+  const TorqueGeometry geometry = torqueGeometry(nominal);
+  const Eigen::Matrix3d R_rotor_stator =
+      rotorOrientation(jointGeometry(nominal.joints), sample.joint_position).transpose();
+  std::vector<bool> pulling(nominal.poles.size(), false);
+  for (const Excitation& excitation : excitations) {
+    const Eigen::Vector3d coil =
+        R_rotor_stator * geometry.coils_stator.col(static_cast<Eigen::Index>(excitation.coil));
+    for (std::size_t i = 0; i < pulling.size(); ++i) {
+      const Eigen::Vector3d pole = geometry.poles_rotor.col(static_cast<Eigen::Index>(i));
+      pulling[i] = pulling[i] ||
+                   (interacts(model.curve(), pole, coil) &&
+                    std::abs(excitation.current) * pairTorque(model.curve(), pole, coil).norm() >
+                        noticeable);
+    }
+  }
+  return pulling;
+}
+
+/// All observations first, then streams, coils and poles.
+std::vector<Group> groupsOf(const EstimationProblem& problem,
+                            const Estimate& estimate,
+                            const EstimationOptions& options) {
+  constexpr double kNoticeable = 10.0;  // standard deviations
+  const ParameterSpace& space = problem.model->space();
+  std::vector<Group> groups{{"all samples"}, {"the orientations"}, {"the torques"}};
+  for (std::size_t j = 0; j < space.coils(); ++j) {
+    groups.push_back({"the torques of coil " + std::to_string(numberOf(j))});
+  }
+  for (std::size_t i = 0; i < space.poles(); ++i) {
+    groups.push_back({"the torques on pole " + std::to_string(numberOf(i))});
+  }
+  const std::size_t first_coil = 3;
+  const std::size_t first_pole = first_coil + space.coils();
+  for (const ObservationResidual& residual : estimate.residuals) {
+    const Sample& sample = (*problem.samples)[residual.observation.sample];
+    count(residual, groups[0]);
+    if (residual.observation.quantity == Quantity::kOrientation) {
+      count(residual, groups[1]);
+      continue;
+    }
+    count(residual, groups[2]);
+    const std::vector<Excitation> excitations = excitedCoils(sample, options.current_threshold);
+    for (const Excitation& excitation : excitations) {
+      count(residual, groups[first_coil + excitation.coil]);
+    }
+    const double stddev =
+        sample.torque_stddev > 0.0 ? sample.torque_stddev : options.default_torque_stddev;
+    const std::vector<bool> pulling =
+        pullingPoles(*problem.model, sample, excitations, kNoticeable * stddev);
+    for (std::size_t i = 0; i < pulling.size(); ++i) {
+      if (pulling[i]) {
+        count(residual, groups[first_pole + i]);
+      }
+    }
+  }
+  return groups;
+}
+
+/// Whether so many rejections are no accident, where outliers come at the rate of all samples.
+bool isRejected(const Group& group, double rate, std::size_t groups, double most) {
+  if (group.rejected < 2 ||
+      static_cast<double>(group.rejected) <= most * static_cast<double>(group.count)) {
+    return false;
+  }
+  const boost::math::binomial_distribution<double> accident(static_cast<double>(group.count), rate);
+  const double probability = boost::math::cdf(
+      boost::math::complement(accident, static_cast<double>(group.rejected) - 1.0));
+  return probability * static_cast<double>(groups) < kChance;
+}
+
+double shareOfRejected(const Group& group) {
+  return group.count == 0 ? 0.0
+                          : static_cast<double>(group.rejected) / static_cast<double>(group.count);
+}
+
+std::string rejections(const std::vector<Group>& groups, const EstimationOptions& options) {
+  constexpr double kUsualRate = 0.1;
+  const Group& all = groups.front();
+  if (shareOfRejected(all) > options.max_rejected_fraction) {
+    return format(
+        ": the samples contradict each other (%.0f %% would be outliers); check "
+        "sensors, frames and currents.",
+        100.0 * shareOfRejected(all));
+  }
+  const double rate = std::max(kUsualRate, shareOfRejected(all));
+  const Group* worst = nullptr;
+  for (const Group& group : groups) {
+    if (isRejected(group, rate, groups.size(), options.max_rejected_fraction) &&
+        (worst == nullptr || shareOfRejected(group) > shareOfRejected(*worst))) {
+      worst = &group;
+    }
+  }
+  return worst == nullptr
+             ? std::string()
+             : format(
+                   ": %s contradict the other samples (%zu of %zu would be outliers); check "
+                   "frames, currents, polarities and wiring.",
+                   worst->name.c_str(),
+                   worst->rejected,
+                   worst->count);
+}
+
+std::string misfits(const std::vector<Group>& groups,
+                    const Estimate& estimate,
+                    const EstimationOptions& options) {
+  const auto words = [](const std::string& name, double chi_square) {
+    return format(
+        ": residuals of %s are %.1f times their stated uncertainty; the samples do not "
+        "fit the model. Check units, frames, polarity and the nominal description.",
+        name.c_str(),
+        std::sqrt(chi_square));
+  };
+  if (estimate.reduced_chi_square > options.max_reduced_chi_square) {
+    return words("all samples", estimate.reduced_chi_square);
+  }
+  for (const Group& group : groups) {
+    const auto kept = static_cast<double>(group.count - group.rejected);
+    const double mean = kept > 0.0 ? group.squares / kept : 0.0;
+    if (kept > 0.0 && mean > options.max_reduced_chi_square) {
+      const boost::math::chi_squared_distribution<double> accident(3.0 * kept);
+      const double probability =
+          boost::math::cdf(boost::math::complement(accident, 3.0 * group.squares));
+      if (probability * static_cast<double>(groups.size()) < kChance) {
+        return words(group.name, mean);
+      }
+    }
+  }
+  return {};
+}
+
+std::string growth(const Estimate& estimate) {
+  constexpr double kNotable = 1.1;
+  constexpr double kRounding = 1e-6;
+  const double before = estimate.error_history.front();
+  const double after = estimate.error_history.back();
+  return after > kNotable * before + kRounding
+             ? format(
+                   ": the error grew to %.3g times what it was before; the samples contradict "
+                   "each other.",
+                   after / std::max(before, kRounding))
+             : std::string();
+}
+
+/// What the estimate has told: free, and not left open.
+bool isTold(const EstimationProblem& problem, const Estimate& estimate, Eigen::Index p) {
+  return std::binary_search(problem.free.begin(), problem.free.end(), p) &&
+         !std::binary_search(estimate.unobservable.begin(), estimate.unobservable.end(), p);
+}
+
+std::string deviations(const EstimationProblem& problem,
+                       const Estimate& estimate,
+                       const EstimationOptions& options) {
+  constexpr double kSure = 3.0;  // standard deviations
+  const ParameterSpace& space = problem.model->space();
+  for (Eigen::Index p = 0; p < space.effect(); ++p) {
+    const double limit = options.max_deviation * toleranceOf(space.id(p).kind, options.tolerance);
+    const double deviation = std::abs(estimate.belief.x[p]);
+    const double stddev = std::sqrt(std::max(0.0, estimate.belief.covariance(p, p)));
+    if (limit > 0.0 && isTold(problem, estimate, p) && deviation - kSure * stddev > limit) {
+      return format(
+          ": %s would lie %.2g rad from its drawing, more than %.0f tolerances of manufacture; "
+          "check the wiring of sensors and coils, all frames, and the nominal description.",
+          space.name(p).c_str(),
+          deviation,
+          options.max_deviation);
+    }
+  }
+  return {};
+}
+
+std::string registrations(const Estimate& estimate) {
+  constexpr double kMost = 3.0;
+  return estimate.stated_misfit > kMost
+             ? format(
+                   ": the registrations would be off by %.1f times their stated uncertainty; "
+                   "register tracker, marker and force/torque sensor anew.",
+                   estimate.stated_misfit)
+             : std::string();
+}
+
+std::string axisName(const ParameterSpace& space, Eigen::Index p) {
+  const ParameterId id = space.id(p);
+  const bool is_pole =
+      id.kind == ParameterKind::kPolePolar || id.kind == ParameterKind::kPoleAzimuth;
+  return (is_pole ? "pole " : "coil ") + std::to_string(numberOf(id.index));
+}
+
+/// Axes of which no sample was left, though there had been many.
+std::string lostAxes(const EstimationProblem& problem,
+                     const Estimate& estimate,
+                     const std::vector<Group>& groups) {
+  constexpr std::size_t kMany = 3;
+  for (const Eigen::Index p : estimate.rejected_away) {
+    const std::string axis = axisName(problem.model->space(), p);
+    for (const Group& group : groups) {
+      const std::size_t end = group.name.size();
+      if (end > axis.size() && group.name.substr(end - axis.size()) == axis &&
+          group.name[end - axis.size() - 1] == ' ' && group.count >= kMany) {
+        return ": " + group.name + " contradict the other samples; check its current and wiring.";
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string contradiction(const EstimationProblem& problem,
+                          const Estimate& estimate,
+                          const EstimationOptions& options) {
+  const std::vector<Group> groups = groupsOf(problem, estimate, options);
+  const std::vector<std::function<std::string()>> checks{
+      [&] { return rejections(groups, options); },
+      [&] { return misfits(groups, estimate, options); },
+      [&] { return deviations(problem, estimate, options); },
+      [&] { return lostAxes(problem, estimate, groups); },
+      [&] { return registrations(estimate); },
+      [&] { return growth(estimate); }};
+  for (const auto& check : checks) {
+    std::string words = check();
+    if (!words.empty()) {
+      return words;
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate& estimate) {
+  constexpr double kLarge = 2.25;
+  constexpr double kSmall = 0.25;
+  constexpr double kLeastFreedom = 30.0;
+  constexpr double kExact = 1e-12;  // without noise nothing is told of it
+  std::vector<std::string> words;
+  const double chi_square = estimate.reduced_chi_square;
+  if (estimate.covariance_scale > 1.0 && chi_square > kLarge) {
+    words.push_back(
+        format("Residuals are %.1f times their stated uncertainty: something is not modelled, and "
+               "may bias the parameters.",
+               std::sqrt(chi_square)));
+  }
+  if (estimate.degrees_of_freedom > kLeastFreedom && chi_square < kSmall && chi_square > kExact) {
+    words.push_back(
+        format("Residuals are only %.2g times their stated uncertainty: the stated noise is too "
+               "large, or samples are copies of each other.",
+               std::sqrt(chi_square)));
+  }
+  for (const Eigen::Index p : estimate.ambiguous) {
+    words.push_back("Ambiguous: another place of " + axisName(problem.model->space(), p) +
+                    " explains its torques nearly as well; measure it at further poses.");
+  }
+  return words;
+}
+
+}  // namespace sac

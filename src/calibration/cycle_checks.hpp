@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/estimation/estimate.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+
+namespace sac {
+
+/// Why a converged estimate must not be taken, in words to follow the name of the cycle, or empty:
+/// too many rejected observations, or a misfit too large, of all, of a stream, a coil or a pole; an
+/// error that grew; parameters farther from the drawing than anything is made; registrations
+/// farther off than stated.
+std::string contradiction(const EstimationProblem& problem,
+                          const Estimate& estimate,
+                          const EstimationOptions& options);
+
+/// What keeps an estimate that is taken from being good, a sentence each.
+std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate& estimate);
+
+}  // namespace sac

@@ -1,0 +1,118 @@
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+namespace sac {
+namespace {
+
+/// Readings with independent errors of the stated size agree this well in all three joints once in
+/// twenty times; those that share their error always do.
+constexpr double kAgreement = 0.7;
+constexpr double kRounding = 1e-9;  // [rad]
+
+bool isSameDwell(const Sample& one, const Sample& other) {
+  const Eigen::Vector3d limit =
+      (kAgreement * one.joint_stddev).cwiseMin(kAgreement * other.joint_stddev).cwiseMax(kRounding);
+  const Eigen::Vector3d apart = (one.joint_position - other.joint_position).cwiseAbs();
+  return (apart.array() <= limit.array()).all();
+}
+
+bool hasSharedErrors(const Sample& sample) {
+  return !sample.joint_stddev.isZero(0.0) || (sample.has_torque && sample.torque_shared_stddev > 0);
+}
+
+}  // namespace
+
+SharedErrorModel groupByDwell(const EstimationProblem& problem, const EstimationOptions& options) {
+  SharedErrorModel model;
+  const std::size_t count = problem.observations.size();
+  model.shares.assign(count, false);
+  model.loading.assign(count, SharedLoading::Zero());
+  if (!options.shared_errors) {
+    return model;
+  }
+  const std::vector<Sample>& samples = *problem.samples;
+  std::vector<std::size_t> dwell;
+  const auto close = [&] {
+    if (dwell.size() > 1) {
+      for (const std::size_t n : dwell) {
+        model.shares[n] = true;
+      }
+      model.dwells.push_back(dwell);
+    }
+    dwell.clear();
+  };
+  for (std::size_t n = 0; n < count; ++n) {
+    const Sample& sample = samples[problem.observations[n].sample];
+    if (!dwell.empty() &&
+        !isSameDwell(samples[problem.observations[dwell.front()].sample], sample)) {
+      close();
+    }
+    if (hasSharedErrors(sample)) {
+      dwell.push_back(n);
+    } else {
+      close();
+    }
+  }
+  close();
+  return model;
+}
+
+DwellElimination::DwellElimination()
+    : information_(Eigen::Matrix<double, kSharedErrors, kSharedErrors>::Identity()),
+      gradient_(SharedErrors::Zero()) {}
+
+void DwellElimination::add(const SharedLoading& loading,
+                           const Eigen::Vector3d& residual,
+                           double weight) {
+  information_.noalias() += weight * loading.transpose() * loading;
+  gradient_.noalias() += weight * loading.transpose() * residual;
+  squares_ += weight * residual.squaredNorm();
+}
+
+void DwellElimination::remove(const SharedLoading& loading, const Eigen::Vector3d& residual) {
+  add(loading, residual, -1.0);
+}
+
+SharedErrors DwellElimination::errors() const {
+  return information_.llt().solve(gradient_);
+}
+
+Eigen::Matrix<double, kSharedErrors, kSharedErrors> DwellElimination::covariance() const {
+  return information_.llt().solve(Eigen::Matrix<double, kSharedErrors, kSharedErrors>::Identity());
+}
+
+double DwellElimination::squaredMisfit() const {
+  return squares_ - gradient_.dot(errors());
+}
+
+void DwellSum::begin() {
+  entries_.clear();
+  crossed_.setZero();
+  elimination_ = DwellElimination();
+}
+
+void DwellSum::add(const WhitenedObservation& observation,
+                   const SharedLoading& loading,
+                   double weight) {
+  entries_.push_back({observation, loading, weight});
+  elimination_.add(loading, observation.residual, weight);
+  for (std::size_t k = 0; k < observation.columns.size(); ++k) {
+    crossed_.col(observation.columns[k]) +=
+        weight * loading.transpose() * observation.jacobian.col(static_cast<Eigen::Index>(k));
+  }
+}
+
+void DwellSum::addTo(InformationSum& sum) const {
+  const SharedErrors errors = elimination_.errors();
+  for (const Entry& entry : entries_) {
+    WhitenedObservation corrected = entry.observation;
+    corrected.residual -= entry.loading * errors;
+    sum.add(corrected, entry.weight);
+  }
+  sum.takeOff(crossed_, elimination_.covariance(), errors.squaredNorm());
+}
+
+}  // namespace sac

@@ -1,0 +1,63 @@
+// calibrate_cases ACTUATOR.yaml CONFIG.yaml SAMPLES.yaml...: runs all possible cycles on each file
+// of samples and prints what came out, one line a fact, for programs that know the truth and share
+// no code with this package.
+
+#include <cstdio>
+#include <exception>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/measurement/sample_file.hpp"
+
+namespace sac {
+namespace {
+
+void calibrate(const CalibratedDescription& start,
+               const CalibrationConfig& config,
+               const char* path) {
+  CalibrationSession session(start, loadSamples(path, start.actuator.coils.size()), config);
+  std::printf("case %s\n", path);
+  for (const CycleRequest& request :
+       possibleCycles(session.model(), session.samples(), config.estimation)) {
+    const CycleReport& report = session.run(request);
+    std::printf("cycle %s %s rejected %u chi_square %.6g solve_time %.6g %s\n",
+                cycleText(request).c_str(),
+                report.success ? "success" : "refused",
+                report.samples_rejected,
+                report.reduced_chi_square,
+                report.solve_time,
+                report.message.c_str());
+  }
+  for (const ParameterEstimate& one : session.parameters()) {
+    std::printf("parameter %s %.17g %.17g %s\n",
+                one.name.c_str(),
+                one.value,
+                one.stddev,
+                one.observable ? "identified" : "open");
+  }
+  const GradedCalibration graded = gradeCalibration(session);
+  std::printf("grade %s %s\n", gradeName(graded.grade).c_str(), graded.reason.c_str());
+}
+
+}  // namespace
+}  // namespace sac
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 4) {
+      std::fprintf(stderr, "Usage: calibrate_cases ACTUATOR.yaml CONFIG.yaml SAMPLES.yaml...\n");
+      return 2;
+    }
+    const sac::CalibratedDescription start = sac::loadDescription(argv[1]);
+    const sac::CalibrationConfig config = sac::loadCalibrationConfig(argv[2]);
+    for (int n = 3; n < argc; ++n) {
+      sac::calibrate(start, config, argv[n]);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "calibrate_cases: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,73 @@
+"""Runs the package on sessions of the independent laboratory, and reads what it says."""
+
+import dataclasses
+import os
+import subprocess
+import tempfile
+
+import laboratory
+import numpy as np
+
+PROGRAM = os.environ.get("CALIBRATE_CASES", "build/test/calibrate_cases")
+SOURCE = os.environ.get("SOURCE", os.path.join(os.path.dirname(__file__), "..", ".."))
+ACTUATOR = os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml")
+
+
+@dataclasses.dataclass
+class Outcome:
+    values: np.ndarray
+    stddevs: np.ndarray
+    identified: np.ndarray
+    grade: str
+    reason: str
+    cycles: list  # (name, success, message)
+    solve_time: float  # [s] of the last cycle
+
+    def refined(self):
+        return self.cycles and self.cycles[-1][0] == "refine" and self.cycles[-1][1]
+
+
+def registration_config(registration, more=""):
+    """Configuration that states registrations; None: states none of them."""
+    if registration is None:
+        return more
+    names = ("stator_tracker", "rotor_marker", "rotor_ft_sensor")
+    lines = [f"  {name}: {{stddev: {float(stddev)!r}}}" for name, stddev in zip(names, registration)]
+    return "registration:\n" + "\n".join(lines) + "\n" + more
+
+
+def read_outcomes(text, names):
+    outcomes, rows, cycles, solve_time = [], {}, [], 0.0
+    for line in text.splitlines():
+        word, _, rest = line.partition(" ")
+        if word == "case":
+            rows, cycles = {}, []
+        elif word == "cycle":
+            name, how, _, _, _, _, _, seconds, message = rest.split(" ", 8)
+            cycles.append((name, how == "success", message))
+            solve_time = float(seconds)
+        elif word == "parameter":
+            name, value, stddev, identified = rest.split(" ")
+            rows[name] = (float(value), float(stddev), identified == "identified")
+        elif word == "grade":
+            grade, _, reason = rest.partition(" ")
+            chosen = [rows[name] for name in names]
+            values, stddevs, identified = (np.array(column) for column in zip(*chosen))
+            outcomes.append(Outcome(values, stddevs, identified, grade, reason, cycles, solve_time))
+    return outcomes
+
+
+def calibrate(unit, sessions, config, actuator=ACTUATOR):
+    """sessions: (laboratory, dwells, held out every so manieth) each. Returns an Outcome for each."""
+    with tempfile.TemporaryDirectory() as folder:
+        config_path = os.path.join(folder, "config.yaml")
+        with open(config_path, "w", encoding="utf-8") as file:
+            file.write(config)
+        paths = []
+        for n, (sensors, dwells, held_out) in enumerate(sessions):
+            paths.append(os.path.join(folder, f"samples_{n}.yaml"))
+            laboratory.write_samples(paths[-1], unit, sensors, dwells, held_out)
+        answer = subprocess.run([PROGRAM, actuator, config_path, *paths], capture_output=True, text=True, check=False)
+        if answer.returncode != 0:
+            raise RuntimeError(answer.stderr)
+        return read_outcomes(answer.stdout, unit.names())
