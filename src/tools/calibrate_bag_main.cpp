@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+#include "spherical_actuator_calibration/assessment/covariance_file.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -52,6 +53,7 @@ struct Files {
   std::string urdf;
   std::string report;       ///< empty: no report is wanted
   std::string report_page;  ///< the same for people
+  std::string covariance;   ///< empty: none is wanted
 };
 
 Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) {
@@ -67,7 +69,9 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.report = (fs::path(*options.report_folder) / "report.yaml").string();
     files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
-  for (const std::string& path : {files.description, files.urdf, files.report, files.report_page}) {
+  files.covariance = options.covariance_path.value_or("");
+  for (const std::string& path :
+       {files.description, files.urdf, files.report, files.report_page, files.covariance}) {
     requireNewFile(path, options.overwrite);
   }
   if (options.report_folder) {
@@ -166,6 +170,10 @@ void writeResult(const CalibrationSession& session,
   const CalibratedDescription result = session.description(origin);
   saveDescription(files.description, result, policy);
   std::cout << "Calibrated description: " << files.description << "\n";
+  if (!files.covariance.empty()) {
+    writeFileAtomically(files.covariance, renderCovariance(session), policy);
+    std::cout << "Covariance: " << files.covariance << "\n";
+  }
   if (!files.urdf.empty()) {
     writeCalibratedUrdf(files.urdf_template,
                         files.urdf,

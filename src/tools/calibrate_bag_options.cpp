@@ -82,6 +82,10 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
            options.report_folder,
            "DIR",
            "folder for the report: report.html for people, report.yaml with all figures");
+  line.add("covariance",
+           options.covariance_path,
+           "YAML",
+           "covariance of all parameters to write, with names and units");
   line.add("truth", options.truth_path, "YAML", "true parameters, to compare with");
   line.add("date", options.date, "ISO8601", "date of the calibration, in UTC; without it now");
   line.addForce(options.overwrite);

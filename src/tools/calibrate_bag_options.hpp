@@ -24,6 +24,7 @@ struct CalibrateBagOptions {
   std::string output_path;
   std::optional<std::string> urdf_path;
   std::optional<std::string> urdf_template_path;
+  std::optional<std::string> covariance_path;
   std::optional<std::string> report_folder;
   std::optional<std::string> date;  ///< of the calibration; nothing: now
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
