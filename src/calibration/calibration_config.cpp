@@ -207,12 +207,16 @@ class OptionWriter {
  private:
   void add(const std::string& key, const std::string& value) {
     options_.emplace_back(section_ + "." + key, value);
-    // Not before it has an entry: an empty section would be no map.
+    beginSection();
+    writer_.entry(1, key, value);
+  }
+
+  /// Not before it has an entry: an empty section would be no map.
+  void beginSection() {
     if (!has_begun_) {
       writer_.map(0, section_);
       has_begun_ = true;
     }
-    writer_.entry(1, key, value);
   }
 
   std::string section_;
