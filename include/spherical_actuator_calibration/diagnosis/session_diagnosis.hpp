@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
+
+namespace sac {
+
+/// Mistakes of wiring in the samples of a session, against its description at the start.
+std::vector<Diagnosis> diagnoseMistakes(const CalibrationSession& session);
+
+/// The same; where there is none and the samples misfit beyond chance all the same, the single
+/// effects of the laboratory and small turns of frames that explain it, each by a refinement from
+/// the start. Changes nothing.
+std::vector<Diagnosis> diagnose(const CalibrationSession& session);
+
+/// Sentences of all diagnoses, one after the other; empty without any.
+std::string inWords(const std::vector<Diagnosis>& diagnoses);
+
+}  // namespace sac

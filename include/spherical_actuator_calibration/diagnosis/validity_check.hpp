@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
+
+namespace sac {
+
+/// Whether the parameters in force still describe the machine.
+struct ValidityCheck {
+  bool is_valid = false;
+  /// "Valid to 0.5 mrad (99 %), …", what has changed, or why nothing can be told.
+  std::string message;
+  /// Mistakes of wiring that came since, where the parameters are not valid any more.
+  std::vector<Diagnosis> changes;
+};
+
+/// How many of the newest held-out samples judge.
+inline constexpr std::size_t kCheckedSamples = 24;
+
+/// Judges the newest held-out samples against the parameters in force: orientations, and torques of
+/// each coil, by a chi-square test each. What they would not have noticed is told as the largest
+/// rms error that would have passed with a probability of 1 % (non-central chi-square). Changes
+/// nothing.
+ValidityCheck checkValidity(const CalibrationSession& session);
+
+}  // namespace sac

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "torque_hypotheses.hpp"
+
+namespace sac {
+namespace {
+
+/// A strength beyond so many tolerances is a mistake.
+constexpr double kMaterial = 3.0;
+/// Strength of a pole that is missing: a description has no zero.
+constexpr double kNearlyNothing = 1e-6;
+
+std::string number(std::size_t index) {
+  return std::to_string(numberOf(index));
+}
+
+template <typename Change>
+Hypothesis ofCurrents(const std::string& cause,
+                      const std::string& family,
+                      const std::string& sentence,
+                      Change change) {
+  Hypothesis result;
+  result.cause = cause;
+  result.family = family;
+  result.correct = [change](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
+    for (Sample& sample : wiring.samples) {
+      if (sample.current.size() > 0) {
+        change(sample.current);
+      }
+    }
+  };
+  result.sentence = [sentence](const Eigen::VectorXd& /*values*/) { return sentence; };
+  return result;
+}
+
+template <typename Change>
+Hypothesis ofPole(const std::string& cause,
+                  std::size_t pole,
+                  const std::string& sentence,
+                  Change change) {
+  Hypothesis result;
+  result.cause = cause + ":" + number(pole);
+  result.family = "pole:" + number(pole);
+  result.correct = [pole, change](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
+    change(wiring.actuator.poles[pole]);
+  };
+  result.redescribe = [pole, change](Actuator& actuator, const Eigen::VectorXd& /*values*/) {
+    change(actuator.poles[pole]);
+  };
+  result.sentence = [sentence](const Eigen::VectorXd& /*values*/) { return sentence; };
+  return result;
+}
+
+}  // namespace
+
+Hypothesis coilShift(std::size_t steps) {
+  const std::string sentence =
+      "the currents of all coils are shifted: what is recorded as coil 1 flows in coil " +
+      number(steps) +
+      ", and so on around: correct the first register `address` of setpoints and currents in the "
+      "coil driver's file (coil_driver.yaml), or the order of coils in the description.";
+  Hypothesis result =
+      ofCurrents("coil_shift", "coil_shift", sentence, [steps](Eigen::VectorXd& current) {
+        const Eigen::VectorXd before = current;
+        const Eigen::Index size = current.size();
+        for (Eigen::Index j = 0; j < size; ++j) {
+          current[(j + static_cast<Eigen::Index>(steps)) % size] = before[j];
+        }
+      });
+  result.redescribe = [steps](Actuator& actuator, const Eigen::VectorXd& /*values*/) {
+    std::rotate(actuator.coils.begin(),
+                actuator.coils.begin() + static_cast<std::ptrdiff_t>(steps),
+                actuator.coils.end());
+  };
+  return result;
+}
+
+Hypothesis coilSign(std::size_t coil) {
+  return ofCurrents(
+      "coil_sign:" + number(coil),
+      "coil:" + number(coil),
+      "coil " + number(coil) +
+          " is wired the wrong way round: exchange its leads at the amplifier.",
+      [coil](Eigen::VectorXd& current) { current[static_cast<Eigen::Index>(coil)] *= -1.0; });
+}
+
+Hypothesis coilSwap(std::size_t first, std::size_t second) {
+  const std::string cause = "coil_swap:" + number(first) + ":" + number(second);
+  Hypothesis result =
+      ofCurrents(cause,
+                 cause,
+                 "coils " + number(first) + " and " + number(second) +
+                     " are exchanged: exchange their leads at the amplifier, or their entries in "
+                     "the description.",
+                 [first, second](Eigen::VectorXd& current) {
+                   std::swap(current[static_cast<Eigen::Index>(first)],
+                             current[static_cast<Eigen::Index>(second)]);
+                 });
+  result.redescribe = [first, second](Actuator& actuator, const Eigen::VectorXd& /*values*/) {
+    std::swap(actuator.coils[first], actuator.coils[second]);
+  };
+  return result;
+}
+
+Hypothesis coilDead(std::size_t coil) {
+  return ofCurrents(
+      "coil_dead:" + number(coil),
+      "coil:" + number(coil),
+      "coil " + number(coil) +
+          " exerts no torque though a current is measured: check its winding, its "
+          "connector and its current sensor; remove its samples meanwhile.",
+      [coil](Eigen::VectorXd& current) { current[static_cast<Eigen::Index>(coil)] = 0.0; });
+}
+
+Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
+  Hypothesis result;
+  result.cause = "coil_gain:" + number(coil);
+  result.family = "coil:" + number(coil);
+  result.start = Eigen::VectorXd::Constant(1, gain);
+  result.correct = [coil](WiringCase& wiring, const Eigen::VectorXd& values) {
+    // By the currents: the factor may pass zero on the way.
+    for (Sample& sample : wiring.samples) {
+      if (sample.current.size() > 0) {
+        sample.current[static_cast<Eigen::Index>(coil)] *= values[0];
+      }
+    }
+  };
+  result.redescribe = [coil](Actuator& actuator, const Eigen::VectorXd& values) {
+    actuator.coils[coil].gain *= std::max(values[0], kNearlyNothing);
+  };
+  result.is_material = [tolerance](const Eigen::VectorXd& values) {
+    return std::abs(values[0] - 1.0) > kMaterial * tolerance;
+  };
+  const std::string name = "coil " + number(coil);
+  result.sentence = [name](const Eigen::VectorXd& values) {
+    return name + format(
+                      " exerts %.3g times the torque that its current should: check its "
+                      "winding and the scale of its current sensor; set its `gain` in the "
+                      "description to %.4g, or model coil_gains in calibration.yaml.",
+                      values[0],
+                      values[0]);
+  };
+  return result;
+}
+
+Hypothesis polePolarity(std::size_t pole) {
+  return ofPole("pole_polarity",
+                pole,
+                "pole " + number(pole) +
+                    " has the opposite polarity: turn its magnet around, or change its "
+                    "`polarity` in the description.",
+                [](PoleAxis& axis) { axis.polarity *= -1; });
+}
+
+Hypothesis poleMissing(std::size_t pole) {
+  return ofPole("pole_missing",
+                pole,
+                "pole " + number(pole) +
+                    " exerts no torque: its magnet is missing or lost its strength; mount it, or "
+                    "take it out of the description.",
+                [](PoleAxis& axis) { axis.gain *= kNearlyNothing; });
+}
+
+}  // namespace sac

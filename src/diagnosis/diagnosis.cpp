@@ -1,0 +1,287 @@
+#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "orientation_hypotheses.hpp"
+#include "posterior_fit.hpp"
+#include "torque_screen.hpp"
+#include "wiring_case.hpp"
+
+namespace sac {
+namespace {
+
+/// Logarithm of the odds against one mistake, before any sample: one laboratory in a thousand.
+constexpr double kMistakeCost = 6.907755278982137;
+/// Odds below it do not tell two hypotheses apart: about 50 to 1 [nats].
+constexpr double kTie = 4.0;
+constexpr std::size_t kFewestOrientations = 4;
+constexpr std::size_t kFewestTorques = 4;
+constexpr int kMostRounds = 6;
+
+/// A candidate after its fit.
+struct Judged {
+  Candidate parts;
+  PosteriorFit fit;
+  double gain = 0.0;  ///< [nats]
+
+  double score() const { return gain - kMistakeCost * static_cast<double>(parts.size()); }
+  /// Among hypotheses of which one contains the other, the simpler one unless odds say otherwise.
+  double scoreInFamily() const {
+    return score() - kMistakeCost * static_cast<double>(fit.values.size());
+  }
+};
+
+bool isMaterial(const Judged& judged) {
+  Eigen::Index at = 0;
+  for (const Hypothesis& part : judged.parts) {
+    const Eigen::VectorXd own = judged.fit.values.segment(at, part.start.size());
+    at += part.start.size();
+    if (part.is_material && !part.is_material(own)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// In any order.
+std::multiset<std::string> family(const Candidate& parts) {
+  std::multiset<std::string> families;
+  for (const Hypothesis& part : parts) {
+    families.insert(part.family);
+  }
+  return families;
+}
+
+std::string causes(const Candidate& parts) {
+  std::string text;
+  for (const Hypothesis& part : parts) {
+    text += (text.empty() ? "" : " with ") + part.cause;
+  }
+  return text;
+}
+
+/// Looks for mistakes in one stream after the other.
+class Diagnostician {
+ public:
+  Diagnostician(const Actuator& nominal,
+                const std::vector<Sample>& samples,
+                const CalibrationConfig& config)
+      : config_(config), case_{nominal, samples} {
+    result_.redescribed = nominal;
+    for (const Sample& sample : samples) {
+      orientations_ += sample.has_orientation ? 1U : 0U;
+      torques_ += sample.has_torque ? 1U : 0U;
+    }
+    torques_ = nominal.hasTorqueModel() ? torques_ : 0;
+  }
+
+  WiringDiagnosis run() {
+    const bool has_orientations = orientations_ >= kFewestOrientations;
+    if (has_orientations) {
+      diagnoseOrientations();
+    }
+    if (torques_ >= kFewestTorques) {
+      diagnoseTorques(!has_orientations);
+    }
+    result_.actuator = case_.actuator;
+    result_.samples = case_.samples;
+    return std::move(result_);
+  }
+
+ private:
+  void diagnoseOrientations() {
+    for (int round = 0; round < kMostRounds; ++round) {
+      const PosteriorFit base = fitted({}, FittedStream::kOrientations);
+      std::vector<Judged> found = decided(
+          judged(screenOrientations(case_, config_), base, FittedStream::kOrientations, false));
+      if (found.empty() && base.scale > mostMisfit()) {
+        found = decided(judged(
+            screenOrientationPairs(case_, config_), base, FittedStream::kOrientations, false));
+      }
+      if (found.empty()) {
+        return;
+      }
+      take(judgedByTorques(std::move(found)));
+    }
+  }
+
+  void diagnoseTorques(bool with_joints) {
+    const WiringCase before = case_;
+    const WiringDiagnosis result_before = result_;
+    PosteriorFit base = fitted({}, FittedStream::kTorques);
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<Judged> found = decided(
+          judged(screenTorques(case_, config_, with_joints), base, FittedStream::kTorques, true));
+      if (found.empty()) {
+        break;
+      }
+      take(found);
+      base = found.front().fit;
+    }
+    // What does not explain the torques in the end may be anything else.
+    if (base.scale > mostMisfit()) {
+      case_ = before;
+      result_ = result_before;
+    }
+  }
+
+  double mostMisfit() const { return std::sqrt(config_.estimation.max_reduced_chi_square); }
+
+  PosteriorFit fitted(const Candidate& candidate, FittedStream stream) const {
+    return fitPosterior(case_, candidate, stream, config_, ModelAllowance{});
+  }
+
+  /// Those that gain more than chance would, and that explain their stream unless later rounds may.
+  std::vector<Judged> judged(const std::vector<ScreenedCandidate>& candidates,
+                             const PosteriorFit& base,
+                             FittedStream stream,
+                             bool later_rounds_explain) const {
+    std::vector<Judged> all;
+    for (const ScreenedCandidate& candidate : candidates) {
+      Judged one;
+      one.parts = candidate.parts;
+      one.fit = fitted(candidate.parts, stream);
+      one.gain = one.fit.log_posterior - base.log_posterior;
+      const bool is_beyond_chance =
+          one.gain > gainByChance(one.fit.values.size()) * static_cast<double>(one.parts.size());
+      if (is_beyond_chance && (later_rounds_explain || one.fit.scale < mostMisfit()) &&
+          isMaterial(one)) {
+        all.push_back(std::move(one));
+      }
+    }
+    return all;
+  }
+
+  /// The best, and those that explain as much.
+  static std::vector<Judged> decided(std::vector<Judged> candidates) {
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Judged& a, const Judged& b) {
+      return a.scoreInFamily() > b.scoreInFamily();
+    });
+    std::vector<Judged> best_of_family;
+    for (Judged& candidate : candidates) {
+      const bool is_known =
+          std::any_of(best_of_family.begin(), best_of_family.end(), [&](const Judged& other) {
+            return family(other.parts) == family(candidate.parts);
+          });
+      if (!is_known) {
+        best_of_family.push_back(std::move(candidate));
+      }
+    }
+    double best = 0.0;
+    for (const Judged& candidate : best_of_family) {
+      best = std::max(best, candidate.score());
+    }
+    best_of_family.erase(
+        std::remove_if(best_of_family.begin(),
+                       best_of_family.end(),
+                       [best](const Judged& candidate) { return candidate.score() < best - kTie; }),
+        best_of_family.end());
+    return best_of_family;
+  }
+
+  /// Torques can tell a joint sensor from the tracker where orientations cannot.
+  std::vector<Judged> judgedByTorques(std::vector<Judged> found) const {
+    if (found.size() < 2 || torques_ < kFewestTorques) {
+      return found;
+    }
+    std::vector<double> scores;
+    for (const Judged& candidate : found) {
+      const WiringCase mended = corrected(case_, candidate.parts, candidate.fit.values);
+      scores.push_back(fitPosterior(mended, {}, FittedStream::kTorques, config_, ModelAllowance{})
+                           .log_posterior);
+    }
+    const double best = *std::max_element(scores.begin(), scores.end());
+    std::vector<Judged> left;
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      if (scores[n] > best - gainByChance(0)) {
+        left.push_back(std::move(found[n]));
+      }
+    }
+    return left;
+  }
+
+  /// Names what was found and goes on without the first of it.
+  void take(const std::vector<Judged>& found) {
+    for (const Judged& candidate : found) {
+      std::string others;
+      for (const Judged& other : found) {
+        if (&other != &candidate) {
+          others += (others.empty() ? "" : ", ") + causes(other.parts);
+        }
+      }
+      name(candidate, others);
+    }
+    const Judged& first = found.front();
+    case_ = corrected(case_, first.parts, first.fit.values);
+    Eigen::Index at = 0;
+    for (const Hypothesis& part : first.parts) {
+      if (part.redescribe) {
+        part.redescribe(result_.redescribed, first.fit.values.segment(at, part.start.size()));
+      } else {
+        result_.beyond_description.push_back(part.cause);
+      }
+      at += part.start.size();
+    }
+  }
+
+  void name(const Judged& candidate, const std::string& others) {
+    Eigen::Index at = 0;
+    for (const Hypothesis& part : candidate.parts) {
+      const Eigen::VectorXd own = candidate.fit.values.segment(at, part.start.size());
+      at += part.start.size();
+      std::string message = part.sentence(own);
+      message.front() = static_cast<char>(std::toupper(message.front()));
+      if (!others.empty()) {
+        message += " The samples are explained as well by " + others + ".";
+      }
+      result_.mistakes.push_back({part.cause, message, candidate.gain});
+    }
+  }
+
+  const CalibrationConfig& config_;
+  WiringCase case_;
+  WiringDiagnosis result_;
+  std::size_t orientations_ = 0;
+  std::size_t torques_ = 0;
+};
+
+}  // namespace
+
+WiringDiagnosis diagnoseWiring(const Actuator& nominal,
+                               const std::vector<Sample>& samples,
+                               const CalibrationConfig& config) {
+  return Diagnostician(nominal, samples, config).run();
+}
+
+const std::vector<std::string>& wiringCauses() {
+  static const std::vector<std::string> causes = {"joint_sign",
+                                                  "joint_swap",
+                                                  "joint_degrees",
+                                                  "joint_scale",
+                                                  "joint_index",
+                                                  "orientation_inverted",
+                                                  "quaternion_order",
+                                                  "tracker_frame",
+                                                  "marker_frame",
+                                                  "torque_frame",
+                                                  "torque_in_stator_frame",
+                                                  "torque_sign",
+                                                  "torque_unit",
+                                                  "current_sign",
+                                                  "current_unit",
+                                                  "coil_sign",
+                                                  "coil_swap",
+                                                  "coil_shift",
+                                                  "coil_dead",
+                                                  "coil_gain",
+                                                  "pole_polarity",
+                                                  "pole_missing",
+                                                  "rows_shifted"};
+  return causes;
+}
+
+}  // namespace sac

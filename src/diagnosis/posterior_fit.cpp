@@ -1,0 +1,299 @@
+#include "posterior_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "torque_scale.hpp"
+
+namespace sac {
+namespace {
+
+constexpr int kMostIterations = 8;
+constexpr int kMostHalvings = 4;
+constexpr double kEnough = 0.05;         // of the log posterior between two iterations [nats]
+constexpr double kDifference = 1e-5;     // step of numeric derivatives by continuous values
+constexpr double kFlatPrecision = 1e-6;  // of continuous values, so that the system stays regular
+
+/// Observations of one stream of one case, linearised.
+struct Linearization {
+  std::vector<LinearizedObservation> observations;
+  std::vector<Eigen::LLT<Eigen::Matrix3d>> noise;
+  double log_noise = 0.0;  ///< Σ ½ log det
+};
+
+Actuator onlyJoints(Actuator actuator) {
+  actuator.poles.clear();
+  actuator.coils.clear();
+  actuator.torque_curve.reset();
+  return actuator;
+}
+
+/// One candidate against one stream.
+class Fit {
+ public:
+  Fit(const WiringCase& described,
+      const Candidate& candidate,
+      FittedStream stream,
+      const CalibrationConfig& config,
+      const ModelAllowance& allowance)
+      : described_(described),
+        candidate_(candidate),
+        stream_(stream),
+        config_(config),
+        allowance_(allowance) {}
+
+  PosteriorFit run(const std::optional<Eigen::VectorXd>& start) {
+    PosteriorFit best;
+    best.values = startOf(candidate_);
+    linearize(start, best);
+    if (linear_.observations.empty()) {
+      return best;
+    }
+    judge(best);
+    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+      const double before = best.log_posterior;
+      if (!improve(best) || best.log_posterior - before < kEnough) {
+        break;
+      }
+    }
+    return best;
+  }
+
+ private:
+  void linearize(const std::optional<Eigen::VectorXd>& start, PosteriorFit& fit) {
+    const WiringCase mended = corrected(described_, candidate_, fit.values);
+    const CalibrationModel model(ParameterSpace(
+        stream_ == FittedStream::kOrientations ? onlyJoints(mended.actuator) : mended.actuator));
+    const CalibrationState nominal = nominalState(model.space(), config_.tolerance);
+    if (fit.x.size() == 0) {
+      const bool fits = start && start->size() == model.space().size();
+      fit.x = fits ? *start : nominal.belief.x;
+    }
+    precision_ = nominal.belief.covariance.diagonal().cwiseMax(1e-12).cwiseInverse();
+    evaluate(model, mended, nominal.belief, fit.x, true, linear_);
+    differentiateValues(fit);
+  }
+
+  /// Numeric derivatives of all residuals by the continuous values.
+  void differentiateValues(const PosteriorFit& fit) {
+    d_values_.assign(linear_.observations.size(), Eigen::Matrix3Xd(3, fit.values.size()));
+    for (Eigen::Index v = 0; v < fit.values.size(); ++v) {
+      Eigen::VectorXd shifted = fit.values;
+      const double step = kDifference * std::max(1.0, std::abs(shifted[v]));
+      shifted[v] += step;
+      const WiringCase mended = corrected(described_, candidate_, shifted);
+      const CalibrationModel model(ParameterSpace(
+          stream_ == FittedStream::kOrientations ? onlyJoints(mended.actuator) : mended.actuator));
+      Linearization moved;
+      evaluate(model,
+               mended,
+               nominalState(model.space(), config_.tolerance).belief,
+               fit.x,
+               false,
+               moved);
+      for (std::size_t n = 0; n < d_values_.size(); ++n) {
+        d_values_[n].col(v) =
+            (moved.observations[n].residual - linear_.observations[n].residual) / step;
+      }
+    }
+  }
+
+  std::vector<Observation> observationsOf(const std::vector<Sample>& samples) const {
+    std::vector<Observation> observations;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      if (stream_ != FittedStream::kTorques && samples[n].has_orientation) {
+        observations.push_back({n, Quantity::kOrientation});
+      }
+      if (stream_ != FittedStream::kOrientations && samples[n].has_torque &&
+          described_.actuator.hasTorqueModel()) {
+        observations.push_back({n, Quantity::kTorque});
+      }
+    }
+    return observations;
+  }
+
+  void evaluate(const CalibrationModel& model,
+                const WiringCase& mended,
+                const ParameterBelief& prior,
+                const Eigen::VectorXd& x,
+                bool with_jacobian,
+                Linearization& out) const {
+    EstimationProblem problem;
+    problem.model = &model;
+    problem.samples = &mended.samples;
+    problem.prior = prior;
+    problem.observations = observationsOf(mended.samples);
+    const ObservationEvaluator evaluator(problem, config_.estimation);
+    out.observations.resize(problem.observations.size());
+    out.noise.clear();
+    out.log_noise = 0.0;
+    const double largest_torque = largestTorquePerAmpere(mended.actuator);
+    for (std::size_t n = 0; n < problem.observations.size(); ++n) {
+      LinearizedObservation& linear = out.observations[n];
+      if (!with_jacobian) {
+        linear.residual = evaluator.residual(n, x);
+        continue;
+      }
+      evaluator.linearize(n, x, linear);
+      Eigen::Matrix3d noise = evaluator.noise(n, linear);
+      const Sample& sample = mended.samples[problem.observations[n].sample];
+      const double allowance = problem.observations[n].quantity == Quantity::kOrientation
+                                   ? allowance_.orientation
+                                   : allowance_.torque * largest_torque * sample.current.norm();
+      noise.diagonal().array() += allowance * allowance;
+      out.noise.emplace_back(noise);
+      out.log_noise += out.noise.back().matrixLLT().diagonal().array().log().sum();
+    }
+  }
+
+  /// Log posterior at the linearised point, with its most probable scale.
+  void judge(PosteriorFit& fit) const {
+    std::vector<double> misfits;
+    misfits.reserve(linear_.observations.size());
+    for (std::size_t n = 0; n < linear_.observations.size(); ++n) {
+      misfits.push_back(squaredMisfit(n));
+    }
+    const auto count = static_cast<double>(misfits.size());
+    double variance = 1.0;
+    constexpr int kScaleIterations = 30;
+    for (int i = 0; i < kScaleIterations; ++i) {
+      double sum = 0.0;
+      for (const double misfit : misfits) {
+        sum += weight(misfit / variance) * misfit;
+      }
+      variance = std::max(1.0, sum / (3.0 * count));
+    }
+    fit.scale = std::sqrt(variance);
+    double loss = 1.5 * count * std::log(variance) + linear_.log_noise;
+    for (const double misfit : misfits) {
+      loss += studentLoss(misfit / variance);
+    }
+    loss -= 3.0 * count * std::log(std::abs(torqueFactor(candidate_, fit.values)));
+    fit.log_posterior = -loss - 0.5 * fit.x.dot(precision_.cwiseProduct(fit.x));
+  }
+
+  static double weight(double squared_misfit) {
+    return (kStudentFreedom + 3.0) / (kStudentFreedom + squared_misfit);
+  }
+
+  double squaredMisfit(std::size_t n) const {
+    return linear_.noise[n].matrixL().solve(linear_.observations[n].residual).squaredNorm();
+  }
+
+  /// One Gauss–Newton step, shortened until it helps. False: none helped.
+  bool improve(PosteriorFit& fit) {
+    const Eigen::VectorXd step = this->step(fit);
+    PosteriorFit trial;
+    double length = 1.0;
+    for (int halving = 0; halving < kMostHalvings; ++halving, length *= 0.5) {
+      trial.x = fit.x + length * step.head(fit.x.size());
+      trial.values = fit.values + length * step.tail(fit.values.size());
+      linearize(std::nullopt, trial);
+      judge(trial);
+      if (trial.log_posterior > fit.log_posterior) {
+        fit = trial;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Eigen::VectorXd step(const PosteriorFit& fit) const {
+    const Eigen::Index size = fit.x.size();
+    const Eigen::Index total = size + fit.values.size();
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(total, total);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(total);
+    information.diagonal().head(size) = precision_;
+    information.diagonal().tail(fit.values.size()).setConstant(kFlatPrecision);
+    gradient.head(size) = precision_.cwiseProduct(fit.x);
+    std::vector<Eigen::Index> columns;
+    Eigen::Matrix3Xd jacobian;
+    for (std::size_t n = 0; n < linear_.observations.size(); ++n) {
+      gather(n, size, columns, jacobian);
+      const double factor =
+          weight(squaredMisfit(n) / (fit.scale * fit.scale)) / (fit.scale * fit.scale);
+      const auto count = static_cast<Eigen::Index>(columns.size());
+      const Eigen::Vector3d residual =
+          linear_.noise[n].matrixL().solve(linear_.observations[n].residual);
+      linear_.noise[n].matrixL().solveInPlace(jacobian);
+      for (Eigen::Index a = 0; a < count; ++a) {
+        const Eigen::Index row = columns[static_cast<std::size_t>(a)];
+        gradient[row] += factor * jacobian.col(a).dot(residual);
+        for (Eigen::Index b = 0; b <= a; ++b) {
+          information(row, columns[static_cast<std::size_t>(b)]) +=
+              factor * jacobian.col(a).dot(jacobian.col(b));
+        }
+      }
+    }
+    return -Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(information).solve(gradient);
+  }
+
+  /// Columns of an observation that are not zero.
+  void gather(std::size_t n,
+              Eigen::Index size,
+              std::vector<Eigen::Index>& columns,
+              Eigen::Matrix3Xd& jacobian) const {
+    columns.clear();
+    const LinearizedObservation& linear = linear_.observations[n];
+    for (const Eigen::Index column : linear.columns) {
+      if (!linear.jacobian.col(column).isZero(0.0)) {
+        columns.push_back(column);
+      }
+    }
+    const auto coordinates = static_cast<Eigen::Index>(columns.size());
+    jacobian.resize(3, coordinates + d_values_[n].cols());
+    for (Eigen::Index a = 0; a < coordinates; ++a) {
+      jacobian.col(a) = linear.jacobian.col(columns[static_cast<std::size_t>(a)]);
+    }
+    for (Eigen::Index v = 0; v < d_values_[n].cols(); ++v) {
+      jacobian.col(coordinates + v) = d_values_[n].col(v);
+      columns.push_back(size + v);
+    }
+  }
+
+  const WiringCase& described_;
+  const Candidate& candidate_;
+  const FittedStream stream_;
+  const CalibrationConfig& config_;
+  const ModelAllowance& allowance_;
+  Eigen::VectorXd precision_;
+  Linearization linear_;
+  std::vector<Eigen::Matrix3Xd> d_values_;
+};
+
+}  // namespace
+
+double gainByChance(Eigen::Index values) {
+  constexpr double kFalseAlarm = 1e-6;    // of a faultless session
+  constexpr double kHypotheses = 1000.0;  // order of their number
+  const double level = kFalseAlarm / kHypotheses;
+  if (values == 0) {
+    return -std::log(level);
+  }
+  const boost::math::chi_squared distribution(static_cast<double>(values));
+  return 0.5 * boost::math::quantile(boost::math::complement(distribution, level));
+}
+
+double studentLoss(double squared_misfit) {
+  return 0.5 * (kStudentFreedom + 3.0) * std::log1p(squared_misfit / kStudentFreedom);
+}
+
+PosteriorFit fitPosterior(const WiringCase& described,
+                          const Candidate& candidate,
+                          FittedStream stream,
+                          const CalibrationConfig& config,
+                          const ModelAllowance& allowance,
+                          const std::optional<Eigen::VectorXd>& start) {
+  return Fit(described, candidate, stream, config, allowance).run(start);
+}
+
+}  // namespace sac

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "wiring_case.hpp"
+
+namespace sac {
+
+/// The candidates for the torques of a case that are worth a fit, by their misfit at the nominal
+/// description, as expected within the tolerance. `with_joints`: no orientation has judged the
+/// joint sensors, so that torques must.
+std::vector<ScreenedCandidate> screenTorques(const WiringCase& described,
+                                             const CalibrationConfig& config,
+                                             bool with_joints);
+
+}  // namespace sac

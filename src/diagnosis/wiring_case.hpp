@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// What a hypothesis may correct.
+struct WiringCase {
+  Actuator actuator;
+  std::vector<Sample> samples;
+};
+
+/// One mistake that a laboratory may have made.
+struct Hypothesis {
+  std::string cause;  ///< with numbers, counted from 1
+  /// Of hypotheses with one family only the best can be named: one contains the other.
+  std::string family;
+  /// Undoes the mistake. `values`: as many as in `start`.
+  std::function<void(WiringCase&, const Eigen::VectorXd& values)> correct;
+  /// What is wrong and what to change.
+  std::function<std::string(const Eigen::VectorXd& values)> sentence;
+  Eigen::VectorXd start = Eigen::VectorXd(0);  ///< of its continuous values, where it has any
+  /// Whether values are so far from none that a mistake, not tolerance, is meant.
+  std::function<bool(const Eigen::VectorXd& values)> is_material = nullptr;
+  /// The same correction in the description alone, where that can hold it.
+  std::function<void(Actuator&, const Eigen::VectorXd& values)> redescribe = nullptr;
+  /// Factor on measured torques: 1 but for units.
+  std::function<double(const Eigen::VectorXd& values)> torque_factor = nullptr;
+};
+
+/// Mistakes made together; none: the wiring as described.
+using Candidate = std::vector<Hypothesis>;
+
+/// All continuous values of a candidate at their start, one after the other.
+Eigen::VectorXd startOf(const Candidate& candidate);
+
+/// The case without the mistakes of a candidate.
+WiringCase corrected(const WiringCase& described,
+                     const Candidate& candidate,
+                     const Eigen::VectorXd& values);
+
+/// Factor on measured torques of all its parts.
+double torqueFactor(const Candidate& candidate, const Eigen::VectorXd& values);
+
+/// A candidate as promising as its screening tells.
+struct ScreenedCandidate {
+  Candidate parts;
+  double gain = 0.0;  ///< against the wiring as described [nats]
+};
+
+/// The most promising first, `most` at the most.
+void keepBest(std::vector<ScreenedCandidate>& candidates, std::size_t most);
+
+}  // namespace sac
