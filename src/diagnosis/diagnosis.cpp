@@ -29,9 +29,12 @@ struct Judged {
   double gain = 0.0;  ///< [nats]
 
   double score() const { return gain - kMistakeCost * static_cast<double>(parts.size()); }
-  /// Among hypotheses of which one contains the other, the simpler one unless odds say otherwise.
+  /// Among hypotheses of which one contains the other, the simpler one unless odds say otherwise,
+  /// and it leaves more than a tenth unexplained: what is right may still be slightly off.
   double scoreInFamily() const {
-    return score() - kMistakeCost * static_cast<double>(fit.values.size());
+    constexpr double kUnexplained = 0.1;
+    const auto values = static_cast<double>(fit.values.size());
+    return score() - kMistakeCost * values - (values > 0.0 ? kUnexplained * gain : 0.0);
   }
 };
 
@@ -171,15 +174,25 @@ class Diagnostician {
         best_of_family.push_back(std::move(candidate));
       }
     }
-    double best = 0.0;
-    for (const Judged& candidate : best_of_family) {
-      best = std::max(best, candidate.score());
+    const auto best = std::max_element(
+        best_of_family.begin(), best_of_family.end(), [](const Judged& x, const Judged& y) {
+          return x.score() < y.score();
+        });
+    if (best == best_of_family.end()) {
+      return best_of_family;
     }
-    best_of_family.erase(
-        std::remove_if(best_of_family.begin(),
-                       best_of_family.end(),
-                       [best](const Judged& candidate) { return candidate.score() < best - kTie; }),
-        best_of_family.end());
+    // Continuous values that others lack take up errors of the tolerance as well.
+    const double needed = best->score() - kTie;
+    const Eigen::Index values = best->fit.values.size();
+    best_of_family.erase(std::remove_if(best_of_family.begin(),
+                                        best_of_family.end(),
+                                        [needed, values](const Judged& candidate) {
+                                          const auto fewer =
+                                              static_cast<double>(std::max<Eigen::Index>(
+                                                  0, values - candidate.fit.values.size()));
+                                          return candidate.score() < needed - kTie * fewer;
+                                        }),
+                         best_of_family.end());
     return best_of_family;
   }
 

@@ -31,7 +31,7 @@ Hypothesis sign(std::size_t joint, const std::string& name) {
     actuator.joints[joint].offset *= -1.0;
   };
   result.sentence = [name](const Eigen::VectorXd& /*values*/) {
-    return name +
+    return "the joint " + name +
            " counts the wrong way: change its `sign` in the joint sensor's file "
            "(joint_sensor.yaml), or turn its `axis` around in the description.";
   };
@@ -96,12 +96,13 @@ Hypothesis scale(std::size_t joint, const std::string& name, double tolerance) {
     return std::abs(values[0] - 1.0) > tolerance;
   };
   result.sentence = [name](const Eigen::VectorXd& values) {
-    return name + format(
-                      " turns %.6g times as far as it reads: multiply its `scale` in the joint "
-                      "sensor's file (joint_sensor.yaml) by %.6g; check counts_per_turn and "
-                      "gear ratio.",
-                      values[0],
-                      values[0]);
+    return "the joint " + name +
+           format(
+               " turns %.6g times as far as it reads: multiply its `scale` in the joint "
+               "sensor's file (joint_sensor.yaml) by %.6g; check counts_per_turn and "
+               "gear ratio.",
+               values[0],
+               values[0]);
   };
   return result;
 }
@@ -124,13 +125,14 @@ Hypothesis index(std::size_t joint, const std::string& name, double tolerance) {
   };
   result.sentence = [name](const Eigen::VectorXd& values) {
     const double angle = std::remainder(values[0], 2.0 * kPi);
-    return name + format(
-                      " reads %.4g rad (%.4g deg) less than its angle: set its `zero` in the "
-                      "joint sensor's file (joint_sensor.yaml) at the index mark again, or "
-                      "add %.6g to its `offset` in the description.",
-                      angle,
-                      angle / kDegree,
-                      angle);
+    return "the joint " + name +
+           format(
+               " reads %.4g rad (%.4g deg) less than its angle: set its `zero` in the "
+               "joint sensor's file (joint_sensor.yaml) at the index mark again, or "
+               "add %.6g to its `offset` in the description.",
+               angle,
+               angle / kDegree,
+               angle);
   };
   return result;
 }
