@@ -248,6 +248,18 @@ void writeModelChoice(YamlWriter& writer, const std::vector<ModelFit>& fits) {
   }
 }
 
+void writeDiagnoses(YamlWriter& writer, const std::vector<Diagnosis>& diagnoses) {
+  std::vector<std::string> lines;
+  for (const Diagnosis& diagnosis : diagnoses) {
+    YamlLine line;
+    line.add("cause", yamlText(diagnosis.cause));
+    line.add("message", yamlText(diagnosis.message));
+    line.add("evidence", yamlNumber(diagnosis.evidence));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "diagnoses", lines);
+}
+
 void writeConfiguration(YamlWriter& writer, const CalibrationConfig& config) {
   writer.map(1, "configuration");
   std::istringstream configuration(renderCalibrationConfig(config));
@@ -260,7 +272,8 @@ void writeConfiguration(YamlWriter& writer, const CalibrationConfig& config) {
 
 std::string renderReport(const CalibrationSession& session,
                          const CalibrationOrigin& origin,
-                         const std::vector<std::string>& recording) {
+                         const std::vector<std::string>& recording,
+                         const std::vector<Diagnosis>& diagnoses) {
   const std::vector<SampleInfluence> influences = influencesOf(session);
   const std::vector<ModelFit> fits =
       compareEffects(session.start(), session.samples(), session.config());
@@ -268,6 +281,7 @@ std::string renderReport(const CalibrationSession& session,
   writer.map(0, "calibration_report");
   writeOrigin(writer, session, origin);
   writeVerdict(writer, judgeCalibration(session, influences, fits));
+  writeDiagnoses(writer, diagnoses);
   writer.list(1, "recording", texts(recording));
   writeConfiguration(writer, session.config());
   writeSamples(writer, session);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate_bag_diagnosis.hpp"
 #include "calibrate_bag_options.hpp"
 #include "calibration_text.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
@@ -17,6 +18,7 @@
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/ros/conversion/file_checksum.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
@@ -70,8 +72,12 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
   files.covariance = options.covariance_path.value_or("");
-  for (const std::string& path :
-       {files.description, files.urdf, files.report, files.report_page, files.covariance}) {
+  for (const std::string& path : {files.description,
+                                  files.urdf,
+                                  files.report,
+                                  files.report_page,
+                                  files.covariance,
+                                  options.corrected_path.value_or("")}) {
     requireNewFile(path, options.overwrite);
   }
   if (options.report_folder) {
@@ -133,6 +139,47 @@ void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) 
   for (const CycleRequest& request : requests) {
     std::cout << cycleParagraph(session.run(request)) << std::flush;
   }
+}
+
+bool hasFailure(const CalibrationSession& session) {
+  for (const CycleReport& report : session.reports()) {
+    if (!report.success) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Runs the cycles unless the wiring is wrong; what explains the samples, where it was looked for.
+std::vector<Diagnosis> calibrate(CalibrationSession& session, const CalibrateBagOptions& options) {
+  std::vector<Diagnosis> diagnoses = diagnoseMistakes(session);
+  if (diagnoses.empty()) {
+    runCycles(session, options);
+    const bool is_wanted = options.diagnose || options.corrected_path || hasFailure(session);
+    if (!is_wanted) {
+      return diagnoses;
+    }
+    diagnoses = diagnose(session);
+  } else {
+    std::cout << "No cycle runs before this is mended:\n";
+  }
+  if (options.diagnose || !diagnoses.empty()) {
+    std::cout << diagnosisLines(diagnoses);
+  }
+  if (options.corrected_path) {
+    writeCorrection(session, diagnoses, *options.corrected_path, options.overwrite);
+  }
+  return diagnoses;
+}
+
+/// Without any cycle.
+int diagnoseOnly(const CalibrationSession& session, const CalibrateBagOptions& options) {
+  const std::vector<Diagnosis> diagnoses = diagnose(session);
+  std::cout << diagnosisLines(diagnoses);
+  if (options.corrected_path) {
+    writeCorrection(session, diagnoses, *options.corrected_path, options.overwrite);
+  }
+  return diagnoses.empty() ? kComplete : kIncomplete;
 }
 
 bool hasResult(const CalibrationSession& session) {
@@ -212,14 +259,20 @@ int calibrateBag(const CalibrateBagOptions& options) {
   if (session.samples().empty()) {
     std::cout << "No sample was found: let the rotor rest longer, or see above what was dropped.\n";
   }
-  runCycles(session, options);
+  if (options.check) {
+    return printCheck(session) ? kComplete : kIncomplete;
+  }
+  if (options.output_path.empty()) {
+    return diagnoseOnly(session, options);
+  }
+  const std::vector<Diagnosis> diagnoses = calibrate(session, options);
   const bool has_result = hasResult(session);
   if (has_result) {
     printResult(session, truth);
   }
   const CalibrationOrigin origin = originOf(options);
   if (!files.report.empty()) {
-    writeReport(renderReport(session, origin, lines), files, options.overwrite);
+    writeReport(renderReport(session, origin, lines, diagnoses), files, options.overwrite);
   }
   if (!has_result) {
     std::cout << "No cycle succeeded: " << files.description << " is not written.\n";

@@ -16,6 +16,8 @@ constexpr char kIntroduction[] =
     "without\n"
     "a master: from the topic samples where it was recorded, else (or with --from streams) from\n"
     "joint_states, measured_orientation, measured_torque and coil_currents.\n"
+    "Mistakes of wiring that the samples speak for are told, and no cycle runs before they are "
+    "mended.\n"
     "Exit status: 0 all cycles succeeded; 1 a cycle failed or a parameter is not observable (the\n"
     "others are written); 2 bad usage or unreadable input.\n\n";
 
@@ -40,6 +42,16 @@ SampleSource parseSource(const std::string& text) {
 void check(const CalibrateBagOptions& options) {
   if (options.bags.empty()) {
     throw ConfigError("At least one recording (BAG) is needed.");
+  }
+  const bool only_judges = options.diagnose || options.check;
+  if (options.output_path.empty() && !only_judges) {
+    throw ConfigError("--output is needed; --help tells what it is.");
+  }
+  if (options.check && !options.output_path.empty()) {
+    throw ConfigError("--check judges a description and writes none: leave --output out.");
+  }
+  if (options.output_path.empty() && (options.urdf_path || options.report_folder)) {
+    throw ConfigError("--urdf and --report need --output: without it nothing is calibrated.");
   }
   if (options.urdf_template_path && !options.urdf_path) {
     throw ConfigError("--urdf-template serves --urdf only: name the file to write by --urdf.");
@@ -72,7 +84,22 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
            "LIST",
            "cycles in this order: joint, poles:J (coil J excited), coil:J, coils (every other coil "
            "with samples), refine; without it, all that the data allow");
-  line.addRequired("output", options.output_path, "YAML", "calibrated description to write");
+  std::optional<std::string> output;
+  line.add("output",
+           output,
+           "YAML",
+           "calibrated description to write; needed but for --diagnose or --check alone");
+  line.addSwitch("diagnose",
+                 options.diagnose,
+                 "tell mistakes of wiring and effects that the samples speak for: exit status 1 "
+                 "where there are any");
+  line.add("apply-diagnosis",
+           options.corrected_path,
+           "YAML",
+           "description or configuration to write, corrected by what is diagnosed");
+  line.addSwitch("check",
+                 options.check,
+                 "judge the description by the samples of the recordings: is it still valid?");
   line.add("urdf", options.urdf_path, "URDF", "calibrated robot description to write");
   line.add("urdf-template",
            options.urdf_template_path,
@@ -93,6 +120,7 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
+  options.output_path = output.value_or("");
   check(options);
   if (source) {
     options.source = parseSource(*source);

@@ -78,6 +78,8 @@ void CalibrationNode::advertiseServices() {
   advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
   advertise("refine", &CalibrationNode::refine);
   advertise("validate", &CalibrationNode::validate);
+  advertise("diagnose", &CalibrationNode::explainSamples);
+  advertise("check", &CalibrationNode::checkParameters);
   advertise("plan_poses", &CalibrationNode::planPoses);
   advertise("reset", &CalibrationNode::reset);
   advertise("restore", &CalibrationNode::restore);
@@ -185,16 +187,20 @@ bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
 void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response& response) {
   answer(response, [&] {
     storeWaitingSamples();
+    refuseMistakes(request, response);
     const CycleReport report = session_.run(request, utcDate());
     response.report =
         topics_.stamped(reportToRos(report, gradeCalibration(session_.calibration())));
+    if (!report.success) {
+      explainFailure(response.report);
+    }
     topics_.publishReport(response.report);
     if (report.success) {
       topics_.publishParameters(session_);
     }
     publishStatus();
     if (!report.success) {
-      throw DataError(report.message);
+      throw DataError(response.report.message);
     }
     return report.message;
   });

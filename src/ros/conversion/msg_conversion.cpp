@@ -277,6 +277,17 @@ msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
   return message;
 }
 
+std::vector<msg::Diagnosis> diagnosesToRos(const std::vector<Diagnosis>& diagnoses) {
+  std::vector<msg::Diagnosis> messages;
+  for (const Diagnosis& diagnosis : diagnoses) {
+    msg::Diagnosis& message = messages.emplace_back();
+    message.cause = diagnosis.cause;
+    message.message = diagnosis.message;
+    message.evidence = diagnosis.evidence;
+  }
+  return messages;
+}
+
 msg::Coverage coverageToRos(const Coverage& coverage) {
   msg::Coverage message;
   message.samples = coverage.samples;

@@ -45,6 +45,10 @@ class Report:
     def sentence(self):
         return self._report["verdict"]["sentence"]
 
+    def diagnoses(self):
+        """Mistakes and effects that explain the samples: cause and sentence."""
+        return [(item["cause"], item["message"]) for item in self._report.get("diagnoses", [])]
+
     def next_steps(self):
         return self._report["next_steps"]
 

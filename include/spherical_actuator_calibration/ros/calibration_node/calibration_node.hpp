@@ -10,6 +10,7 @@
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
 #include <spherical_actuator_calibration/Capture.h>
+#include <spherical_actuator_calibration/Diagnose.h>
 #include <spherical_actuator_calibration/ListSamples.h>
 #include <spherical_actuator_calibration/RemoveSample.h>
 #include <spherical_actuator_calibration/Restore.h>
@@ -66,6 +67,15 @@ class CalibrationNode {
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   void run(const CycleRequest& request, msg::Calibrate::Response& response);
+
+  // What does not fit, and why (calibration_node_diagnosis.cpp).
+  bool explainSamples(msg::Diagnose::Request& request, msg::Diagnose::Response& response);
+  bool checkParameters(msg::Diagnose::Request& request, msg::Diagnose::Response& response);
+  /// Throws DataError, with the report of a refused cycle in the response, when no cycle has
+  /// succeeded yet and the samples tell of a mistake of wiring.
+  void refuseMistakes(const CycleRequest& request, msg::Calibrate::Response& response);
+  /// Adds what explains a failed cycle to its report.
+  void explainFailure(msg::CalibrationReport& report);
 
   // Parameters.
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);

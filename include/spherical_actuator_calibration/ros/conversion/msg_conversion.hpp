@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -24,10 +25,12 @@
 #include "spherical_actuator_calibration/Coverage.h"
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/actuator/calibration_record.hpp"
+#include "spherical_actuator_calibration/Diagnosis.h"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -94,6 +97,8 @@ msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibr
 /// `success` tells whether they agree. The header stays empty.
 msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
                                        const GradedCalibration& graded);
+
+std::vector<msg::Diagnosis> diagnosesToRos(const std::vector<Diagnosis>& diagnoses);
 
 msg::Coverage coverageToRos(const Coverage& coverage);
 

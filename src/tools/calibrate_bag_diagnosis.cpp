@@ -1,0 +1,63 @@
+#include "calibrate_bag_diagnosis.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
+#include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
+
+namespace sac {
+
+std::string diagnosisLines(const std::vector<Diagnosis>& diagnoses) {
+  std::string lines;
+  for (const Diagnosis& diagnosis : diagnoses) {
+    lines += "diagnosis: " + diagnosis.cause + ": " + diagnosis.message + "\n";
+  }
+  return lines.empty() ? "diagnosis: none\n" : lines;
+}
+
+bool printCheck(const CalibrationSession& session) {
+  std::vector<Sample> samples = session.samples();
+  for (Sample& sample : samples) {
+    sample.validation = true;
+  }
+  const ValidityCheck check =
+      checkValidity(CalibrationSession(session.start(), samples, session.config()));
+  std::cout << "check: " << (check.is_valid ? "valid" : "not valid") << "\n"
+            << check.message << "\n";
+  return check.is_valid;
+}
+
+void writeCorrection(const CalibrationSession& session,
+                     const std::vector<Diagnosis>& diagnoses,
+                     const std::string& path,
+                     OverwritePolicy policy) {
+  const WiringDiagnosis wiring =
+      diagnoseWiring(session.start().actuator, session.samples(), session.config());
+  if (!wiring.mistakes.empty()) {
+    if (!wiring.beyond_description.empty()) {
+      std::cout << "No description can correct " << wiring.beyond_description.front()
+                << ": follow its diagnosis. " << path << " is not written.\n";
+      return;
+    }
+    CalibratedDescription description;
+    description.actuator = wiring.redescribed;
+    saveDescription(path, description, policy);
+    std::cout << "Corrected description: " << path << "\n";
+    return;
+  }
+  const std::vector<std::string>& effects = effectNames();
+  for (const Diagnosis& diagnosis : diagnoses) {
+    if (std::find(effects.begin(), effects.end(), diagnosis.cause) != effects.end()) {
+      CalibrationConfig config = session.config();
+      config.effects[diagnosis.cause] = true;
+      writeFileAtomically(path, renderCalibrationConfig(config), policy);
+      std::cout << "Configuration that models " << diagnosis.cause << ": " << path << "\n";
+      return;
+    }
+  }
+  std::cout << "Nothing to correct: " << path << " is not written.\n";
+}
+
+}  // namespace sac
