@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Are mistakes named, and is none named where there is none? diagnosis_trials.py [options]
 
-Sessions are made by laboratory.py, on units of several drawings, and judged by the program diagnose_samples
+Sessions are made by wired_laboratory.py, on units of several drawings, and judged by the program diagnose_samples
 (DIAGNOSE_SAMPLES, or --program). Prints what was not as it should be, and the counts. Exit status: 0 at least --named
 of the mistakes were named and at most --false-alarms healthy sessions were not.
 """

@@ -1,4 +1,4 @@
-"""Mistakes that laboratories make, done to sessions of laboratory.py. Joints, poles and coils count from 1 in causes."""
+"""Mistakes that laboratories make, done to sessions of wired_laboratory.py. Joints, poles and coils count from 1 in causes."""
 
 import itertools
 
