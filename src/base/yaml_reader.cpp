@@ -1,22 +1,19 @@
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include <yaml-cpp/yaml.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "yaml_document.hpp"
 
 namespace sac {
 
@@ -136,44 +133,26 @@ std::string join(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string readFile(const std::string& path) {
-  if (std::error_code error; std::filesystem::is_directory(path, error)) {
-    throw ConfigError(path + ": is a folder, not a file.");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file && file.peek() != std::ifstream::traits_type::eof()) {
-    text << file.rdbuf();
-  }
-  if (!file.is_open() || file.bad()) {
-    throw ConfigError(path + ": cannot be read: " + std::strerror(errno) + ".");
-  }
-  return text.str();
-}
-
 }  // namespace
 
 YamlMap::YamlMap(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
 YamlMap YamlMap::load(const std::string& path) {
-  return parse(readFile(path), path);
+  return parse(readInputFile(path), path);
 }
 
 YamlMap YamlMap::parse(const std::string& text, const std::string& name, LineNumbers line_numbers) {
-  std::vector<YAML::Node> documents;
+  YAML::Node document;
   try {
-    documents = YAML::LoadAll(text);
-  } catch (const YAML::Exception& error) {
-    failAt(name, error.mark.line + 1, "", "this is not valid YAML: " + error.msg + ".");
+    document = parseSingleDocument(text);
+  } catch (const YamlDefect& defect) {
+    failAt(name, defect.line, "", defect.what());
   }
-  if (documents.empty() || (documents.size() == 1 && documents[0].IsNull())) {
+  if (!document.IsDefined() || document.IsNull()) {
     throw ConfigError(name + ": the file is empty.");
   }
-  if (documents.size() > 1) {
-    failAt(name, documents[1].Mark().line + 1, "", "only one YAML document is allowed in a file.");
-  }
   const auto above = std::make_shared<State>(State{name, line_numbers, "", kNoLine, {}, {}, {}});
-  return YamlMap(above).child({documents[0], above->lineOf(documents[0])}, "");
+  return YamlMap(above).child({document, above->lineOf(document)}, "");
 }
 
 YamlMap YamlMap::child(const Entry& entry, const std::string& path) const {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace sac {
+
+/// Largest text file that is read [byte]: thousands of samples of hundreds of coils.
+inline constexpr std::size_t kLargestTextFile = std::size_t{64} << 20U;
+
+/// Content of a file that comes from outside. Only regular files are read: a FIFO would wait for
+/// ever, a device never end. Throws ConfigError that names the file and says what it is when it is
+/// none, cannot be read, or is larger than `largest` [byte].
+std::string readInputFile(const std::string& path, std::size_t largest = kLargestTextFile);
+
+/// What stands at a path that is no regular file ("a folder", "a device", "a FIFO"); empty for a
+/// regular file and for nothing. Links are followed.
+std::string unreadableKind(const std::string& path);
+
+}  // namespace sac

@@ -1,0 +1,119 @@
+#include "yaml_document.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include <yaml-cpp/eventhandler.h>
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kMostNodes = 1'000'000;
+
+/// Listens to the parser and counts, so that nothing is built of a text that is refused.
+class Census : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    ++documents_;
+    // Of a stray sign such as "," yaml-cpp makes empty documents without end and never goes on.
+    if (documents_ > 1 && mark.pos == begin_) {
+      throw YamlDefect(mark.line + 1, "this is not valid YAML: a sign stands where none can.");
+    }
+    begin_ = mark.pos;
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark, 1); }
+  void OnScalar(const YAML::Mark& mark,
+                const std::string& /*tag*/,
+                YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {
+    count(mark, 1);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const bool is_open = std::any_of(open_.begin(), open_.end(), [anchor](const Collection& outer) {
+      return outer.anchor == anchor;
+    });
+    if (is_open) {
+      throw YamlDefect(mark.line + 1, "an alias stands within what it is an alias of.");
+    }
+    const auto size = sizes_.find(anchor);
+    count(mark, size == sizes_.end() ? 1 : size->second);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark,
+                       const std::string& /*tag*/,
+                       YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value /*style*/) override {
+    begin(mark, anchor);
+  }
+  void OnSequenceEnd() override { end(); }
+  void OnMapStart(const YAML::Mark& mark,
+                  const std::string& /*tag*/,
+                  YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value /*style*/) override {
+    begin(mark, anchor);
+  }
+  void OnMapEnd() override { end(); }
+
+ private:
+  /// A map or list that has begun and not ended.
+  struct Collection {
+    YAML::anchor_t anchor;
+    std::size_t nodes_before;
+  };
+
+  void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    open_.push_back({anchor, nodes_});
+    if (open_.size() > kDeepest) {
+      throw YamlDefect(mark.line + 1,
+                       "maps and lists stand more than " + std::to_string(kDeepest) +
+                           " deep within each other.");
+    }
+    count(mark, 1);
+  }
+
+  void end() {
+    sizes_[open_.back().anchor] = nodes_ - open_.back().nodes_before;
+    open_.pop_back();
+  }
+
+  void count(const YAML::Mark& mark, std::size_t nodes) {
+    if (documents_ > 1) {
+      throw YamlDefect(mark.line + 1, "only one YAML document is allowed in a file.");
+    }
+    nodes_ += nodes;
+    if (nodes_ > kMostNodes) {
+      throw YamlDefect(mark.line + 1,
+                       "more than " + std::to_string(kMostNodes) +
+                           " values, those of aliases included, are not read.");
+    }
+  }
+
+  std::size_t documents_ = 0;
+  int begin_ = 0;  ///< where the last document began
+  std::size_t nodes_ = 0;
+  std::vector<Collection> open_;
+  std::map<YAML::anchor_t, std::size_t> sizes_;  ///< of collections that have ended, in nodes
+};
+
+}  // namespace
+
+YAML::Node parseSingleDocument(const std::string& text) {
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    Census census;
+    while (parser.HandleNextDocument(census)) {
+    }
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw YamlDefect(error.mark.line + 1, "this is not valid YAML: " + error.msg + ".");
+  }
+}
+
+}  // namespace sac

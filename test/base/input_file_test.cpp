@@ -1,0 +1,91 @@
+#include "spherical_actuator_calibration/base/input_file.hpp"
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "support/error_message.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sac {
+namespace {
+
+std::string refusal(const std::string& path) {
+  return errorMessage<ConfigError>([&] { readInputFile(path); });
+}
+
+TEST(InputFile, GivesEveryByte) {
+  const TemporaryFolder folder;
+  const std::string content("a\0b\n\xff", 5);
+  EXPECT_EQ(readInputFile(folder.write("f", content)), content);
+  const std::string large(300'000, 'x');
+  EXPECT_EQ(readInputFile(folder.write("large", large)), large);
+  EXPECT_EQ(readInputFile(folder.write("empty", "")), "");
+}
+
+// Each of them would never end, or wait for ever.
+TEST(InputFile, NamesWhatIsNoFile) {
+  const TemporaryFolder folder;
+  const std::string fifo = folder.path("fifo");
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_EQ(refusal(fifo), fifo + ": is a FIFO, not a file.");
+  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device, not a file.");
+  EXPECT_EQ(refusal(folder.path("")), folder.path("") + ": is a folder, not a file.");
+  const std::string link = folder.path("link");
+  std::filesystem::create_symlink("/dev/zero", link);
+  EXPECT_EQ(refusal(link), link + ": is a device, not a file.");
+  EXPECT_EQ(unreadableKind(fifo), "a FIFO");
+  EXPECT_EQ(unreadableKind(folder.write("f", "")), "");
+}
+
+TEST(InputFile, ReadsNoMoreThanTheLimit) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("f", "12345");
+  EXPECT_EQ(readInputFile(path, 5), "12345");
+  EXPECT_EQ(errorMessage<ConfigError>([&] { readInputFile(path, 4); }),
+            path + ": is larger than 4 bytes, the most that is read of such a file.");
+}
+
+std::string yamlRefusal(const std::string& text) {
+  return errorMessage<ConfigError>([&] { YamlMap::parse(text, "f.yaml"); });
+}
+
+// Of "," yaml-cpp makes documents for ever.
+TEST(InputFile, AYamlTextThatNeverEndsIsRefused) {
+  for (const char* text : {",", ",\n", "}", "]", "a: 1\n...\n,", "[a]]", "? ,", ": ,", "- ,\n,"}) {
+    const std::string message = yamlRefusal(text);
+    EXPECT_EQ(message.compare(0, 6, "f.yaml"), 0) << text << ": " << message;
+  }
+}
+
+TEST(InputFile, AYamlTextIsOnlySoDeep) {
+  const std::string deep = std::string(40, '[') + std::string(40, ']');
+  EXPECT_EQ(yamlRefusal("a: " + deep), "no exception");
+  const std::string deeper = std::string(100'000, '[');
+  EXPECT_EQ(yamlRefusal("a: " + deeper),
+            "f.yaml:1: maps and lists stand more than 64 deep within each other.");
+}
+
+TEST(InputFile, AYamlTextCountsWhatItsAliasesStandFor) {
+  std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int n = 1; n < 9; ++n) {
+    const std::string before = "*a" + std::to_string(n - 1);
+    bomb += "a" + std::to_string(n) + ": &a" + std::to_string(n) + " [" + before;
+    for (int k = 1; k < 10; ++k) {
+      bomb += ", " + before;
+    }
+    bomb += "]\n";
+  }
+  EXPECT_EQ(yamlRefusal(bomb),
+            "f.yaml:6: more than 1000000 values, those of aliases included, are not read.");
+  EXPECT_EQ(yamlRefusal("a: &a {b: 1}\nc: *a\n"), "no exception");
+  EXPECT_EQ(yamlRefusal("a: &a {b: *a}\n"),
+            "f.yaml:1: an alias stands within what it is an alias of.");
+}
+
+}  // namespace
+}  // namespace sac
