@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -11,21 +9,16 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 
 namespace sac {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string contentOf(const std::string& path) {
-  std::ostringstream content;
-  content << std::ifstream(path, std::ios::binary).rdbuf();
-  return content.str();
-}
-
 /// Writes a file, or finds it there with this content already.
 void writeOnce(const std::string& path, const std::string& content) {
-  if (!fs::exists(path) || contentOf(path) != content) {
+  if (!fs::exists(path) || readInputFile(path) != content) {
     writeFileAtomically(path, content, OverwritePolicy::kRefuse);
   }
 }
@@ -38,7 +31,9 @@ bool anyIdentified(const CalibrationState& state) {
 }  // namespace
 
 bool CalibrationFiles::isSaved(std::uint32_t revision) const {
-  return fs::exists(directory_.description(revision));
+  // A folder that cannot be looked into holds nothing that is saved.
+  std::error_code error;
+  return fs::exists(directory_.description(revision), error);
 }
 
 std::string CalibrationFiles::save(const LiveSession& session,

@@ -32,6 +32,16 @@ std::vector<CycleReport> withUnits(std::vector<CycleReport> reports, const Param
   return reports;
 }
 
+/// Whether two samples are the same measurements, whatever their ids.
+bool isSameCapture(const Sample& a, const Sample& b) {
+  return a.stamp == b.stamp && a.duration == b.duration && a.measurements == b.measurements &&
+         a.validation == b.validation && a.joint_position == b.joint_position &&
+         a.has_orientation == b.has_orientation && a.has_torque == b.has_torque &&
+         (!a.has_orientation || a.R_stator_rotor == b.R_stator_rotor) &&
+         (!a.has_torque || a.torque == b.torque) && a.current.size() == b.current.size() &&
+         a.current == b.current;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(const CalibratedDescription& start,
@@ -54,6 +64,12 @@ Actuator LiveSession::actuator() const {
 
 Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   Sample stored = session_.prepared(sample);
+  // Asked again after an answer that was lost or failed: it is stored once.
+  for (const Sample& known : session_.samples()) {
+    if (isSameCapture(known, stored)) {
+      return known;
+    }
+  }
   stored.id = database_.nextSampleId();
   database_.addSample(stored, date);
   session_.add(stored);

@@ -59,4 +59,34 @@ Eigen::MatrixXd matrixOf(const std::string& blob, Eigen::Index rows, Eigen::Inde
   return matrix;
 }
 
+std::string symmetricBlobOf(const Eigen::MatrixXd& matrix) {
+  std::string whole = blobOf(matrix);
+  if (whole != blobOf(matrix.transpose())) {
+    return whole;
+  }
+  std::string blob;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      append(blob, matrix(row, column));
+    }
+  }
+  return blob;
+}
+
+Eigen::MatrixXd symmetricOf(const std::string& blob, Eigen::Index n) {
+  if (blob.size() != static_cast<std::size_t>(n * (n + 1) / 2) * kBytes) {
+    return matrixOf(blob, n, n);
+  }
+  Eigen::MatrixXd matrix(n, n);
+  std::size_t offset = 0;
+  for (Eigen::Index row = 0; row < n; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      matrix(row, column) = numberAt(blob, offset);
+      matrix(column, row) = matrix(row, column);
+      offset += kBytes;
+    }
+  }
+  return matrix;
+}
+
 }  // namespace sac

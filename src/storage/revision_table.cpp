@@ -38,7 +38,7 @@ CalibrationState readState(RowReader& row) {
   const auto size = static_cast<Eigen::Index>(identified.size());
   CalibrationState state;
   state.belief.x = matrixOf(coordinates, size, 1);
-  state.belief.covariance = matrixOf(covariance, size, size);
+  state.belief.covariance = symmetricOf(covariance, size);
   state.identified.reserve(identified.size());
   for (const char byte : identified) {
     state.identified.push_back(byte != '\0');
@@ -46,19 +46,36 @@ CalibrationState readState(RowReader& row) {
   return state;
 }
 
+/// The revision whose row holds this covariance already, among those that another one of the same
+/// is likely to follow: the first one (reset), the predecessor (restore), the newest.
+std::optional<std::uint32_t> holderOf(const SQLite::Database& database,
+                                      const std::string& covariance,
+                                      const Lineage& lineage) {
+  RowReader row(database,
+                "SELECT number FROM revisions WHERE covariance = ?1 AND number IN ("
+                "SELECT coalesce(covariance_of, number) FROM revisions WHERE number = 0 "
+                "OR number = ?2 OR number = (SELECT max(number) FROM revisions)) LIMIT 1");
+  row.bindBytes(1, covariance);
+  row.bind(2, lineage.predecessor.value_or(0));
+  return row.next() ? std::optional(row.count()) : std::nullopt;
+}
+
 }  // namespace
 
 void insert(const SQLite::Database& database, const Revision& revision, const Lineage& lineage) {
   RowWriter row(database,
                 "INSERT INTO revisions (number, date, software, source, origin, refined, "
-                "predecessor, cycle, coordinates, covariance, identified) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                "predecessor, cycle, coordinates, covariance, identified, covariance_of) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.put(revision.number).put(revision.date).put(revision.software).put(revision.source);
   row.put(revision.origin).put(revision.refined).put(lineage.predecessor).put(lineage.cycle);
   const std::string coordinates = blobOf(revision.state.belief.x);
-  const std::string covariance = blobOf(revision.state.belief.covariance);
+  const std::string covariance = symmetricBlobOf(revision.state.belief.covariance);
+  const std::optional<std::uint32_t> holder = holderOf(database, covariance, lineage);
   const std::string identified = bytesOf(revision.state.identified);
-  row.putBytes(coordinates).putBytes(covariance).putBytes(identified).write();
+  const std::string nothing;
+  row.putBytes(coordinates).putBytes(holder ? nothing : covariance).putBytes(identified);
+  row.put(holder).write();
 }
 
 std::uint32_t newestNumber(const SQLite::Database& database) {
@@ -71,8 +88,10 @@ std::uint32_t newestNumber(const SQLite::Database& database) {
 
 std::optional<Revision> find(const SQLite::Database& database, std::uint32_t number) {
   RowReader row(database,
-                "SELECT number, date, software, source, origin, refined, coordinates, covariance, "
-                "identified FROM revisions WHERE number = ?",
+                "SELECT r.number, r.date, r.software, r.source, r.origin, r.refined, "
+                "r.coordinates, coalesce(holder.covariance, r.covariance), r.identified "
+                "FROM revisions AS r LEFT JOIN revisions AS holder "
+                "ON holder.number = r.covariance_of WHERE r.number = ?",
                 number);
   if (!row.next()) {
     return std::nullopt;
@@ -100,7 +119,7 @@ std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32
                 "WITH RECURSIVE chain (number, predecessor, cycle) AS ("
                 "SELECT number, predecessor, cycle FROM revisions WHERE number = ? UNION ALL "
                 "SELECT r.number, r.predecessor, r.cycle FROM revisions AS r "
-                "JOIN chain ON r.number = chain.predecessor) "
+                "JOIN chain ON r.number = chain.predecessor AND r.number < chain.number) "
                 "SELECT cycle FROM chain WHERE cycle IS NOT NULL ORDER BY number",
                 number);
   std::vector<std::int64_t> cycles;

@@ -69,6 +69,12 @@ class RowReader {
     statement_.bind(1, parameter);
   }
 
+  /// Value of a parameter, the first of which is 1. Before next().
+  void bind(int parameter, std::int64_t value) { statement_.bind(parameter, value); }
+  void bindBytes(int parameter, const std::string& bytes) {
+    statement_.bind(parameter, bytes.data(), static_cast<int>(bytes.size()));
+  }
+
   /// Goes to the next row; false when there is none.
   bool next() {
     column_ = 0;

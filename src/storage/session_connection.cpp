@@ -5,6 +5,7 @@
 #include <SQLiteCpp/Transaction.h>
 
 #include "session_schema.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/folder_sync.hpp"
 
 namespace sac {
@@ -24,6 +25,14 @@ SQLite::Database openFile(const std::string& path) {
   }
 }
 
+// SQLite goes on writing to files that have lost their names, or that another disk hides.
+[[noreturn]] void throwMoved(const std::string& path, const std::string& failure) {
+  throw DataError(path + ": " + failure +
+                  ", because the file was removed or replaced, or its folder was, or another disk "
+                  "is mounted there; stop the node, put the folder back as it was, and start the "
+                  "node again.");
+}
+
 }  // namespace
 
 SessionConnection::SessionConnection(const std::string& path,
@@ -36,11 +45,17 @@ SessionConnection::SessionConnection(const std::string& path,
     database_.exec("PRAGMA journal_mode = WAL");
     database_.exec("PRAGMA synchronous = FULL");
   });
-  if (!is_made) {
+  if (is_made && isEarlierSchema(database_)) {
+    write("the session database was not brought to the present format", upgradeSessionSchema);
+  } else if (!is_made) {
     write("the session database was not made", [&fill](SQLite::Database& database) {
       createSessionSchema(database);
       fill(database);
     });
+  }
+  files_ = filesInPlace();
+  if (!(files_->front() == lock_.file())) {
+    throwMoved(path_, kOpenFailure);
   }
   // The name of the file; SQLite sees to those of its journals only. A process that ended early may
   // have left this undone.
@@ -52,8 +67,23 @@ void SessionConnection::write(const std::string& failure,
   read(failure, [&] {
     SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
     action(database_);
+    requireInPlace(failure);
     transaction.commit();
   });
+  // Moved at this very moment: nobody knows whether it will be read back. Nothing more is stored
+  // until the node starts again and reads what is there, so that a repetition is not stored twice.
+  is_lost_ = files_ && !(filesInPlace() == *files_);
+  requireInPlace(failure);
+}
+
+std::array<FileIdentity, 3> SessionConnection::filesInPlace() const {
+  return {identityOf(path_), identityOf(path_ + "-wal"), identityOf(path_ + "-shm")};
+}
+
+void SessionConnection::requireInPlace(const std::string& failure) const {
+  if (is_lost_ || (files_ && !(filesInPlace() == *files_))) {
+    throwMoved(path_, failure);
+  }
 }
 
 }  // namespace sac

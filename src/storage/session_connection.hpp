@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <SQLiteCpp/Database.h>
@@ -32,14 +34,20 @@ class SessionConnection {
     }
   }
 
-  /// Runs `action` in one transaction, which is on the disk when this returns. When it throws,
-  /// nothing is stored.
+  /// Runs `action` in one transaction, which is on the disk when this returns, in the file that
+  /// stands at path(). When it throws, nothing is stored.
   void write(const std::string& failure, const std::function<void(SQLite::Database&)>& action);
 
  private:
+  /// The database and the journals that belong to it.
+  std::array<FileIdentity, 3> filesInPlace() const;
+  void requireInPlace(const std::string& failure) const;
+
   std::string path_;
   ProcessLock lock_;
   SQLite::Database database_;
+  std::optional<std::array<FileIdentity, 3>> files_;  ///< that SQLite writes, once they are made
+  bool is_lost_ = false;  ///< a transaction may be where nobody reads it
 };
 
 }  // namespace sac

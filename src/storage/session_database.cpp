@@ -171,7 +171,11 @@ Revision SessionDatabase::addRevision(const CalibrationState& state,
 Revision SessionDatabase::current() const {
   return tables_->connection.read(kNotRead, [this] {
     const SQLite::Database& database = tables_->database();
-    return *revision_table::find(database, revision_table::newestNumber(database));
+    const auto newest = revision_table::find(database, revision_table::newestNumber(database));
+    if (!newest) {
+      throwDamaged(tables_->connection.path(), "the newest parameters have no number");
+    }
+    return *newest;
   });
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 1;
+constexpr std::int64_t kSchemaVersion = 2;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 constexpr char kTables[] = R"sql(
@@ -110,7 +110,8 @@ CREATE TABLE revisions (
   cycle INTEGER UNIQUE REFERENCES cycles (id),
   coordinates BLOB NOT NULL,
   covariance BLOB NOT NULL,
-  identified BLOB NOT NULL
+  identified BLOB NOT NULL,
+  covariance_of INTEGER REFERENCES revisions (number)
 ) STRICT;
 )sql";
 
@@ -142,6 +143,16 @@ bool hasSessionSchema(const SQLite::Database& database, const std::string& path)
     throwDamaged(path, finding);
   }
   return true;
+}
+
+bool isEarlierSchema(const SQLite::Database& database) {
+  return pragma(database, "PRAGMA user_version") < kSchemaVersion;
+}
+
+void upgradeSessionSchema(SQLite::Database& database) {
+  database.exec(
+      "ALTER TABLE revisions ADD COLUMN covariance_of INTEGER REFERENCES revisions (number)");
+  database.exec("PRAGMA user_version = 2");
 }
 
 void createSessionSchema(SQLite::Database& database) {

@@ -64,6 +64,20 @@ TEST_F(LiveSessionTest, GoesOnWhereItEnded) {
   EXPECT_TRUE(session.progress().poles_done);
 }
 
+// A retry after an answer that was lost: another dwell of the same pose differs in its stamp.
+TEST_F(LiveSessionTest, StoresTheSameCaptureOnce) {
+  LiveSession session = open();
+  EXPECT_EQ(session.addSample(samples()[0], kDate).id, 1U);
+  EXPECT_EQ(session.addSample(samples()[0], kDate).id, 1U);
+  Sample again = samples()[0];
+  again.stamp += 1;
+  EXPECT_EQ(session.addSample(again, kDate).id, 2U);
+  EXPECT_EQ(session.database().samplesInUse().size(), 2U);
+  // Taken out of use, it may be captured again.
+  EXPECT_TRUE(session.removeSample(1, kDate));
+  EXPECT_EQ(session.addSample(samples()[0], kDate).id, 3U);
+}
+
 TEST_F(LiveSessionTest, NumbersSamplesAnew) {
   LiveSession session = open();
   EXPECT_EQ(session.addSample(samples()[0], kDate).id, 1U);

@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
 #include <random>
 #include <set>
 #include <string>
@@ -9,12 +13,15 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 #include "storage/database_examples.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace sac {
@@ -187,6 +194,143 @@ TEST(KilledWriter, LosesNothingThatItAcknowledged) {
   EXPECT_GT(acknowledged.samples.size(), 100U);
   EXPECT_GT(acknowledged.removed.size(), 20U);
   EXPECT_GT(acknowledged.revision, 20U);
+}
+
+/// Stores samples as an operator does who repeats what was refused, until it is killed. Each is
+/// acknowledged through the pipe; one that was refused and stored all the same is told as removed.
+[[noreturn]] void repeatForever(const std::string& path, int pipe) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const auto tell = [pipe](Event event, std::uint32_t number) {
+    const Message message = {event, number};
+    if (::write(pipe, &message, sizeof message) != sizeof message) {
+      ::_exit(1);
+    }
+  };
+  try {
+    SessionDatabase database(path, jointIdentity());
+    tell(Event::kOpened, 0);
+    for (std::uint32_t id = database.nextSampleId();; ++id) {
+      const Sample sample = database_examples::sample(id, kCoils);
+      for (bool stored = false; !stored;) {
+        try {
+          database.addSample(sample, kDate);
+          stored = true;
+        } catch (const DataError& error) {
+          if (std::string(error.what()).find("contradict what is stored") != std::string::npos) {
+            tell(Event::kRemoved, id);
+            stored = true;
+          }
+        }
+      }
+      tell(Event::kSample, id);
+    }
+  } catch (const std::exception&) {  // the disk was full when it was opened
+  }
+  for (;;) {
+    ::pause();
+  }
+}
+
+/// A writer, and what happens to its folder and disk meanwhile.
+class Calamities {
+ public:
+  explicit Calamities(std::uint64_t seed) : random_(seed) {}
+
+  /// Lets a writer work through calamities, kills it, and takes what it has acknowledged.
+  void run(const std::string& folder, Acknowledged& acknowledged) {
+    int ends[2] = {};
+    ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+    const pid_t writer = ::fork();
+    ASSERT_GE(writer, 0);
+    if (writer == 0) {
+      ::close(ends[0]);
+      repeatForever(folder + "/session.db", ends[1]);
+    }
+    ::close(ends[1]);
+    std::atomic<std::uint64_t> received{0};
+    std::thread reader([&] {
+      Message message;
+      while (::read(ends[0], &message, sizeof message) == sizeof message) {
+        acknowledged.take(message);
+        ++received;
+      }
+    });
+    // Nothing is wrong yet: it opens the database and stores some, however busy the computer is.
+    const std::uint64_t wanted = 1 + random_() % 5;
+    while (received < wanted) {
+      wait();
+    }
+    for (std::uint64_t n = 1 + random_() % 3; n > 0; --n) {
+      happen(folder, writer);
+    }
+    const bool away = random_() % 3 == 0;
+    if (away) {
+      std::filesystem::rename(folder, folder + ".away");
+    }
+    wait();
+    ::kill(writer, SIGKILL);
+    reader.join();
+    ::close(ends[0]);
+    int status = 0;
+    ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "The writer ended by itself.";
+    if (away) {
+      std::filesystem::rename(folder + ".away", folder);
+    }
+  }
+
+ private:
+  void wait() { std::this_thread::sleep_for(std::chrono::microseconds(random_() % 4000)); }
+
+  void happen(const std::string& folder, pid_t writer) {
+    wait();
+    switch (random_() % 3) {
+      case 0: {  // hidden by an empty folder, as by another disk
+        std::filesystem::rename(folder, folder + ".away");
+        std::filesystem::create_directory(folder);
+        wait();
+        std::filesystem::remove_all(folder);
+        std::filesystem::rename(folder + ".away", folder);
+        break;
+      }
+      case 1: {  // no space left
+        const rlimit full = {random_() % 60000, RLIM_INFINITY};
+        const rlimit free = {RLIM_INFINITY, RLIM_INFINITY};
+        ::prlimit(writer, RLIMIT_FSIZE, &full, nullptr);
+        wait();
+        ::prlimit(writer, RLIMIT_FSIZE, &free, nullptr);
+        break;
+      }
+      default:
+        break;
+    }
+  }
+
+  std::mt19937_64 random_;
+};
+
+/// Another number of kills than is quick: STORAGE_KILLS=1000.
+int killsAskedFor() {
+  constexpr int kKills = 60;
+  const char* const asked = std::getenv("STORAGE_KILLS");  // NOLINT(concurrency-mt-unsafe)
+  return asked == nullptr ? kKills : std::atoi(asked);     // NOLINT(cert-err34-c)
+}
+
+TEST(KilledWriter, LosesNothingWhileFolderAndDiskComeAndGo) {
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path("unit");
+  std::filesystem::create_directory(folder);
+  Calamities calamities(20240601);
+  Acknowledged acknowledged;
+  for (int kill = 0; kill < killsAskedFor() && !HasFailure(); ++kill) {
+    calamities.run(folder, acknowledged);
+    if (!HasFailure()) {
+      expectNothingLost(folder + "/session.db", acknowledged);
+      expectNothingTorn(folder + "/session.db");
+    }
+    EXPECT_TRUE(acknowledged.removed.empty()) << "refused, and stored all the same";
+  }
+  EXPECT_GT(acknowledged.samples.size(), 20U);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
 
 TEST_F(OpeningTest, ANewerFormatIsRefused) {
   make();
-  database_examples::change(path(), "PRAGMA user_version = 2");
+  database_examples::change(path(), "PRAGMA user_version = 3");
   expectRefusal("a newer version of this package made this session database");
 }
 
@@ -169,7 +169,7 @@ TEST_F(OpeningTest, AFolderThatTakesNoFilesIsRefused) {
   // Not even root makes files here.
   const std::string message = errorMessage<DataError>(
       [&] { const SessionDatabase database("/proc/self/session.db", identity()); });
-  EXPECT_NE(message.find("/proc/self/session.db.lock: the lock file cannot be made"),
+  EXPECT_NE(message.find("/proc/self/session.db: the session database cannot be opened"),
             std::string::npos)
       << message;
 }

@@ -32,8 +32,9 @@ class LiveSession {
   /// Actuator with the parameters in force.
   Actuator actuator() const;
 
-  /// Stores a sample under a new id and takes it. Returns it as stored. Throws DataError when it
-  /// cannot be used or stored.
+  /// Stores a sample under a new id and takes it. Returns it as stored; one that is in use already,
+  /// with the same stamp and values, is not stored again. Throws DataError when it cannot be used
+  /// or stored.
   Sample addSample(const Sample& sample, const std::string& date);
   /// Takes a sample out of use; it stays in the database, marked. False when no sample in use has
   /// this id.

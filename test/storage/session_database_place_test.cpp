@@ -1,0 +1,190 @@
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/storage/session_database.hpp"
+#include "storage/database_examples.hpp"
+#include "support/error_message.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <unistd.h>
+
+namespace sac {
+namespace {
+
+namespace fs = std::filesystem;
+using database_examples::identity;
+using database_examples::jointIdentity;
+using database_examples::kDate;
+
+constexpr Eigen::Index kCoils = 24;
+
+/// A session in a folder that can be taken away.
+class PlaceTest : public ::testing::Test {
+ protected:
+  PlaceTest() { fs::create_directory(directory()); }
+
+  std::string directory() const { return folder_.path("unit"); }
+  std::string path() const { return directory() + "/session.db"; }
+
+  static std::string add(SessionDatabase& database, std::uint32_t id) {
+    return errorMessage<DataError>(
+        [&] { database.addSample(database_examples::sample(id, kCoils), kDate); });
+  }
+  static void expectRefusal(SessionDatabase& database) {
+    const std::string message = add(database, 7);
+    EXPECT_NE(message.find("sample 7 was not stored, because the file was removed or replaced"),
+              std::string::npos)
+        << message;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PlaceTest, NothingIsAcknowledgedAfterTheFolderIsGone) {
+  SessionDatabase database(path(), jointIdentity());
+  fs::remove_all(directory());
+  expectRefusal(database);
+  fs::create_directory(directory());
+  expectRefusal(database);
+  EXPECT_THROW(database.removeSample(1, kDate), DataError);
+  EXPECT_THROW(database.clearSamples(kDate), DataError);
+}
+
+TEST_F(PlaceTest, WhatWasRefusedMeanwhileIsNotThereAfterwards) {
+  {
+    SessionDatabase database(path(), jointIdentity());
+    EXPECT_EQ(add(database, 1), "no exception");
+    // As when another disk is mounted there, and unmounted again.
+    fs::rename(directory(), folder_.path("away"));
+    fs::create_directory(directory());
+    { SessionDatabase other(path(), jointIdentity()); }
+    expectRefusal(database);
+    fs::remove_all(directory());
+    fs::rename(folder_.path("away"), directory());
+    EXPECT_EQ(add(database, 2), "no exception");
+  }
+  SessionDatabase database(path(), jointIdentity());
+  ASSERT_EQ(database.samplesInUse().size(), 2U);
+  EXPECT_EQ(database.samplesInUse()[1].id, 2U);
+}
+
+TEST_F(PlaceTest, AJournalThatWasRemovedIsNoticed) {
+  SessionDatabase database(path(), jointIdentity());
+  EXPECT_EQ(add(database, 1), "no exception");
+  fs::remove(path() + "-wal");
+  expectRefusal(database);
+}
+
+/// Whether a process that knows nothing of this one can open the session: it waits for a byte.
+class Stranger {
+ public:
+  explicit Stranger(const std::string& path) {
+    if (::pipe(pipe_) != 0 || (process_ = ::fork()) < 0) {
+      throw std::runtime_error("No process could be made.");
+    }
+    if (process_ == 0) {
+      char byte = 0;
+      const bool told = ::read(pipe_[0], &byte, 1) == 1;
+      const std::string message =
+          errorMessage<DataError>([&] { const SessionDatabase mine(path, jointIdentity()); });
+      const bool refused =
+          message.find("another calibration node works with this session") != std::string::npos;
+      ::_exit(told && refused ? 1 : 0);
+    }
+  }
+  bool isRefused() {
+    int status = 0;
+    const bool done = ::write(pipe_[1], "x", 1) == 1 && ::waitpid(process_, &status, 0) == process_;
+    return done && WIFEXITED(status) && WEXITSTATUS(status) == 1;
+  }
+
+ private:
+  int pipe_[2] = {};
+  pid_t process_ = -1;
+};
+
+TEST_F(PlaceTest, TheLockCannotBeRemoved) {
+  Stranger early(path());
+  Stranger late(path());
+  {
+    const SessionDatabase database(path(), jointIdentity());
+    // Nothing but the database and its journals can be removed.
+    for (const auto& file : fs::directory_iterator(directory())) {
+      if (file.path().string().compare(0, path().size(), path()) != 0 ||
+          file.path().extension() == ".lock") {
+        fs::remove(file.path());
+      }
+    }
+    EXPECT_TRUE(early.isRefused());
+  }
+  EXPECT_FALSE(late.isRefused());
+}
+
+TEST_F(PlaceTest, TheLockHoldsByAnotherName) {
+  fs::create_directory(folder_.path("second"));
+  const SessionDatabase database(path(), jointIdentity());
+  fs::create_hard_link(path(), folder_.path("second/session.db"));
+  const std::string message = errorMessage<DataError>(
+      [&] { const SessionDatabase other(folder_.path("second/session.db"), jointIdentity()); });
+  EXPECT_NE(message.find("another calibration node"), std::string::npos) << message;
+}
+
+TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
+  constexpr Eigen::Index kParameters = 73;
+  constexpr unsigned kTimes = 100;
+  CalibrationState state = database_examples::state(1, kParameters);
+  state.belief.covariance = (state.belief.covariance + state.belief.covariance.transpose()).eval();
+  const auto size = [&] { return fs::file_size(path()); };
+  CalibrationState start;
+  {
+    SessionDatabase database(path(), identity());
+    start = database.current().state;
+    database.addCycle(database_examples::report(1, 0, kParameters), state, false, kDate);
+  }
+  const std::uintmax_t before = size();
+  {
+    SessionDatabase database(path(), identity());
+    for (unsigned n = 0; n < kTimes; ++n) {
+      database.addRevision(start, "nominal", "reset", false, kDate);
+      database.addRevision(state, "restored", "revision 1", false, kDate, 1);
+    }
+  }
+  EXPECT_LT(size() - before, 2 * kTimes * 2000U);  // a covariance alone has 43 kB
+  SessionDatabase database(path(), identity());
+  EXPECT_TRUE(database_examples::isSame(database.revision(2 * kTimes)->state, start));
+  EXPECT_TRUE(database_examples::isSame(database.current().state, state));
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
+  constexpr Eigen::Index kParameters = 73;
+  const CalibrationState state = database_examples::state(1, kParameters);
+  {
+    SessionDatabase database(path(), identity());
+    database.addCycle(database_examples::report(1, 0, kParameters), state, false, kDate);
+  }
+  // The only column that the first format did not have was the last one.
+  database_examples::change(
+      path(),
+      "PRAGMA writable_schema = ON;"
+      "UPDATE sqlite_schema SET sql = substr(sql, 1, instr(sql, ',\n  covariance_of') - 1) || "
+      "'\n) STRICT' WHERE name = 'revisions';"
+      "PRAGMA writable_schema = OFF; PRAGMA user_version = 1");
+  ASSERT_EQ(database_examples::query(path(), "SELECT count(*) FROM pragma_table_info('revisions')"),
+            "11");
+  {
+    SessionDatabase database(path(), identity());
+    EXPECT_TRUE(database_examples::isSame(database.current().state, state));
+    database.addRevision(state, "restored", "revision 1", false, kDate, 1);
+  }
+  EXPECT_TRUE(
+      database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "2");
+}
+
+}  // namespace
+}  // namespace sac
