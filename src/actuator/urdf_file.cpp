@@ -9,6 +9,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
 
@@ -23,10 +24,8 @@ constexpr double kAngleTolerance = 1e-6;
 /// One file, read as XML (to edit it) and by the reference reader (to understand it).
 class RobotDescription {
  public:
-  explicit RobotDescription(const std::string& path) : path_(path) {
-    require(xml_.LoadFile(path.c_str()));
-    understand(urdf::parseURDFFile(path));
-  }
+  explicit RobotDescription(const std::string& path)
+      : RobotDescription(readInputFile(path), path) {}
 
   /// From its text; `name` stands for the file in messages.
   RobotDescription(const std::string& text, const std::string& name) : path_(name) {

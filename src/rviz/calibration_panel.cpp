@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/Restore.h"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -213,23 +214,29 @@ void CalibrationPanel::listen() {
   feed<msg::CalibrationReport>("report");
   feed<msg::ActuatorParameters>("parameters");
   constexpr std::uint32_t kQueueLength = 100;
-  subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
+  subscribers_.push_back(subscribeChecked<diagnostic_msgs::DiagnosticArray>(
+      node_,
       "/diagnostics",
       kQueueLength,
       [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
         model_.receive(*message, ros::WallTime::now());
-      }));
+      },
+      tellRefusal("/diagnostics")));
 }
 
 // rviz delivers messages in the thread of the windows.
 template <typename Message>
 void CalibrationPanel::feed(const std::string& topic) {
   constexpr std::uint32_t kQueueLength = 1000;
-  subscribers_.push_back(node_.subscribe<Message>(
-      topic, kQueueLength, [this](const typename Message::ConstPtr& message) {
+  subscribers_.push_back(subscribeChecked<Message>(
+      node_,
+      topic,
+      kQueueLength,
+      [this](const typename Message::ConstPtr& message) {
         model_.receive(*message);
         changed_ = true;
-      }));
+      },
+      tellRefusal(topic)));
 }
 
 void CalibrationPanel::refresh() {

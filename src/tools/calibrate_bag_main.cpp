@@ -74,8 +74,6 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
   files.covariance = options.covariance_path.value_or("");
   for (const std::string& path : {files.description,
                                   files.urdf,
-                                  files.report,
-                                  files.report_page,
                                   files.covariance,
                                   options.corrected_path.value_or("")}) {
     requireNewFile(path, options.overwrite);
@@ -88,6 +86,8 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
                       ".");
     }
   }
+  requireNewFile(files.report, options.overwrite);
+  requireNewFile(files.report_page, options.overwrite);
   return files;
 }
 

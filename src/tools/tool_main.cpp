@@ -4,20 +4,29 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <system_error>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 
 #include <unistd.h>
 
 namespace sac {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
 
 int runTool(const char* name, const std::function<int()>& body) {
+  // Names and sentences from files and recordings come to the terminal.
+  const PrintableOutput filter(std::cout);
   try {
     return body();
   } catch (const std::exception& error) {
     std::cout.flush();
     std::fflush(stdout);
-    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    std::fprintf(stderr, "%s: %s\n", name, printable(error.what()).c_str());
     return kToolUnusable;
   }
 }
@@ -32,8 +41,23 @@ std::function<void(double)> terminalProgress(const std::string& what) {
 }
 
 void requireNewFile(const std::string& path, OverwritePolicy policy) {
-  if (policy == OverwritePolicy::kRefuse && std::filesystem::exists(path)) {
+  if (path.empty()) {
+    return;
+  }
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && policy == OverwritePolicy::kRefuse) {
     throw DataError(path + ": the file exists already; choose another name or give --force.");
+  }
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw DataError(path + ": this is not a regular file; choose another name.");
+  }
+  const fs::path folder = fs::absolute(path, error).parent_path();
+  if (error || ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw DataError(path + ": cannot be written: " +
+                    (fs::is_directory(folder, error) ? "its folder takes no files"
+                                                     : "there is no folder " + folder.string()) +
+                    ".");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 
+#include <exception>
 #include <filesystem>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
@@ -92,11 +94,11 @@ void CalibrationNode::answer(Response& response, Action action) {
   try {
     response.message = action();
     response.success = 1;
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     response.success = 0;
-    response.message = error.what();
-    last_error_ = error.what();
-    ROS_ERROR_STREAM(error.what());
+    response.message = printable(error.what());
+    last_error_ = response.message;
+    ROS_ERROR_STREAM(last_error_);
   }
 }
 
@@ -240,9 +242,9 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     }
     problem.held = &held;
     response = planToRos(sac::planPoses(problem, plan_options));
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     response.success = 0;
-    response.message = error.what();
+    response.message = printable(error.what());
   }
   return true;
 }
@@ -301,14 +303,19 @@ RobotDescription CalibrationNode::robotDescription() const {
 }
 
 void CalibrationNode::takeAutomaticSamples() {
-  const std::vector<Sample> samples = intake_.takeSamples();
+  std::vector<Sample> samples;
+  try {
+    samples = intake_.takeSamples();
+  } catch (const std::exception& error) {
+    ROS_ERROR_STREAM("Dwells cannot be evaluated: " << error.what());
+  }
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (auto_capture_) {
     keep(samples);
   }
   try {
     storeWaitingSamples();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     last_error_ = error.what();
     constexpr double kSilence = 10.0;  // [s]
     ROS_ERROR_STREAM_THROTTLE(kSilence,
@@ -321,7 +328,7 @@ void CalibrationNode::keep(const std::vector<Sample>& samples) {
     try {
       session_.calibration().prepared(sample);
       waiting_.push_back(sample);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       last_error_ = error.what();
       ROS_ERROR_STREAM("A dwell gave no sample: " << error.what());
     }
@@ -343,10 +350,16 @@ Sample CalibrationNode::store(const Sample& sample) {
   return stored;
 }
 
+// What it tells of is stored by then: that it cannot be told makes no service fail.
 void CalibrationNode::publishStatus() {
-  SessionProgress progress = session_.progress();
-  progress.saved = files_.isSaved(session_.revision().number);
-  topics_.publishStatus(session_, progress, gradeCalibration(session_.calibration()));
+  try {
+    SessionProgress progress = session_.progress();
+    progress.saved = files_.isSaved(session_.revision().number);
+    topics_.publishStatus(session_, progress, gradeCalibration(session_.calibration()));
+  } catch (const std::exception& error) {
+    last_error_ = error.what();
+    ROS_ERROR_STREAM("The status cannot be published: " << error.what());
+  }
 }
 
 void CalibrationNode::diagnose(DiagnosticStatus& status) {

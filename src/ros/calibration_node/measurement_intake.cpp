@@ -6,6 +6,7 @@
 #include <ros/init.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
@@ -54,6 +55,7 @@ MeasurementIntake::~MeasurementIntake() {
 // The topics have the names of their streams.
 template <typename Message>
 void MeasurementIntake::subscribe(StreamMonitor& monitor) {
+  const auto refuse = [&monitor](const std::string& reason) { monitor.refuse(reason); };
   const auto receive = [this, &monitor](const typename Message::ConstPtr& message) {
     ++received_;
     if (const auto* measurement = reader_.read(*message)) {
@@ -62,11 +64,8 @@ void MeasurementIntake::subscribe(StreamMonitor& monitor) {
       monitor.refuse(reader_.refusal());
     }
   };
-  subscribers_.push_back(node_.subscribe<Message>(monitor.getName(),
-                                                  kQueueLength,
-                                                  receive,
-                                                  ros::VoidConstPtr(),
-                                                  ros::TransportHints().tcpNoDelay()));
+  subscribers_.push_back(subscribeChecked<Message>(
+      node_, monitor.getName(), kQueueLength, receive, refuse, ros::TransportHints().tcpNoDelay()));
 }
 
 std::vector<Sample> MeasurementIntake::takeSamples() {

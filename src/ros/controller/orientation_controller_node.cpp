@@ -8,7 +8,9 @@
 #include <ros/init.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
@@ -66,15 +68,28 @@ OrientationControllerNode::OrientationControllerNode(
   ros::NodeHandle private_handle = private_node;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
-  subscribers_.push_back(
-      handle.subscribe("parameters", 1, &OrientationControllerNode::receiveParameters, this));
-  subscribers_.push_back(handle.subscribe(
-      "joint_states", kQueueLength, &OrientationControllerNode::receiveJoints, this, at_once));
-  subscribers_.push_back(handle.subscribe("orientation_target",
-                                          kQueueLength,
-                                          &OrientationControllerNode::receiveTarget,
-                                          this,
-                                          at_once));
+  subscribers_.push_back(subscribeChecked<msg::ActuatorParameters>(
+      handle,
+      "parameters",
+      1,
+      [this](const msg::ActuatorParameters::ConstPtr& message) { receiveParameters(*message); },
+      tellRefusal("parameters")));
+  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+      handle,
+      "joint_states",
+      kQueueLength,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
+      tellRefusal("joint_states"),
+      at_once));
+  subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
+      handle,
+      "orientation_target",
+      kQueueLength,
+      [this](const geometry_msgs::QuaternionStamped::ConstPtr& message) {
+        receiveTarget(*message);
+      },
+      tellRefusal("orientation_target"),
+      at_once));
   service_ = private_handle.advertiseService("enable", &OrientationControllerNode::enable, this);
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
@@ -92,14 +107,15 @@ void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters&
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::optional<Actuator> parameters = actuatorFromRos(message, design_);
   if (!parameters) {
-    ROS_ERROR_STREAM("The parameters of " << message.actuator << " do not fit the description of "
-                                          << design_.name << "; those before stay in force.");
+    ROS_ERROR_STREAM("The parameters of " << printable(message.actuator)
+                                          << " do not fit the description of " << design_.name
+                                          << "; those before stay in force.");
     return;
   }
   try {
     controller_.setParameters(*parameters);
-    ROS_INFO_STREAM("Revision " << message.revision << " of the parameters (" << message.source
-                                << ") is in force.");
+    ROS_INFO_STREAM("Revision " << message.revision << " of the parameters ("
+                                << printable(message.source) << ") is in force.");
   } catch (const Error& error) {
     ROS_ERROR_STREAM("The parameters are refused: " << error.what());
   }

@@ -1,5 +1,9 @@
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 
+#include <cstddef>
+
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+
 namespace sac {
 
 bool isFrame(const std::string& frame_id, const std::string& frame) {
@@ -8,7 +12,10 @@ bool isFrame(const std::string& frame_id, const std::string& frame) {
 }
 
 std::string otherFrame(const std::string& frame_id, const std::string& frame) {
-  return "is in the frame \"" + frame_id + "\", not in \"" + frame + "\"";
+  // The name comes from another node: it may be anything, and of any length.
+  constexpr std::size_t kShown = 200;
+  return "is in the frame \"" + printable(frame_id.substr(0, kShown)) + "\", not in \"" + frame +
+         "\"";
 }
 
 }  // namespace sac

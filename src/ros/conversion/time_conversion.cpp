@@ -26,4 +26,15 @@ ros::Time stampToRos(Stamp stamp) {
   return {static_cast<std::uint32_t>(seconds), static_cast<std::uint32_t>(stamp % kTicksPerSecond)};
 }
 
+double secondsBetween(const ros::Time& from, const ros::Time& to) {
+  // Both are less than 2^32 s, which 64 bits of ticks hold twice.
+  return static_cast<double>(stampFromRos(to) - stampFromRos(from)) /
+         static_cast<double>(kTicksPerSecond);
+}
+
+ros::Time middleOf(const ros::Time& begin, const ros::Time& end) {
+  const Stamp first = stampFromRos(begin);
+  return stampToRos(first + (stampFromRos(end) - first) / 2);
+}
+
 }  // namespace sac

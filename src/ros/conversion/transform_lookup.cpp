@@ -2,8 +2,10 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <tf2/exceptions.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
@@ -18,7 +20,40 @@ Eigen::Isometry3d transformFromRos(const geometry_msgs::Transform& message) {
 
 }  // namespace
 
-TransformLookup::TransformLookup(double wait) : wait_(wait), listener_(buffer_) {}
+// Not tf2_ros::TransformListener: it believes every length in a message.
+TransformLookup::TransformLookup(double wait) : wait_(wait), receiver_(1, &queue_) {
+  buffer_.setUsingDedicatedThread(true);
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue_);
+  subscribers_ = {listen(node, "/tf", false), listen(node, "/tf_static", true)};
+  receiver_.start();
+}
+
+TransformLookup::~TransformLookup() {
+  receiver_.stop();
+}
+
+ros::Subscriber TransformLookup::listen(const ros::NodeHandle& node,
+                                        const std::string& topic,
+                                        bool is_static) {
+  constexpr std::uint32_t kQueueLength = 100;
+  const auto receive = [this, topic, is_static](const tf2_msgs::TFMessage::ConstPtr& message) {
+    forgetWhenTheClockWentBack();
+    for (const geometry_msgs::TransformStamped& transform : message->transforms) {
+      buffer_.setTransform(transform, topic, is_static);
+    }
+  };
+  return subscribeChecked<tf2_msgs::TFMessage>(
+      node, topic, kQueueLength, receive, tellRefusal(topic));
+}
+
+void TransformLookup::forgetWhenTheClockWentBack() {
+  const ros::Time now = ros::Time::now();
+  if (now < newest_) {
+    buffer_.clear();
+  }
+  newest_ = now;
+}
 
 Eigen::Isometry3d TransformLookup::at(const std::string& parent,
                                       const std::string& child,

@@ -11,6 +11,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
@@ -34,10 +35,9 @@ Instant instantNow() {
   return {steadySeconds(), wallStamp().toSec()};
 }
 
-CoilCommand commandFromRos(const ros::MessageEvent<const msg::CoilCurrents>& event) {
-  const msg::CoilCurrents& message = *event.getConstMessage();
+CoilCommand commandFromRos(const msg::CoilCurrents& message, const std::string& sender) {
   CoilCommand command;
-  command.caller = event.getPublisherName();
+  command.caller = sender;
   if (!message.header.stamp.isZero()) {
     command.stamp = message.header.stamp.toSec();
   }
@@ -89,11 +89,15 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   if (ros::Time::isSimTime()) {
     ROS_WARN("/use_sim_time is set: commands are judged by the wall clock all the same.");
   }
-  subscriber_ = handle.subscribe("coil_command",
-                                 kWaitingCommands,
-                                 &CoilDriverNode::receive,
-                                 this,
-                                 ros::TransportHints().tcpNoDelay());
+  subscriber_ = subscribeChecked<msg::CoilCurrents>(
+      handle,
+      "coil_command",
+      kWaitingCommands,
+      [this](const msg::CoilCurrents::ConstPtr& message, const std::string& sender) {
+        receive(*message, sender);
+      },
+      [this](const std::string& reason) { commands_.refuse(reason); },
+      ros::TransportHints().tcpNoDelay());
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
 }
 
@@ -140,8 +144,8 @@ std::string CoilDriverNode::tryToStop() {
   }
 }
 
-void CoilDriverNode::receive(const ros::MessageEvent<const msg::CoilCurrents>& event) {
-  const std::string refusal = driver_.offer(commandFromRos(event), instantNow());
+void CoilDriverNode::receive(const msg::CoilCurrents& message, const std::string& sender) {
+  const std::string refusal = driver_.offer(commandFromRos(message, sender), instantNow());
   if (!refusal.empty()) {
     commands_.refuse(refusal);
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, "coil_command is refused: " << refusal);

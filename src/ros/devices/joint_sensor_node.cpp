@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -76,7 +77,7 @@ void JointSensorNode::publishReading() {
   const ros::Time before = ros::Time::now();
   const Eigen::Vector3d q = sensor_.read();
   const ros::Time after = ros::Time::now();
-  message_.header.stamp = before + (after - before) * 0.5;
+  message_.header.stamp = middleOf(before, after);
   for (std::size_t k = 0; k < kJoints; ++k) {
     message_.position[k] = q[static_cast<Eigen::Index>(k)];
   }

@@ -7,6 +7,7 @@
 #include <ros/transport_hints.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
@@ -82,18 +83,19 @@ TrackerBridgeNode::~TrackerBridgeNode() {
 void TrackerBridgeNode::subscribe() {
   node_.setCallbackQueue(&queue_);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  using Self = TrackerBridgeNode;
-  subscribers_.push_back(node_.subscribe(
+  subscribers_.push_back(subscribeChecked<geometry_msgs::PoseStamped>(
+      node_,
       "tracker/pose",
       kQueueLength,
-      static_cast<void (Self::*)(const geometry_msgs::PoseStamped::ConstPtr&)>(&Self::receive),
-      this,
+      [this](const geometry_msgs::PoseStamped::ConstPtr& message) { receive(message); },
+      [this](const std::string& reason) { poses_.refuse(reason); },
       hints));
-  subscribers_.push_back(node_.subscribe(
+  subscribers_.push_back(subscribeChecked<geometry_msgs::WrenchStamped>(
+      node_,
       "ft_sensor/wrench",
       kQueueLength,
-      static_cast<void (Self::*)(const geometry_msgs::WrenchStamped::ConstPtr&)>(&Self::receive),
-      this,
+      [this](const geometry_msgs::WrenchStamped::ConstPtr& message) { receive(message); },
+      [this](const std::string& reason) { refuseWrench(reason); },
       hints));
 }
 

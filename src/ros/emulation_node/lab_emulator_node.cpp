@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
@@ -66,8 +67,12 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
     joint_server_.addUnit(content.unit);
   }
   showJoints();
-  target_subscriber_ =
-      node_.subscribe("fixture/target", kQueueLength, &LabEmulatorNode::receiveTarget, this);
+  target_subscriber_ = subscribeChecked<sensor_msgs::JointState>(
+      node_,
+      "fixture/target",
+      kQueueLength,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveTarget(*message); },
+      tellRefusal("fixture/target"));
   advertiseFaults();
   thread_ = std::make_unique<PeriodicThread>(options_.ft_sensor.stream.rate, [this] { beat(); });
 }

@@ -1,5 +1,9 @@
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
+#include <exception>
+
+#include <ros/console.h>
+
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
@@ -25,10 +29,16 @@ void NodeDiagnostics::add(const std::string& name,
 }
 
 void NodeDiagnostics::update() {
-  if (at_once_.exchange(false)) {
-    updater_.force_update();
-  } else {
-    updater_.update();
+  // A node lives on when what tells of it cannot: the ROS clock may stand at the end of its range.
+  try {
+    if (at_once_.exchange(false)) {
+      updater_.force_update();
+    } else {
+      updater_.update();
+    }
+  } catch (const std::exception& error) {
+    constexpr double kSilence = 10.0;  // [s]
+    ROS_ERROR_STREAM_THROTTLE(kSilence, "Diagnostics cannot be published: " << error.what());
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
@@ -24,7 +26,7 @@ void StreamMonitor::accept(const ros::Time& stamp) {
 
 void StreamMonitor::refuse(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  last_refusal_ = reason;
+  last_refusal_ = printable(reason);
   ++refused_;
 }
 
@@ -34,7 +36,7 @@ double StreamMonitor::age(const ros::Time& now) const {
 }
 
 double StreamMonitor::ageLocked(const ros::Time& now) const {
-  return newest_.isZero() ? std::numeric_limits<double>::infinity() : (now - newest_).toSec();
+  return newest_.isZero() ? std::numeric_limits<double>::infinity() : secondsBetween(newest_, now);
 }
 
 void StreamMonitor::run(DiagnosticStatus& status) {

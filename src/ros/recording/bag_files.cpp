@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include <rosbag/exceptions.h>
 #include <rosbag/query.h>
 #include <rosbag/view.h>
 
+#include "bag_verifier.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -59,6 +62,7 @@ std::unique_ptr<BagFile> openBag(const std::string& path) {
   auto file = std::make_unique<BagFile>();
   file->path = path;
   try {
+    verifyBag(path);
     file->bag.open(path, rosbag::bagmode::Read);
     readTopics(*file);
   } catch (const rosbag::BagUnindexedException&) {
@@ -76,14 +80,13 @@ std::unique_ptr<BagFile> openBag(const std::string& path) {
 }
 
 bool isSideBySide(const BagFile& file, const BagFile& other, const std::string& prefix) {
-  const ros::Duration overlap(kSplitOverlap);
   for (const BagTopic& topic : file.topics) {
     if (topic.name.compare(0, prefix.size(), prefix) != 0) {
       continue;
     }
     for (const BagTopic& same : other.topics) {
-      if (same.name == topic.name && topic.begin + overlap < same.end &&
-          same.begin + overlap < topic.end) {
+      if (same.name == topic.name && secondsBetween(topic.begin, same.end) > kSplitOverlap &&
+          secondsBetween(same.begin, topic.end) > kSplitOverlap) {
         return false;
       }
     }
@@ -98,7 +101,10 @@ std::vector<std::unique_ptr<BagFile>> openBags(const std::vector<std::string>& p
   std::set<std::string> known;
   for (const std::string& path : paths) {
     bags.push_back(openBag(path));
-    if (!known.insert(fs::canonical(path).string()).second) {
+    // Without a canonical name, as of a file that was removed meanwhile, it is the same by its own.
+    std::error_code error;
+    const fs::path canonical = fs::canonical(path, error);
+    if (!known.insert(error ? path : canonical.string()).second) {
       throw DataError(path + ": is given twice.");
     }
   }

@@ -20,6 +20,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/message_decoder.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/recording/recorded_streams.hpp"
 
 namespace sac {
@@ -115,13 +116,13 @@ class Reader {
       view.addQuery(file->bag, rosbag::TopicQuery(topics_.names(roles)));
     }
     const ros::Time begin = view.getBeginTime();
-    const double duration = (view.getEndTime() - begin).toSec();
+    const double duration = secondsBetween(begin, view.getEndTime());
     TopicLookup lookup(topics_);
     std::uint64_t count = 0;
     for (const rosbag::MessageInstance& message : view) {
       readMessage(lookup.role(message), message);
       if (++count % kProgressStep == 0) {
-        tellProgress(step, (message.getTime() - begin).toSec() / duration);
+        tellProgress(step, secondsBetween(begin, message.getTime()) / duration);
       }
     }
     tellProgress(step, 1.0);

@@ -8,8 +8,10 @@
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -79,30 +81,43 @@ VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
   constexpr bool kLatched = true;
   publisher_ = node_.advertise<visualization_msgs::MarkerArray>("calibration_markers", 1, kLatched);
   constexpr std::uint32_t kQueueLength = 1000;
-  subscribers_.push_back(
-      node_.subscribe("joint_states", kQueueLength, &VisualizationNode::receiveJoints, this));
+  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+      node_,
+      "joint_states",
+      kQueueLength,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
+      tellRefusal("joint_states")));
   feed<msg::ActuatorParameters>("parameters", 1);
   feed<msg::CalibrationReport>("report", kQueueLength);
   feed<msg::CalibrationStatus>("status", 1);
   feed<msg::CoilCurrents>("coil_currents", 1);
   feed<msg::CalibrationSample>("samples", kQueueLength);
   timer_ = node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
-                                 [this](const ros::WallTimerEvent& /*event*/) {
-                                   listing_.update(scene_.samples());
-                                   publishMarkers();
-                                 });
+                                 [this](const ros::WallTimerEvent& /*event*/) { show(); });
 }
 
 template <typename Message>
 void VisualizationNode::feed(const std::string& topic, std::uint32_t queue_length) {
-  subscribers_.push_back(node_.subscribe<Message>(
-      topic, queue_length, [this](const typename Message::ConstPtr& message) {
-        scene_.receive(*message);
-      }));
+  subscribers_.push_back(subscribeChecked<Message>(
+      node_,
+      topic,
+      queue_length,
+      [this](const typename Message::ConstPtr& message) { scene_.receive(*message); },
+      tellRefusal(topic)));
+}
+
+// What cannot be drawn is told and ends nothing.
+void VisualizationNode::show() {
+  try {
+    listing_.update(scene_.samples());
+    publishMarkers();
+  } catch (const std::exception& error) {
+    tellRefusal("calibration_markers")(error.what());
+  }
 }
 
 void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
-  const double age = (message.header.stamp - last_broadcast_).toSec();
+  const double age = secondsBetween(last_broadcast_, message.header.stamp);
   if (age >= 0.0 && age < kFramePeriod) {
     return;
   }

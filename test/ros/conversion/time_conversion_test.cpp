@@ -29,5 +29,16 @@ TEST(TimeConversion, RefusesStampsOutsideRosTime) {
   EXPECT_THROW(stampToRos((Stamp{kLastSecond} + 1) * 1'000'000'000), DataError);
 }
 
+// The clock of a computer without battery, or one set to the year 2106: ros::Duration throws.
+TEST(TimeConversion, HoldsEveryDifference) {
+  const ros::Time first(0, 1);
+  const ros::Time last(kLastSecond, 999'999'999);
+  EXPECT_DOUBLE_EQ(secondsBetween(first, last), 4294967296.0 - 2e-9);
+  EXPECT_DOUBLE_EQ(secondsBetween(last, first), -4294967296.0 + 2e-9);
+  EXPECT_DOUBLE_EQ(secondsBetween(ros::Time(1.0), ros::Time(1.5)), 0.5);
+  EXPECT_EQ(middleOf(first, last), ros::Time(2147483648, 0));
+  EXPECT_EQ(middleOf(ros::Time(2.0), ros::Time(1.0)), ros::Time(1.5));
+}
+
 }  // namespace
 }  // namespace sac

@@ -42,6 +42,18 @@ TEST_F(StreamMonitorTest, IsInErrorBeforeTheFirstMeasurement) {
   EXPECT_TRUE(std::isinf(monitor_.age(ros::Time(100.0))));
 }
 
+// One message with such a stamp ended the node that received it.
+TEST_F(StreamMonitorTest, LivesOnWithAStampOfAnotherCentury) {
+  monitor_.accept(ros::Time(4294967295, 0));
+  EXPECT_NEAR(monitor_.age(ros::Time(100.0)), 100.0 - 4294967295.0, 1e-3);
+  EXPECT_EQ(value(status(), "accepted"), "1");
+}
+
+TEST_F(StreamMonitorTest, ShowsTextThatATerminalWouldObey) {
+  monitor_.refuse("it is in the frame \x1b[2J");
+  EXPECT_EQ(value(status(), "last refusal"), "it is in the frame \\x1b[2J");
+}
+
 TEST_F(StreamMonitorTest, IsGoodWhileMeasurementsCome) {
   monitor_.accept(ros::Time(99.9));
   const auto result = status();

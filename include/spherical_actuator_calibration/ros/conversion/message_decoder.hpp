@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <ros/serialization.h>
 #include <rosbag/message_instance.h>
+
+#include "spherical_actuator_calibration/ros/conversion/checked_message.hpp"
 
 namespace sac {
 
@@ -13,12 +14,12 @@ namespace sac {
 class MessageDecoder {
  public:
   /// Fills `message` and returns it. The type must be the recorded one: see RecordedTopics. Throws
-  /// what rosbag and the message class throw when the bag is damaged.
+  /// what rosbag and CheckedStream throw when the bag is damaged.
   template <typename Message>
   const Message& decode(const rosbag::MessageInstance& instance, Message& message) {
     instance.write(bytes_);
-    ros::serialization::IStream stream(bytes_.data(), bytes_.size());
-    ros::serialization::deserialize(stream, message);
+    CheckedStream stream(bytes_.data(), bytes_.size());
+    stream.next(message);
     return message;
   }
 

@@ -13,4 +13,11 @@ Stamp stampFromRos(const ros::Time& time);
 /// does not fit into ROS's 32 bits of seconds.
 ros::Time stampToRos(Stamp stamp);
 
+/// From one time to another [s], negative when the second is the earlier one. ros::Duration throws
+/// where they are 68 years apart, as a stamp of the year 2106 is.
+double secondsBetween(const ros::Time& from, const ros::Time& to);
+
+/// The time in the middle between two.
+ros::Time middleOf(const ros::Time& begin, const ros::Time& end);
+
 }  // namespace sac

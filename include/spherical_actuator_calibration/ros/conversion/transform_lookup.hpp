@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <Eigen/Geometry>
 
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <ros/subscriber.h>
 #include <ros/time.h>
 #include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 namespace sac {
 
@@ -16,6 +20,9 @@ class TransformLookup {
  public:
   /// `wait`: how long a transform that is not there yet is waited for [s of the wall clock].
   explicit TransformLookup(double wait);
+  ~TransformLookup();
+  TransformLookup(const TransformLookup&) = delete;
+  TransformLookup& operator=(const TransformLookup&) = delete;
 
   /// X_parent_child at a time. After a wait in vain the next calls do not wait for a while, so that
   /// a missing transform does not hold up everything. Throws DataError that names the transform and
@@ -26,12 +33,17 @@ class TransformLookup {
   bool has(const std::string& parent, const std::string& child) const;
 
  private:
+  ros::Subscriber listen(const ros::NodeHandle& node, const std::string& topic, bool is_static);
+  void forgetWhenTheClockWentBack();
   void wait(const std::string& parent, const std::string& child, const ros::Time& time);
 
   const ros::WallDuration wait_;
   ros::WallTime impatient_until_;
   tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
+  ros::CallbackQueue queue_;
+  ros::Time newest_;                            ///< of the ROS clock; used by the receiving thread
+  std::array<ros::Subscriber, 2> subscribers_;  ///< of /tf and /tf_static
+  ros::AsyncSpinner receiver_;
 };
 
 /// "there is no transform from … to …: …" with the command that publishes it.

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <string>
 
-#include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
@@ -47,7 +46,7 @@ class CoilDriverNode {
   bool stop();
 
  private:
-  void receive(const ros::MessageEvent<const msg::CoilCurrents>& event);
+  void receive(const msg::CoilCurrents& message, const std::string& sender);
   void beat();
   void tell(const CoilDriver::Beat& beat);
   std::string tryToStop();

@@ -46,6 +46,7 @@ class VisualizationNode {
   template <typename Message>
   void feed(const std::string& topic, std::uint32_t queue_length);
 
+  void show();
   void receiveJoints(const sensor_msgs::JointState& message);
   void broadcast(const ros::Time& stamp, const Eigen::Vector3d& q);
   void publishMarkers();
