@@ -64,6 +64,7 @@ SessionConnection::SessionConnection(const std::string& path,
 
 void SessionConnection::write(const std::string& failure,
                               const std::function<void(SQLite::Database&)>& action) {
+  requireInPlace(failure);
   read(failure, [&] {
     SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
     action(database_);
