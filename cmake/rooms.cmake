@@ -36,7 +36,12 @@ endfunction()
 # EXPORTED: other packages may link it, so that the headers of its rooms are installed (see export.cmake).
 function(add_library_of_rooms name)
   cmake_parse_arguments(arg "ROS;EXPORTED" "" "USES" ${ARGN})
-  add_library(${name} SHARED)
+  # libFuzzer and the sanitizers of clang are linked into programs alone.
+  set(kind SHARED)
+  if(FUZZING)
+    set(kind STATIC)
+  endif()
+  add_library(${name} ${kind})
   use_project_options(${name})
   string(REGEX REPLACE "^sac_" "" part ${name})
   # Without DEFINE_SYMBOL all libraries can share one precompiled header.

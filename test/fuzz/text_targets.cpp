@@ -1,0 +1,120 @@
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fuzz/fuzz_targets.hpp"
+#include "spherical_actuator_calibration/actuator/actuator_dimensions.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
+#include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
+#include "spherical_actuator_calibration/drivers/register_codec.hpp"
+#include "spherical_actuator_calibration/measurement/sample_file.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+
+namespace sac::fuzz {
+namespace {
+
+constexpr std::size_t kCoils = 24;
+
+std::string textOf(const std::uint8_t* data, std::size_t size) {
+  return {data, data + size};
+}
+
+void require(bool holds) {
+  if (!holds) {
+    std::abort();
+  }
+}
+
+/// What a reader makes of bytes; nothing when it refuses them in a sentence that can be shown.
+template <typename Read>
+auto accepted(const Read& read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const Error& error) {
+    const std::string shown = printable(error.what());
+    require(!shown.empty() && printable(shown) == shown);
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void readDescriptionFile(const std::uint8_t* data, std::size_t size) {
+  const auto description = accepted([&] { return parseDescription(textOf(data, size), "f.yaml"); });
+  if (description) {
+    // What is accepted can be written and read again, and is the same then.
+    const auto text = accepted([&] { return renderDescription(*description, "g.yaml"); });
+    if (text) {
+      require(renderDescription(parseDescription(*text, "g.yaml"), "g.yaml") == *text);
+    }
+  }
+}
+
+void readDimensionsFile(const std::uint8_t* data, std::size_t size) {
+  accepted([&] { return parseDimensions(textOf(data, size), "f.yaml"); });
+}
+
+void readConfigurationFile(const std::uint8_t* data, std::size_t size) {
+  const auto config =
+      accepted([&] { return parseCalibrationConfig(textOf(data, size), "f.yaml"); });
+  if (config) {
+    const std::string text = renderCalibrationConfig(*config);
+    require(renderCalibrationConfig(parseCalibrationConfig(text, "g.yaml")) == text);
+  }
+}
+
+void readRegisters(const std::uint8_t* data, std::size_t size) {
+  const std::string text = textOf(data, size);
+  accepted([&] {
+    const YamlMap map = YamlMap::parse(text, "f.yaml");
+    CurrentAmplifierOptions options = readCurrentAmplifierOptions(map);
+    map.finish();
+    return options;
+  });
+  accepted([&] {
+    const YamlMap map = YamlMap::parse(text, "f.yaml");
+    JointSensorOptions options = readJointSensorOptions(map);
+    map.finish();
+    return options;
+  });
+  // Every bit pattern of registers is some number, and whole numbers come back.
+  std::vector<std::uint16_t> words(2);
+  for (std::size_t n = 0; n + 4 <= size; n += 4) {
+    words = {static_cast<std::uint16_t>(data[n] << 8U | data[n + 1]),
+             static_cast<std::uint16_t>(data[n + 2] << 8U | data[n + 3])};
+    for (const RegisterType type : {RegisterType::kInt16,
+                                    RegisterType::kUint16,
+                                    RegisterType::kInt32,
+                                    RegisterType::kUint32,
+                                    RegisterType::kFloat32}) {
+      for (const WordOrder order : {WordOrder::kHighFirst, WordOrder::kLowFirst}) {
+        const double value = decodeRegisters(words.data(), type, order);
+        if (type != RegisterType::kFloat32) {
+          const std::vector<std::uint16_t> again = encodeRegisters(value, type, order);
+          require(decodeRegisters(again.data(), type, order) == value);
+        }
+      }
+    }
+  }
+}
+
+void readPlanFile(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile file(data, size);
+  const auto plan = accepted([&] { return loadSessionPlan(file.path()); });
+  if (plan) {
+    accepted([&] { return renderSessionPlan(*plan); });
+  }
+}
+
+void readSamplesFile(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile file(data, size);
+  accepted([&] { return loadSamples(file.path(), kCoils); });
+  accepted([&] { return loadSamples(file.path(), 0); });
+}
+
+}  // namespace sac::fuzz
