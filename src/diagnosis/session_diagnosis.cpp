@@ -27,6 +27,12 @@ struct RefinedFit {
   double freedom = 0.0;  ///< observed values less estimated parameters
   std::vector<ParameterEstimate> estimates;
 
+  /// Bayesian information criterion, the smaller the better.
+  double bic() const {
+    const auto parameters = static_cast<double>(estimates.size());
+    return reduced_chi_square * freedom + parameters * std::log(freedom + parameters);
+  }
+
   bool isBeyondChance() const {
     return freedom > 0.0 && reduced_chi_square > 1.0 + kBeyondChance * std::sqrt(2.0 / freedom);
   }
@@ -36,10 +42,10 @@ RefinedFit refined(const CalibrationSession& session, const EffectSelection& eff
   CalibrationConfig config = session.config();
   config.effects = effects;
   // A model that lacks an effect must neither be refused for its misfit, nor be spared the samples
-  // that show it.
+  // that show it: only what is twenty standard deviations off is an outlier here.
   config.estimation.max_reduced_chi_square = 1e9;
-  config.estimation.max_rejected_fraction = 0.0;
-  config.estimation.false_alarm_probability = 1e-12;
+  config.estimation.max_rejected_fraction = 0.49;
+  config.estimation.false_alarm_probability = 1e-200;
   CalibrationSession trial(session.start(), session.samples(), config);
   RefinedFit fit;
   for (const CycleRequest& request :
@@ -125,15 +131,14 @@ std::vector<Diagnosis> effectsThatExplain(const CalibrationSession& session,
     diagnosis.evidence = 0.5 * unchanged.freedom *
                          (unchanged.reduced_chi_square - fit.reduced_chi_square) /
                          std::max(1.0, fit.reduced_chi_square);
-    found.emplace_back(fit.reduced_chi_square, std::move(diagnosis));
+    found.emplace_back(fit.bic(), std::move(diagnosis));
   }
   std::stable_sort(
       found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  // One that leaves much more than the best explains less.
-  constexpr double kAlike = 1.2;
+  constexpr double kDecisive = 10.0;  // difference of two criteria
   std::vector<Diagnosis> diagnoses;
-  for (auto& [misfit, diagnosis] : found) {
-    if (misfit <= kAlike * found.front().first) {
+  for (auto& [bic, diagnosis] : found) {
+    if (bic < found.front().first + kDecisive) {
       diagnoses.push_back(std::move(diagnosis));
     }
   }
