@@ -30,7 +30,7 @@ class Outcome:
 def registration_config(registration, more=""):
     """Configuration that states registrations; None: states none of them."""
     if registration is None:
-        return more
+        return more or "validation: {hold_out_every: 0}\n"
     names = ("stator_tracker", "rotor_marker", "rotor_ft_sensor")
     lines = [f"  {name}: {{stddev: {float(stddev)!r}}}" for name, stddev in zip(names, registration)]
     return "registration:\n" + "\n".join(lines) + "\n" + more
