@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string>
 #include <utility>
 
 #include "axis_modes.hpp"
 #include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
+#include "problem_check.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "weighted_observations.hpp"
@@ -20,31 +19,6 @@ namespace {
 constexpr int kComponents = 3;  // of one observation
 /// Half width of the search for other modes of a pole or coil: six usual tolerances [rad].
 constexpr double kModeRange = 0.18;
-
-void checkProblem(const EstimationProblem& problem) {
-  const ParameterSpace& space = problem.model->space();
-  const Eigen::Index size = space.size();
-  if (problem.prior.x.size() != size || problem.prior.covariance.rows() != size ||
-      problem.prior.covariance.cols() != size) {
-    throw DataError("The prior does not have one entry for each of the " + std::to_string(size) +
-                    " parameters.");
-  }
-  for (const Eigen::Index parameter : problem.free) {
-    if (parameter < 0 || parameter >= size) {
-      throw DataError("Parameter " + std::to_string(parameter) + " does not exist.");
-    }
-  }
-  for (const Observation& observation : problem.observations) {
-    if (observation.sample >= problem.samples->size()) {
-      throw DataError("Sample " + std::to_string(observation.sample) + " does not exist.");
-    }
-    if (observation.quantity == Quantity::kTorque && !problem.model->hasTorqueModel()) {
-      throw DataError(
-          "Torque samples need poles, coils and a torque curve in the actuator description.");
-    }
-    validate((*problem.samples)[observation.sample], space.coils());
-  }
-}
 
 double medianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
