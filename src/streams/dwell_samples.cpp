@@ -198,8 +198,7 @@ class DwellSampler {
       if (needs_removal(candidate)) {
         sample.torque -= zero.torque;
         sample.current -= zero.current;
-        sample.torque_shared_stddev = std::sqrt(zero.torque_variance);
-        sample.torque_stddev = std::hypot(sample.torque_stddev, sample.torque_shared_stddev);
+        sample.torque_stddev = std::hypot(sample.torque_stddev, std::sqrt(zero.torque_variance));
       } else if (!candidate.excited) {
         sample.has_torque = false;
         sample.torque.setZero();
