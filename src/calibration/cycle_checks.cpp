@@ -173,12 +173,14 @@ std::string misfits(const std::vector<Group>& groups,
   return {};
 }
 
+/// Within the noise an error may grow: what earlier cycles were told by chance agrees with it.
 std::string growth(const Estimate& estimate) {
   constexpr double kNotable = 1.1;
+  constexpr double kBeyondNoise = 2.25;  // of the reduced chi-square
   constexpr double kRounding = 1e-6;
   const double before = estimate.error_history.front();
   const double after = estimate.error_history.back();
-  return after > kNotable * before + kRounding
+  return estimate.reduced_chi_square > kBeyondNoise && after > kNotable * before + kRounding
              ? format(
                    ": the error grew to %.3g times what it was before; the samples contradict "
                    "each other.",

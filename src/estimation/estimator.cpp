@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "axis_modes.hpp"
 #include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
@@ -50,6 +52,7 @@ class Estimator {
   bool refineOpen(int round, UnidentifiedPart& open);
   double statedVariance(Eigen::Index coordinate) const;
   std::vector<Eigen::Index> stated(const std::vector<Eigen::Index>& coordinates) const;
+  double distanceFromPrior(Eigen::Index first, const Eigen::Vector2d& place) const;
   void widenAmbiguous();
   void solve(const Eigen::VectorXd& start, Loss loss, double transition);
   bool solveReweighted();
@@ -331,14 +334,25 @@ bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
   return true;
 }
 
-/// Axes that another place explains nearly as well are told, with both places in their uncertainty.
+/// How unlikely a place of an axis was before the samples: its squared distance from the prior, in
+/// standard deviations.
+double Estimator::distanceFromPrior(Eigen::Index first, const Eigen::Vector2d& place) const {
+  const Eigen::Vector2d apart = place - problem_.prior.x.segment<2>(first);
+  return apart.dot(problem_.prior.covariance.block<2, 2>(first, first).ldlt().solve(apart));
+}
+
+/// Axes that another place explains nearly as well, manufacture included, are told, with both
+/// places in their uncertainty.
 void Estimator::widenAmbiguous() {
   constexpr double kNearlyAsWell = 16.0;  // of χ²: four standard deviations
   const ModeSearch search{kModeRange, transition()};
   for (const AxisMode& mode :
        otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
-    if (mode.gain > -kNearlyAsWell) {
-      const Eigen::Vector2d apart = mode.place - solution_.x().segment<2>(mode.first);
+    const Eigen::Vector2d present = solution_.x().segment<2>(mode.first);
+    const double gain = mode.gain + distanceFromPrior(mode.first, present) -
+                        distanceFromPrior(mode.first, mode.place);
+    if (gain > -kNearlyAsWell) {
+      const Eigen::Vector2d apart = mode.place - present;
       result_.belief.covariance.block<2, 2>(mode.first, mode.first) += apart * apart.transpose();
       result_.ambiguous.push_back(mode.first);
     }

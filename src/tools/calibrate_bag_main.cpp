@@ -72,10 +72,8 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
   files.covariance = options.covariance_path.value_or("");
-  for (const std::string& path : {files.description,
-                                  files.urdf,
-                                  files.covariance,
-                                  options.corrected_path.value_or("")}) {
+  for (const std::string& path :
+       {files.description, files.urdf, files.covariance, options.corrected_path.value_or("")}) {
     requireNewFile(path, options.overwrite);
   }
   if (options.report_folder) {

@@ -43,7 +43,8 @@ TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
     EXPECT_EQ(nextStep(session),
               "Call calibrate_coil with coil " + std::to_string(coil + 1) +
                   ": 4 samples have a torque of this coil alone.");
-    ASSERT_TRUE(session.run({Cycle::kCoil, coil}).success);
+    const CycleReport report = session.run({Cycle::kCoil, coil});
+    ASSERT_TRUE(report.success) << report.message;
   }
   EXPECT_EQ(nextStep(session).substr(0, 12), "Call refine:");
   SessionProgress progress = progressOf(session);

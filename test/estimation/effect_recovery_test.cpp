@@ -90,8 +90,8 @@ void expectModelledAtTheBound(const EffectSelection& effects, MakeCase make_case
   EXPECT_NEAR(modelled.geometry().coverage(), 0.95, 0.02);
   EXPECT_GE(modelled.effects().coverage(), 0.9);
   EXPECT_LT(modelled.meanChiSquare(), 1.1);
-  const bool all_refused = ignored.failures() == kIgnoredTrials;
-  EXPECT_TRUE(all_refused ||
+  const bool are_refused = 2 * ignored.failures() > kIgnoredTrials;
+  EXPECT_TRUE(are_refused ||
               (ignored.geometry().errorOverBound() > 1.4 && ignored.meanChiSquare() > 1.2))
       << ignored.geometry().errorOverBound() << " " << ignored.meanChiSquare();
 }

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/conversion/checked_message.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -86,7 +87,7 @@ TEST(CheckedMessage, BelievesNoLength) {
   message.current.assign(24, 0.5);
   Bytes bytes = bytesOf(message);
   const std::size_t length = bytes.size() - 24 * sizeof(double) - 4;
-  for (const std::uint8_t high : {0x01, 0x10, 0xFF}) {
+  for (const std::uint8_t high : std::array<std::uint8_t, 3>{0x01, 0x10, 0xFF}) {
     bytes[length + 3] = high;
     const auto checked = read<msg::CoilCurrents>(bytes);
     EXPECT_EQ(checked.defect, "it says that it holds more than its bytes");

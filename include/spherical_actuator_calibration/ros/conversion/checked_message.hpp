@@ -74,7 +74,7 @@ class CheckedStream {
   /// Number of entries of at least `smallest` bytes each.
   std::size_t length(std::size_t smallest) {
     std::uint32_t entries = 0;
-    next(entries);
+    std::memcpy(&entries, take(sizeof entries), sizeof entries);
     if (entries > left_ / smallest) {
       throw std::length_error("it says that it holds more than its bytes");
     }
