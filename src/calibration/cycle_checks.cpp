@@ -145,6 +145,13 @@ std::string rejections(const std::vector<Group>& groups, const EstimationOptions
                    worst->count);
 }
 
+/// Whether a sum of squares is no accident, where so many groups are looked at.
+bool isMisfit(double squares, double degrees_of_freedom, std::size_t groups) {
+  const boost::math::chi_squared_distribution<double> accident(degrees_of_freedom);
+  const double probability = boost::math::cdf(boost::math::complement(accident, squares));
+  return probability * static_cast<double>(groups) < kChance;
+}
+
 std::string misfits(const std::vector<Group>& groups,
                     const Estimate& estimate,
                     const EstimationOptions& options) {
@@ -155,19 +162,18 @@ std::string misfits(const std::vector<Group>& groups,
         name.c_str(),
         std::sqrt(chi_square));
   };
-  if (estimate.reduced_chi_square > options.max_reduced_chi_square) {
+  const double freedom = estimate.degrees_of_freedom;
+  const double squares = estimate.reduced_chi_square * freedom;
+  if (freedom > 0.0 && estimate.reduced_chi_square > options.max_reduced_chi_square &&
+      isMisfit(squares, freedom, groups.size())) {
     return words("all samples", estimate.reduced_chi_square);
   }
   for (const Group& group : groups) {
     const auto kept = static_cast<double>(group.count - group.rejected);
     const double mean = kept > 0.0 ? group.squares / kept : 0.0;
-    if (kept > 0.0 && mean > options.max_reduced_chi_square) {
-      const boost::math::chi_squared_distribution<double> accident(3.0 * kept);
-      const double probability =
-          boost::math::cdf(boost::math::complement(accident, 3.0 * group.squares));
-      if (probability * static_cast<double>(groups.size()) < kChance) {
-        return words(group.name, mean);
-      }
+    if (kept > 0.0 && mean > options.max_reduced_chi_square &&
+        isMisfit(3.0 * group.squares, 3.0 * kept, groups.size())) {
+      return words(group.name, mean);
     }
   }
   return {};

@@ -11,6 +11,7 @@
 #include "effects_at.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 
 namespace sac {
 namespace {
@@ -339,6 +340,12 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
     return modes;
   }
   const ScannedModel model(problem, observations, x);
+  // Few torques may fit elsewhere as well by chance. The prior is no judge: an earlier cycle may
+  // have left it in the wrong place.
+  const auto distance_from_drawing = [&](Eigen::Index first, const Eigen::Vector2d& place) {
+    const double tolerance = toleranceOf(space.id(first).kind, search.tolerance);
+    return tolerance > 0.0 ? place.squaredNorm() / (tolerance * tolerance) : 0.0;
+  };
   const auto scan = [&](Eigen::Index first,
                         const AxisChart& chart,
                         bool is_pole,
@@ -346,6 +353,8 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
     const AxisScan search_here(model.curve(), chart, is_pole, std::move(torques), search);
     if (std::optional<AxisMode> mode = search_here.best(x.segment<2>(first))) {
       mode->first = first;
+      mode->gain += distance_from_drawing(first, x.segment<2>(first)) -
+                    distance_from_drawing(first, mode->place);
       modes.push_back(*mode);
     }
   };

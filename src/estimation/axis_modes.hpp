@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/manufacturing_tolerance.hpp"
 #include "weighted_observations.hpp"
 
 namespace sac {
@@ -13,8 +14,8 @@ namespace sac {
 struct AxisMode {
   Eigen::Index first = 0;  ///< coordinate u of the axis, v follows
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
-  /// By how much the robust misfit of the axis's torques is smaller there than at the present
-  /// place; negative where it is larger.
+  /// By how much the robust misfit of the axis's torques, and of its distance from the drawing in
+  /// tolerances, is smaller there than at the present place; negative where it is larger.
   double gain = 0.0;
 };
 
@@ -22,6 +23,7 @@ struct AxisMode {
 struct ModeSearch {
   double range = 0.0;       ///< half width of the scan around the nominal axis [rad]
   double transition = 0.0;  ///< whitened norm beyond which a misfit fades
+  ManufacturingTolerance tolerance;
 };
 
 /// Looks for other places of single poles and coils: the torque curve is not monotone, so that an

@@ -5,8 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "axis_modes.hpp"
 #include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
@@ -52,7 +50,6 @@ class Estimator {
   bool refineOpen(int round, UnidentifiedPart& open);
   double statedVariance(Eigen::Index coordinate) const;
   std::vector<Eigen::Index> stated(const std::vector<Eigen::Index>& coordinates) const;
-  double distanceFromPrior(Eigen::Index first, const Eigen::Vector2d& place) const;
   void widenAmbiguous();
   void solve(const Eigen::VectorXd& start, Loss loss, double transition);
   bool solveReweighted();
@@ -280,7 +277,7 @@ double Estimator::robustMisfit() const {
 /// call it back. Keeps the better of both solutions.
 void Estimator::takeBetterModes() {
   constexpr int kMaxRounds = 3;
-  const ModeSearch search{kModeRange, transition()};
+  const ModeSearch search{kModeRange, transition(), options_.tolerance};
   for (int round = 0; round < kMaxRounds; ++round) {
     const double worthwhile = outlierLimit();
     Eigen::VectorXd moved = solution_.x();
@@ -334,25 +331,15 @@ bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
   return true;
 }
 
-/// How unlikely a place of an axis was before the samples: its squared distance from the prior, in
-/// standard deviations.
-double Estimator::distanceFromPrior(Eigen::Index first, const Eigen::Vector2d& place) const {
-  const Eigen::Vector2d apart = place - problem_.prior.x.segment<2>(first);
-  return apart.dot(problem_.prior.covariance.block<2, 2>(first, first).ldlt().solve(apart));
-}
-
 /// Axes that another place explains nearly as well, manufacture included, are told, with both
 /// places in their uncertainty.
 void Estimator::widenAmbiguous() {
   constexpr double kNearlyAsWell = 16.0;  // of χ²: four standard deviations
-  const ModeSearch search{kModeRange, transition()};
+  const ModeSearch search{kModeRange, transition(), options_.tolerance};
   for (const AxisMode& mode :
        otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
-    const Eigen::Vector2d present = solution_.x().segment<2>(mode.first);
-    const double gain = mode.gain + distanceFromPrior(mode.first, present) -
-                        distanceFromPrior(mode.first, mode.place);
-    if (gain > -kNearlyAsWell) {
-      const Eigen::Vector2d apart = mode.place - present;
+    if (mode.gain > -kNearlyAsWell) {
+      const Eigen::Vector2d apart = mode.place - solution_.x().segment<2>(mode.first);
       result_.belief.covariance.block<2, 2>(mode.first, mode.first) += apart * apart.transpose();
       result_.ambiguous.push_back(mode.first);
     }

@@ -25,13 +25,13 @@ MAIN_COIL = 1
 # The computer is busy with something else whenever so many samples are held, for so long.
 STALLS = (5, 15, 30)
 STALL_DURATION = 0.7  # [s]
-# Seed and numbers give a recording of under a minute that determines every parameter.
+# Seed and numbers give a recording of 80 s that determines every parameter.
 SESSION = {
     "seed": 8,
     "joint-poses": 4,
     "main-coil": MAIN_COIL,
-    "main-coil-poses": 8,
-    "coil-poses": 1,
+    "main-coil-poses": 12,
+    "coil-poses": 2,
     "coils-per-dwell": 8,
     "validation-poses": 1,
     "joint-rate": 100,

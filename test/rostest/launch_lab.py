@@ -76,7 +76,7 @@ class LaunchLab(unittest.TestCase):
 
     def check_session(self):
         client = CalibrationClient()
-        wait_for(lambda: client.latest("status"), "status")
+        wait_for(lambda: client.latest("status") and client.latest("parameters"), "status, parameters")
         self.assertEqual(client.latest("parameters").header.frame_id, "unit_1/stator")
         measured = []
         rospy.Subscriber(f"{NAMESPACE}/measured_orientation", QuaternionStamped, measured.append)
