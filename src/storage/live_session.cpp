@@ -64,8 +64,8 @@ Actuator LiveSession::actuator() const {
 
 Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   Sample stored = session_.prepared(sample);
-  // Asked again after an answer that was lost or failed: it is stored once. Only the last one can be
-  // asked for again; the same measurements later come from a recording that is played once more.
+  // Asked again after an answer that was lost or failed: it is stored once. Only the last one can
+  // be asked for again; the same measurements later come from a recording that is played once more.
   if (!session_.samples().empty() && isSameCapture(session_.samples().back(), stored)) {
     return session_.samples().back();
   }
