@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import rosbag
+import rosgraph
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
@@ -94,6 +95,14 @@ class LaunchLab(unittest.TestCase):
 
         wait_for(is_measured, "measured orientation")
         self.assertEqual(measured[0].header.frame_id, "unit_1/stator")
+        # The recorder finds its topics one by one.
+        wait_for(lambda: {"/tf_static", f"{NAMESPACE}/parameters"} <= self.recorded(), "topics of the recorder")
+        rospy.sleep(1.0)
+
+    def recorded(self):
+        """Topics that the recorder subscribes to."""
+        _, subscribers, _ = rosgraph.Master("/launch_lab").getSystemState()
+        return {topic for topic, nodes in subscribers if any("record" in node for node in nodes)}
 
     def check_recording(self, directory):
         self.assertTrue(os.path.exists(os.path.join(directory, "session.db")))
