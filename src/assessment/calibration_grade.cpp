@@ -83,7 +83,7 @@ class Examiner {
     if (identified_ < parameters_.size()) {
       return ", the others are not";
     }
-    const std::string missed = missedAccuracy();
+    std::string missed = missedAccuracy();
     if (!missed.empty()) {
       return missed;
     }

@@ -101,71 +101,106 @@ double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
 
+/// Judges one measurement after the other, then all together.
+class HeldOutJudge {
+ public:
+  HeldOutJudge(const EstimationProblem& problem,
+               const CalibrationState& state,
+               const EstimationOptions& options)
+      : problem_(problem),
+        state_(state),
+        options_(options),
+        evaluator_(problem, options),
+        shared_(groupByDwell(problem, options)),
+        all_(ChosenCoordinates::all(problem.model->space().size())),
+        misfit_(all_.size()) {}
+
+  void judge(HeldOutValidation& result) {
+    for (std::size_t n = 0; n < problem_.observations.size(); ++n) {
+      take(n, result);
+    }
+    addDwells(shared_, sharing_, loading_, misfit_);
+    result.orientation_rms = rootMean(orientation_sum_, result.orientations);
+    result.torque_rms = rootMean(torque_sum_, result.torques);
+    const std::size_t judged = problem_.observations.size() - result.unjudged_torques;
+    if (judged > 0) {
+      conclude(judged, result);
+    }
+  }
+
+ private:
+  void take(std::size_t n, HeldOutValidation& result) {
+    const auto [index, quantity] = problem_.observations[n];
+    const Sample& sample = (*problem_.samples)[index];
+    evaluator_.linearize(n, state_.belief.x, linear_);
+    if (isJudged(problem_.observations[n],
+                 sample,
+                 problem_.model->space(),
+                 state_.identified,
+                 options_.current_threshold)) {
+      whitenJudged(n);
+    } else {
+      ++result.unjudged_torques;
+    }
+    const std::vector<bool> all_held(static_cast<std::size_t>(all_.size()), true);
+    result.residuals.push_back(residualOf(
+        sample, quantity, linear_.residual, evaluator_.covariance(n, linear_, all_held)));
+    const bool is_orientation = quantity == Quantity::kOrientation;
+    (is_orientation ? result.orientations : result.torques) += 1;
+    (is_orientation ? orientation_sum_ : torque_sum_) += linear_.residual.squaredNorm();
+  }
+
+  void whitenJudged(std::size_t n) {
+    const bool is_shared = shared_.shares[n];
+    const Eigen::Matrix3d whitening =
+        whiteningOf(is_shared ? evaluator_.ownNoise(n) : evaluator_.noise(n, linear_));
+    whiten(linear_, whitening, all_, whitened_);
+    if (is_shared) {
+      sharing_[n] = whitened_;
+      loading_[n] = whitening * evaluator_.sharedErrors(n, linear_);
+    } else {
+      misfit_.add(whitened_);
+    }
+  }
+
+  void conclude(std::size_t judged, HeldOutValidation& result) const {
+    const auto values = 3.0 * static_cast<double>(judged);
+    const double chi_square = std::max(jointChiSquare(misfit_, state_.belief.covariance), 0.0);
+    result.reduced_chi_square = chi_square / values;
+    const boost::math::chi_squared_distribution<double> distribution(values);
+    result.probability = boost::math::cdf(boost::math::complement(distribution, chi_square));
+  }
+
+  const EstimationProblem& problem_;
+  const CalibrationState& state_;
+  const EstimationOptions& options_;
+  ObservationEvaluator evaluator_;
+  SharedErrorModel shared_;
+  ChosenCoordinates all_;
+  InformationSum misfit_;
+  std::map<std::size_t, WhitenedObservation> sharing_;  ///< judged ones of dwells
+  std::map<std::size_t, SharedLoading> loading_;
+  double orientation_sum_ = 0.0;
+  double torque_sum_ = 0.0;
+  // Storage that is reused.
+  WhitenedObservation whitened_;
+  LinearizedObservation linear_;
+};
+
 }  // namespace
 
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
                                   const EstimationOptions& options) {
-  const ParameterBelief& belief = state.belief;
-  const EstimationProblem problem = heldOutProblem(model, samples, belief, options);
-  const ObservationEvaluator evaluator(problem, options);
-  const std::vector<bool> all_held(static_cast<std::size_t>(model.space().size()), true);
   HeldOutValidation result;
   for (const Sample& sample : samples) {
     result.samples += sample.validation ? 1U : 0U;
   }
-  if (problem.observations.empty()) {
-    return result;
+  const EstimationProblem problem = heldOutProblem(model, samples, state.belief, options);
+  if (!problem.observations.empty()) {
+    HeldOutJudge(problem, state, options).judge(result);
   }
-  double orientation_sum = 0.0;
-  double torque_sum = 0.0;
-  const ChosenCoordinates all = ChosenCoordinates::all(model.space().size());
-  InformationSum misfit(all.size());
-  const SharedErrorModel shared = groupByDwell(problem, options);
-  std::map<std::size_t, WhitenedObservation> sharing;  ///< judged ones of dwells
-  std::map<std::size_t, SharedLoading> loading;
-  WhitenedObservation whitened;
-  LinearizedObservation linear;
-  for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    const auto [sample, quantity] = problem.observations[n];
-    evaluator.linearize(n, belief.x, linear);
-    if (isJudged(problem.observations[n],
-                 samples[sample],
-                 model.space(),
-                 state.identified,
-                 options.current_threshold)) {
-      const Eigen::Matrix3d noise =
-          shared.shares[n] ? evaluator.ownNoise(n) : evaluator.noise(n, linear);
-      const Eigen::Matrix3d whitening = whiteningOf(noise);
-      whiten(linear, whitening, all, whitened);
-      if (shared.shares[n]) {
-        sharing[n] = whitened;
-        loading[n] = whitening * evaluator.sharedErrors(n, linear);
-      } else {
-        misfit.add(whitened);
-      }
-    } else {
-      ++result.unjudged_torques;
-    }
-    result.residuals.push_back(residualOf(
-        samples[sample], quantity, linear.residual, evaluator.covariance(n, linear, all_held)));
-    const bool is_orientation = quantity == Quantity::kOrientation;
-    (is_orientation ? result.orientations : result.torques) += 1;
-    (is_orientation ? orientation_sum : torque_sum) += linear.residual.squaredNorm();
-  }
-  addDwells(shared, sharing, loading, misfit);
-  result.orientation_rms = rootMean(orientation_sum, result.orientations);
-  result.torque_rms = rootMean(torque_sum, result.torques);
-  const std::size_t judged = problem.observations.size() - result.unjudged_torques;
-  if (judged == 0) {
-    return result;
-  }
-  const auto values = 3.0 * static_cast<double>(judged);
-  const double chi_square = std::max(jointChiSquare(misfit, belief.covariance), 0.0);
-  result.reduced_chi_square = chi_square / values;
-  const boost::math::chi_squared_distribution<double> distribution(values);
-  result.probability = boost::math::cdf(boost::math::complement(distribution, chi_square));
   return result;
 }
 

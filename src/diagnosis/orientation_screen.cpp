@@ -69,6 +69,7 @@ std::vector<double> scaleGrid() {
 std::vector<double> angleGrid() {
   constexpr int kSteps = 36;
   std::vector<double> grid;
+  grid.reserve(kSteps);
   for (int n = 0; n < kSteps; ++n) {
     grid.push_back(2.0 * kPi * n / kSteps - kPi);
   }

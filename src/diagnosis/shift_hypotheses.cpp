@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <utility>
 
 #include "orientation_hypotheses.hpp"
 
@@ -31,11 +32,13 @@ Hypothesis shift(int rows, const std::string& what) {
   result.cause = "rows_shifted";
   result.family = result.cause;
   const std::string direction = rows > 0 ? "later" : "earlier";
-  const std::string text = "the " + what + " stand " + std::to_string(std::abs(rows)) +
-                           (std::abs(rows) == 1 ? " row " : " rows ") + direction +
-                           " than the joint angles they belong to: mend the columns of the file "
-                           "that the samples were made from, or the stamps of that stream.";
-  result.sentence = [text](const Eigen::VectorXd& /*values*/) { return text; };
+  std::string text = "the " + what + " stand " + std::to_string(std::abs(rows)) +
+                     (std::abs(rows) == 1 ? " row " : " rows ") + direction +
+                     " than the joint angles they belong to: mend the columns of the file "
+                     "that the samples were made from, or the stamps of that stream.";
+  result.sentence = [text = std::move(text)](const Eigen::VectorXd& /*values*/) -> std::string {
+    return text;
+  };
   return result;
 }
 

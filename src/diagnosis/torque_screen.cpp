@@ -97,6 +97,7 @@ class TorqueScreen {
       parts.push_back(torqueSign());
     }
     std::vector<Eigen::Vector3d> turned;
+    turned.reserve(measured.size());
     for (const Eigen::Vector3d& torque : measured) {
       turned.emplace_back(sign * rotation * torque);
     }
@@ -166,6 +167,7 @@ class TorqueScreen {
     Eigen::Vector3d signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
     const Eigen::Matrix3d rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
     std::vector<Eigen::Vector3d> turned;
+    turned.reserve(measured.size());
     for (const Eigen::Vector3d& torque : measured) {
       turned.emplace_back(rotation * torque);
     }

@@ -295,6 +295,7 @@ std::vector<Eigen::Vector2d> AxisScan::localMinima() const {
   std::sort(
       minima.begin(), minima.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Eigen::Vector2d> places;
+  places.reserve(minima.size());
   for (const auto& [value, where] : minima) {
     places.push_back(where);
   }

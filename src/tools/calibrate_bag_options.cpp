@@ -61,32 +61,33 @@ void check(const CalibrateBagOptions& options) {
   }
 }
 
-}  // namespace
-
-std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
-                                                            const char* const* argv,
-                                                            std::ostream& out) {
-  CalibrateBagOptions options;
+/// What is understood only after all has been read.
+struct Words {
   std::optional<std::string> cycles;
   std::optional<std::string> source;
-  CommandLine line(kIntroduction);
+  std::optional<std::string> output;
+};
+
+void addInputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
   line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
   line.add(
       "config", options.config_path, "YAML", "configuration; config/calibration.yaml shows all");
   line.add("ns", options.ns, "NAME", "namespace of the recorded topics");
   line.add("from",
-           source,
+           words.source,
            "samples|streams",
            "what to calibrate from; without it samples where they were recorded. The sections "
            "dwell, currents, means and streams of the configuration act on streams only");
   line.add("cycles",
-           cycles,
+           words.cycles,
            "LIST",
            "cycles in this order: joint, poles:J (coil J excited), coil:J, coils (every other coil "
            "with samples), refine; without it, all that the data allow");
-  std::optional<std::string> output;
+}
+
+void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
   line.add("output",
-           output,
+           words.output,
            "YAML",
            "calibrated description to write; needed but for --diagnose or --check alone");
   line.addSwitch("diagnose",
@@ -115,18 +116,30 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
            "covariance of all parameters to write, with names and units");
   line.add("truth", options.truth_path, "YAML", "true parameters, to compare with");
   line.add("date", options.date, "ISO8601", "date of the calibration, in UTC; without it now");
+}
+
+}  // namespace
+
+std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
+                                                            const char* const* argv,
+                                                            std::ostream& out) {
+  CalibrateBagOptions options;
+  Words words;
+  CommandLine line(kIntroduction);
+  addInputs(line, options, words);
+  addOutputs(line, options, words);
   line.addForce(options.overwrite);
   line.addOperands(options.bags);
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
-  options.output_path = output.value_or("");
+  options.output_path = words.output.value_or("");
   check(options);
-  if (source) {
-    options.source = parseSource(*source);
+  if (words.source) {
+    options.source = parseSource(*words.source);
   }
-  if (cycles) {
-    options.cycles = parseCycles(*cycles);
+  if (words.cycles) {
+    options.cycles = parseCycles(*words.cycles);
   }
   return options;
 }

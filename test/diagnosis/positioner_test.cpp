@@ -14,7 +14,8 @@
 namespace sac {
 namespace {
 
-const std::string kFolder = std::string(SOURCE_DIR) + "/config/examples/two_axis_positioner/";
+constexpr char kActuator[] = SOURCE_DIR "/config/examples/two_axis_positioner/actuator.yaml";
+constexpr char kSamples[] = SOURCE_DIR "/config/examples/two_axis_positioner/samples.yaml";
 
 struct PositionerMistake {
   const char* cause;
@@ -49,7 +50,7 @@ std::vector<PositionerMistake> nineMistakes() {
 }
 
 std::vector<std::string> causesNamed(const std::vector<Sample>& samples) {
-  const Actuator actuator = loadActuator(kFolder + "actuator.yaml");
+  const Actuator actuator = loadActuator(kActuator);
   std::vector<std::string> causes;
   for (const Diagnosis& mistake : diagnoseWiring(actuator, samples, {}).mistakes) {
     causes.push_back(mistake.cause);
@@ -58,12 +59,12 @@ std::vector<std::string> causesNamed(const std::vector<Sample>& samples) {
 }
 
 TEST(PositionerDiagnosis, NamesNothingInTheSoundRecording) {
-  EXPECT_EQ(causesNamed(loadSamples(kFolder + "samples.yaml", 0)), std::vector<std::string>{});
+  EXPECT_EQ(causesNamed(loadSamples(kSamples, 0)), std::vector<std::string>{});
 }
 
 TEST(PositionerDiagnosis, NamesNineMistakes) {
   for (const PositionerMistake& mistake : nineMistakes()) {
-    std::vector<Sample> samples = loadSamples(kFolder + "samples.yaml", 0);
+    std::vector<Sample> samples = loadSamples(kSamples, 0);
     for (Sample& sample : samples) {
       mistake.make(sample);
     }

@@ -46,10 +46,10 @@ class CheckedStream {
 
   template <typename Value, typename Allocator>
   void next(std::vector<Value, Allocator>& values) {
-    constexpr bool is_number = std::is_arithmetic_v<Value>;
-    const std::size_t size = length(is_number ? sizeof(Value) : 1);
+    constexpr bool kIsNumber = std::is_arithmetic_v<Value>;
+    const std::size_t size = length(kIsNumber ? sizeof(Value) : 1);
     values.clear();
-    if constexpr (is_number) {
+    if constexpr (kIsNumber) {
       values.resize(size);
       if (size > 0) {
         std::memcpy(values.data(), take(size * sizeof(Value)), size * sizeof(Value));

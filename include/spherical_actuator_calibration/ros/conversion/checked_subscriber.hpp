@@ -33,7 +33,7 @@ ros::Subscriber subscribeChecked(ros::NodeHandle node,
   using Event = ros::MessageEvent<const Checked<Message>>;
   using Pointer = boost::shared_ptr<const Message>;
   const boost::function<void(const Event&)> callback = [receive, refuse](const Event& event) {
-    const boost::shared_ptr<const Checked<Message>> checked = event.getConstMessage();
+    const boost::shared_ptr<const Checked<Message>>& checked = event.getConstMessage();
     if (!checked->defect.empty()) {
       refuse(checked->defect);
       return;
