@@ -13,7 +13,7 @@ PACKAGE = "spherical_actuator_calibration"
 BUILD = pathlib.Path(os.environ["BUILD"])
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 CMAKE = os.environ["CMAKE"]
-STAGING = BUILD / "test" / "staging"
+STAGING = BUILD / "test" / ".staging"
 PREFIX = STAGING / os.environ["PREFIX"].lstrip("/")
 CONSUMER = BUILD / "test" / "consumer"  # where examples/ are built
 
