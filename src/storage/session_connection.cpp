@@ -73,8 +73,11 @@ void SessionConnection::write(const std::string& failure,
   });
   // Moved at this very moment: nobody knows whether it will be read back. Nothing more is stored
   // until the node starts again and reads what is there, so that a repetition is not stored twice.
+  // One look decides: a second one could see a folder that went only then, refuse, and forget it.
   is_lost_ = files_ && !(filesInPlace() == *files_);
-  requireInPlace(failure);
+  if (is_lost_) {
+    throwMoved(path_, failure);
+  }
 }
 
 std::array<FileIdentity, 3> SessionConnection::filesInPlace() const {
