@@ -128,13 +128,13 @@ class SegmentAverager {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (estimate.drift[k] >
           options_.largest_joint_drift + kDriftSignificance * estimate.drift_stddev[k]) {
-        return refuse("joint_" + std::to_string(numberOf(k)) + " drifted by " +
-                      shortNumber(estimate.drift[k] * kMilli) + " mrad.");
+        return refuse("joint_" + std::to_string(numberOf(static_cast<std::size_t>(k))) +
+                      " drifted by " + shortNumber(estimate.drift[k] * kMilli) + " mrad.");
       }
       // A range is at least twice the standard deviation.
       const double stddev = std::sqrt(estimate.single_variance[k]);
       if (2.0 * stddev > options_.largest_joint_spread) {
-        return refuse("joint_" + std::to_string(numberOf(k)) +
+        return refuse("joint_" + std::to_string(numberOf(static_cast<std::size_t>(k))) +
                       " was not at rest: its readings scatter by " + shortNumber(stddev * kMilli) +
                       " mrad.");
       }
