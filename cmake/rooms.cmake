@@ -118,7 +118,7 @@ function(add_order_check room library)
 endfunction()
 
 # Tests of a room, in one program: add_room_tests(<room> SOURCES files of test/<room>... LIBRARIES libraries...)
-# Internal headers of the room are found by their name, SOURCE_DIR is where the shipped files are.
+# Internal headers of the room are found by their name, shipped files by support/source_dir.hpp.
 # NUMERIC: the tests of this filter run a second time, with the mathematics that the C library has for processors
 # without fused multiply-add: last digits differ there. Trials by the hundred need not.
 function(add_room_tests room)
@@ -133,8 +133,8 @@ function(add_room_tests room)
   # A test runs for a moment, and takes longer to optimise: a quarter of the time of its compiler.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test)
-  target_compile_definitions(${name} PRIVATE SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${CMAKE_CURRENT_SOURCE_DIR})
+  target_include_directories(${name} PRIVATE
+    ${PROJECT_SOURCE_DIR}/test ${PROJECT_BINARY_DIR}/test/include ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} sac_test_support GTest::gtest_main)
   if(name STREQUAL base_tests)
     use_precompiled_headers(${name}

@@ -8,6 +8,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
+#include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {

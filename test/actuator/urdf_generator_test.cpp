@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {

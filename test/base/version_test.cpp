@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/source_dir.hpp"
+
 namespace sac {
 namespace {
 

@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

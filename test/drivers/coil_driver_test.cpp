@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
 #include "support/scripted_transport.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
 #include "spherical_actuator_calibration/emulation/emulated_amplifier.hpp"
 #include "spherical_actuator_calibration/emulation/modbus_server.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

@@ -18,12 +18,12 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_message.hpp"
-#include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/recording/recorded_streams.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac::fuzz {
 namespace {

@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/study/paper_control_study.hpp"
 #include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {

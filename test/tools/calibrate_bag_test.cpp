@@ -19,9 +19,8 @@
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
-#include "spherical_actuator_calibration/ros/conversion/file_checksum.hpp"
 #include "support/bag_editing.hpp"
-#include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {
