@@ -1,8 +1,10 @@
-"""What the study found beside what the paper prints, as rows of text."""
+"""What the study found beside what the paper prints, as rows of text. Every judgement is computed from the numbers."""
 
 import dataclasses
+import math
 
 MINIMUM, LOW, MEDIAN, HIGH, MAXIMUM = range(5)  # of a spread
+PRINTED_DIGIT = 1e-6  # the last one of the axes in Table 4
 
 
 @dataclasses.dataclass(frozen=True)
@@ -33,6 +35,36 @@ def printed_deviations(published):
         max(abs(a - b) for axis, wanted in zip(axes, preset) for a, b in zip(axis, wanted))
         for _, axes in sorted(published["table_4_identified_axes"].items())
     ]
+
+
+def iterations_verdict(counts, printed):
+    """Whether half of the sets or more take as many iterations as the paper prints: 8, or "4 to 5"."""
+    bounds = [int(word) for word in str(printed).split() if word.isdigit()]
+    sets = sum(counts.values())
+    fewer = sum(count for n, count in counts.items() if int(n) < bounds[0])
+    more = sum(count for n, count in counts.items() if int(n) > bounds[-1])
+    if sets == 0:
+        return "not shown"
+    if 2 * (fewer + more) <= sets:
+        return f"agrees in {sets - fewer - more} of {sets}"
+    return f"fewer in {fewer} of {sets}" if fewer >= more else f"more in {more} of {sets}"
+
+
+def method_of(printed, chord, newton):
+    """Which of two medians is nearer to a printed value, by their ratio; all have the digits of the paper's table."""
+    printed, chord, newton = (max(value, PRINTED_DIGIT) for value in (printed, chord, newton))
+    if chord == newton:
+        return "both methods', to the last digit"
+    distances = {name: abs(math.log(printed / value)) for name, value in (("chord", chord), ("Newton", newton))}
+    return f"nearer to the {min(distances, key=distances.get)} method's"
+
+
+def plotted_as(roots, printed):
+    """Whether a plotted error is a mean square or its root, by where our values lie."""
+    squares = [root * root for root in roots]
+    if min(squares) <= printed <= max(squares):
+        return "a mean square, without the root"
+    return "a root mean square" if min(roots) <= printed <= max(roots) else "neither a mean square of ours nor a root"
 
 
 def inside(values, value):
@@ -89,7 +121,7 @@ def level_1(study, published):
             "Figure 7: iterations to full recovery",
             published["figure_7"]["iterations_to_zero"],
             ", ".join(f"{n} in {count}" for n, count in ours["iterations"].items()),
-            "agrees",
+            iterations_verdict(ours["iterations"], published["figure_7"]["iterations_to_zero"]),
         ),
     ]
     for n, printed in enumerate(printed_deviations(published), 1):
@@ -100,7 +132,7 @@ def level_1(study, published):
                 f"{printed:.1e}",
                 f"chord {chord[MEDIAN]:.1e} ({chord[MINIMUM]:.0e} to {chord[MAXIMUM]:.0e}), "
                 f"Newton {newton[MEDIAN]:.1e}",
-                "the chord method's",
+                method_of(printed, chord[MEDIAN], newton[MEDIAN]),
             )
         )
     rows += table_4(study, published)
@@ -130,14 +162,13 @@ def level_2(study, published):
                 f"{printed:.2g}",
                 f"rms {spread_text(ours['epsilon_2'][0])} N·m; mean square "
                 f"{min(squares):.2g} to {max(squares):.2g}",
-                "a mean square, without the root"
-                + ("" if min(squares) <= printed <= max(squares) else " (beyond the largest of ours)"),
+                plotted_as(ours["initial"], printed),
             ),
             Row(
                 f"Situation {number}: iterations",
                 str(paper["iterations"]),
                 ", ".join(f"{n} in {count}" for n, count in ours["iterations"].items()),
-                "agrees",
+                iterations_verdict(ours["iterations"], paper["iterations"]),
             ),
             Row(
                 f"Situation {number}: random sets that show every parameter",

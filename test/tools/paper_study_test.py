@@ -4,6 +4,7 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -11,6 +12,9 @@ import yaml
 
 PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
 SOURCE = pathlib.Path(os.environ["SOURCE"])
+sys.path.insert(0, str(SOURCE / "study"))
+from paper_page import comparison  # noqa: E402
+
 SEEDS = 12
 FIGURES = 10
 SMALLEST_PICTURE = 5000  # [bytes]
@@ -75,6 +79,19 @@ class PaperStudy(unittest.TestCase):
             "Figure 14: rotation error, nominal",
         ):
             self.assertIn(part, self.tables)
+
+    def test_judgements_follow_from_the_numbers(self):
+        self.assertEqual(comparison.iterations_verdict({3: 7, 4: 193}, "3 to 4"), "agrees in 200 of 200")
+        self.assertEqual(comparison.iterations_verdict({4: 124, 5: 37, 8: 2}, 8), "fewer in 161 of 163")
+        self.assertEqual(comparison.iterations_verdict({6: 9, 4: 1}, "4 to 5"), "more in 9 of 10")
+        self.assertEqual(comparison.iterations_verdict({}, 8), "not shown")
+        self.assertEqual(comparison.method_of(7e-5, 4.1e-5, 1e-6), "nearer to the chord method's")
+        self.assertEqual(comparison.method_of(2e-6, 4.1e-5, 1e-6), "nearer to the Newton method's")
+        self.assertEqual(comparison.method_of(0.0, 9e-8, 1e-16), "both methods', to the last digit")
+        self.assertEqual(comparison.plotted_as([0.011, 0.027], 6.3e-4), "a mean square, without the root")
+        self.assertEqual(comparison.plotted_as([0.011, 0.027], 0.02), "a root mean square")
+        self.assertEqual(comparison.plotted_as([0.011, 0.027], 0.1), "neither a mean square of ours nor a root")
+        self.assertRegex(self.tables, r"Situation 1: iterations .* fewer in \d+ of \d+")
 
     def test_every_figure_is_drawn_and_in_the_page(self):
         pictures = sorted(self.page.glob("figure_*.png"))
