@@ -1,14 +1,18 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <yaml-cpp/yaml.h>
+
 #include <gtest/gtest.h>
 
-#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
@@ -51,6 +55,37 @@ bool anyHolds(const std::vector<std::string>& lines, const std::string& part) {
   return std::any_of(lines.begin(), lines.end(), [&part](const std::string& line) {
     return line.find(part) != std::string::npos;
   });
+}
+
+/// Keys of a node and of all below it; `configuration` has a file of its own that explains it.
+void collectKeys(const YAML::Node& node, std::set<std::string>& keys) {
+  for (const auto& entry : node) {
+    if (!node.IsMap()) {
+      collectKeys(entry, keys);
+      continue;
+    }
+    const auto key = entry.first.as<std::string>();
+    keys.insert(key);
+    if (key != "configuration") {
+      collectKeys(entry.second, keys);
+    }
+  }
+}
+
+TEST(ReportFile, HasNoKeyThatItsPageDoesNotExplain) {
+  std::ostringstream page;
+  page << std::ifstream(SOURCE_DIR "/doc/report.md").rdbuf();
+  const CalibrationSession session = calibratedSession(6);
+  const std::string report = renderReport(session,
+                                          {"2024-05-31T12:00:00Z", {{"a.bag", "00"}}, "0.2.0", 7U},
+                                          {},
+                                          {{"tracker_inverted", "It is inverted.", 9.0}});
+  std::set<std::string> keys;
+  collectKeys(YAML::Load(report), keys);
+  ASSERT_GT(keys.size(), 60U);
+  for (const std::string& key : keys) {
+    EXPECT_NE(page.str().find("`" + key + "`"), std::string::npos) << key;
+  }
 }
 
 TEST(ReportFile, TellsVerdictRevisionAndNextSteps) {
