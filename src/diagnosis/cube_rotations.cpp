@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "spherical_actuator_calibration/base/pi.hpp"
-#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {

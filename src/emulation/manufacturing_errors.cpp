@@ -3,7 +3,6 @@
 #include <string>
 
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
 namespace {

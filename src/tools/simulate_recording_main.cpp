@@ -5,7 +5,6 @@
 #include "simulate_recording_options.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/emulation/session_simulator.hpp"
 #include "spherical_actuator_calibration/measurement/session_plan.hpp"

@@ -10,7 +10,6 @@
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/open_directions.hpp"
-#include "support/calibration_trials.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {

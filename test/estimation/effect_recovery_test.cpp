@@ -4,7 +4,6 @@
 
 #include "estimation/effect_laboratory.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
-#include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "support/calibration_trials.hpp"
 
 namespace sac {

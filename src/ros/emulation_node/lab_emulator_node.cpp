@@ -9,7 +9,6 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
-#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {

@@ -1,7 +1,6 @@
 #include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/streams/stream_statistics.hpp"
 
 namespace sac {
