@@ -14,6 +14,18 @@
 namespace sac {
 namespace {
 
+/// Of the joints' coordinates, row after row.
+void printCovariance(const Eigen::MatrixXd& covariance) {
+  const Eigen::Index count = ParameterSpace::kPerJoint * static_cast<Eigen::Index>(kJoints);
+  std::printf("covariance");
+  for (Eigen::Index a = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b < count; ++b) {
+      std::printf(" %.17g", covariance(a, b));
+    }
+  }
+  std::printf("\n");
+}
+
 void calibrate(const CalibratedDescription& start,
                const CalibrationConfig& config,
                const char* path) {
@@ -37,6 +49,7 @@ void calibrate(const CalibratedDescription& start,
                 one.stddev,
                 one.observable ? "identified" : "open");
   }
+  printCovariance(session.state().belief.covariance);
   const GradedCalibration graded = gradeCalibration(session);
   std::printf("grade %s %s\n", gradeName(graded.grade).c_str(), graded.reason.c_str());
 }

@@ -3,10 +3,13 @@
 
     coverage_study.py [SCENARIO...] [--sessions N]
 
-One line a scenario: coverage of all parameters, rms error over the bound, stated uncertainty over the bound.
+One line a scenario: coverage of all parameters with its standard error, rms error over the bound, stated uncertainty
+over the bound. Parameters of one session share the errors of its registrations, so the standard error is that of the
+mean of the sessions' shares, not of a binomial distribution over all parameters.
 """
 
 import argparse
+import dataclasses
 
 import cases
 import laboratory
@@ -44,8 +47,18 @@ def sessions_of(unit, sensors, poses, count, first_seed):
     return result
 
 
+@dataclasses.dataclass
+class Result:
+    coverage: float
+    coverage_error: float  # standard error, sessions being independent
+    error_over_bound: float  # rms over parameters and sessions
+    error_over_bound_error: float  # standard error, sessions being independent
+    stated_over_bound: float
+    refined: int
+    seconds: float  # a refinement, median
+
+
 def study(name, count, first_seed=1000, with_bound=True):
-    """Coverage, rms error over the bound, rms stated uncertainty over the bound, successes, seconds a refinement."""
     unit, sensors = laboratory.paper_unit(), SCENARIOS[name]
     poses = laboratory.random_poses(POSES, TILT, np.random.default_rng(5))
     sessions = sessions_of(unit, sensors, poses, count, first_seed)
@@ -56,15 +69,23 @@ def study(name, count, first_seed=1000, with_bound=True):
     stddevs = np.stack([outcome.stddevs for outcome in outcomes])
     done = np.array([outcome.refined() for outcome in outcomes], bool)
     apart = (values - truths)[done]
-    coverage = np.mean(np.abs(apart) <= 1.96 * stddevs[done])
+    held = np.mean(np.abs(apart) <= 1.96 * stddevs[done], axis=1)
     # Angles of poles and coils are as many radians as their arcs here, to 4 %: all lie near the equator.
     limits = np.full(unit.size(), np.nan)
     if with_bound:
         limits = np.sqrt(np.diag(laboratory.bound(unit, sessions[0][0], sensors, sessions[0][1])))
-    error_over_bound = np.sqrt(np.mean((apart / limits) ** 2))
-    stated_over_bound = np.sqrt(np.mean((stddevs[done] / limits) ** 2))
-    seconds = float(np.median([outcome.solve_time for outcome in outcomes]))
-    return coverage, error_over_bound, stated_over_bound, int(done.sum()), seconds
+    squares = np.mean((apart / limits) ** 2, axis=1)
+    error_over_bound = np.sqrt(np.mean(squares))
+    root = np.sqrt(max(1, len(squares)))
+    return Result(
+        coverage=np.mean(held),
+        coverage_error=np.std(held) / root,
+        error_over_bound=error_over_bound,
+        error_over_bound_error=np.std(squares) / root / (2.0 * error_over_bound),
+        stated_over_bound=np.sqrt(np.mean((stddevs[done] / limits) ** 2)),
+        refined=int(done.sum()),
+        seconds=float(np.median([outcome.solve_time for outcome in outcomes])),
+    )
 
 
 def main():
@@ -74,10 +95,12 @@ def main():
     parser.add_argument("--no-bound", action="store_true", help="without the dense bound, which takes a minute each")
     options = parser.parse_args()
     for name in options.scenarios or SCENARIOS:
-        coverage, error, stated, done, seconds = study(name, options.sessions, with_bound=not options.no_bound)
+        result = study(name, options.sessions, with_bound=not options.no_bound)
         print(
-            f"{name:15} coverage {100.0 * coverage:5.1f} %  error/bound {error:.3f}  stated/bound {stated:.3f}  "
-            f"refined {done} of {options.sessions}, {1e3 * seconds:.0f} ms each",
+            f"{name:15} coverage {100.0 * result.coverage:5.1f} +- {100.0 * result.coverage_error:.1f} %  "
+            f"error/bound {result.error_over_bound:.3f} +- {result.error_over_bound_error:.3f}  "
+            f"stated/bound {result.stated_over_bound:.3f}  refined {result.refined} of {options.sessions}, "
+            f"{1e3 * result.seconds:.0f} ms each",
             flush=True,
         )
 

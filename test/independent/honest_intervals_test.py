@@ -14,11 +14,11 @@ SESSIONS = 10
 
 class HonestIntervals(unittest.TestCase):
     def check(self, name, least=0.90):
-        coverage, _, _, done, _ = coverage_study.study(name, SESSIONS, with_bound=False)
-        self.assertEqual(done, SESSIONS)
+        result = coverage_study.study(name, SESSIONS, with_bound=False)
+        self.assertEqual(result.refined, SESSIONS)
         # Few sessions, and errors that many parameters share: far from 95 % only where something is wrong.
-        self.assertGreater(coverage, least)
-        self.assertLess(coverage, 0.995)
+        self.assertGreater(result.coverage, least)
+        self.assertLess(result.coverage, 0.995)
 
     def test_registrations(self):
         self.check("registrations", least=0.80)

@@ -72,9 +72,13 @@ def axis_of(polar, azimuth):
 
 
 def chart_axis(base, u, v):
-    """Normal coordinates around a coordinate axis: e_u is the next one, cyclically."""
+    """Normal coordinates around an axis: e_u is the part across it of the coordinate axis that follows its largest
+    component, cyclically."""
     k = int(np.argmax(np.abs(base)))
-    e_u, e_v = np.eye(3)[(k + 1) % 3], np.eye(3)[(k + 2) % 3]
+    e_u = np.eye(3)[(k + 1) % 3]
+    e_u = e_u - base * (base @ e_u)
+    e_u = e_u / np.linalg.norm(e_u)
+    e_v = np.cross(base, e_u)
     rho = np.hypot(u, v)
     if rho < 1e-12:
         return base + u * e_u + v * e_v
