@@ -14,8 +14,9 @@ namespace sac {
 struct AxisMode {
   Eigen::Index first = 0;  ///< coordinate u of the axis, v follows
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
-  /// By how much the robust misfit of the axis's torques, and of its distance from the drawing in
-  /// tolerances, is smaller there than at the present place; negative where it is larger.
+  /// By how much the robust misfit of the axis's torques, and of its distance from the drawing
+  /// (in tolerances, or in the scatter of the unit's axes where that is larger), is smaller there
+  /// than at the present place; negative where it is larger.
   double gain = 0.0;
 };
 
@@ -29,7 +30,7 @@ struct ModeSearch {
 /// Looks for other places of single poles and coils: the torque curve is not monotone, so that an
 /// axis may rest where its torques fit badly, or fit as well as elsewhere. Two angles are scanned
 /// with all else held, for each axis of `estimated` (ascending) that has torques, over all of them,
-/// whether they served or not. The best other place of each axis that has one.
+/// whether they served or not. All other places of each axis.
 std::vector<AxisMode> otherModes(const EstimationProblem& problem,
                                  const WeightedObservations& observations,
                                  const Eigen::VectorXd& x,

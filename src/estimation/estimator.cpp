@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "axis_modes.hpp"
@@ -281,9 +282,12 @@ void Estimator::takeBetterModes() {
   for (int round = 0; round < kMaxRounds; ++round) {
     const double worthwhile = outlierLimit();
     Eigen::VectorXd moved = solution_.x();
+    std::map<Eigen::Index, double> best;
     for (const AxisMode& mode :
          otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
-      if (mode.gain > worthwhile) {
+      double& gain = best.try_emplace(mode.first, worthwhile).first->second;
+      if (mode.gain > gain) {
+        gain = mode.gain;
         moved.segment<2>(mode.first) = mode.place;
       }
     }
@@ -331,7 +335,7 @@ bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
   return true;
 }
 
-/// Axes that another place explains nearly as well, manufacture included, are told, with both
+/// Axes that other places explain nearly as well, manufacture included, are told, with all these
 /// places in their uncertainty.
 void Estimator::widenAmbiguous() {
   constexpr double kNearlyAsWell = 16.0;  // of χ²: four standard deviations
@@ -341,7 +345,9 @@ void Estimator::widenAmbiguous() {
     if (mode.gain > -kNearlyAsWell) {
       const Eigen::Vector2d apart = mode.place - solution_.x().segment<2>(mode.first);
       result_.belief.covariance.block<2, 2>(mode.first, mode.first) += apart * apart.transpose();
-      result_.ambiguous.push_back(mode.first);
+      if (result_.ambiguous.empty() || result_.ambiguous.back() != mode.first) {
+        result_.ambiguous.push_back(mode.first);
+      }
     }
   }
 }

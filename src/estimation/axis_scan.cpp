@@ -1,0 +1,183 @@
+#include "axis_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Cholesky>
+
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+
+namespace sac {
+namespace {
+
+/// The basins of a torque curve are wider than a step for ranges of up to 0.2 rad.
+constexpr int kSteps = 4;
+/// Few torques fit in many places, on both sides of the curve's peak: looked for more closely.
+constexpr std::size_t kFewTorques = 3;
+constexpr int kFineSteps = 18;
+
+}  // namespace
+
+AxisScan::AxisScan(const TorqueCurve& curve,
+                   const AxisChart& chart,
+                   bool is_pole,
+                   std::vector<ScannedTorque> torques,
+                   double range,
+                   double transition)
+    : curve_(curve),
+      chart_(chart),
+      is_pole_(is_pole),
+      torques_(std::move(torques)),
+      limit_(transition * transition),
+      range_(range),
+      steps_(torques_.size() <= kFewTorques ? kFineSteps : kSteps),
+      step_(range / steps_) {}
+
+double AxisScan::misfit(const Eigen::Vector2d& place) const {
+  const Eigen::Vector3d axis = chart_.axis(place[0], place[1]);
+  double sum = 0.0;
+  for (const ScannedTorque& torque : torques_) {
+    const Eigen::Vector3d own = torque.to_rotor * axis;
+    Eigen::Vector3d rest = torque.rest;
+    for (const ScannedPartner& partner : torque.partners) {
+      if (interacts(curve_, partner.axis_rotor, own)) {
+        rest -= partner.weight * (is_pole_ ? pairTorque(curve_, own, partner.axis_rotor)
+                                           : pairTorque(curve_, partner.axis_rotor, own));
+      }
+    }
+    sum += limit_ * std::log1p((torque.whitening * rest).squaredNorm() / limit_);
+  }
+  return sum;
+}
+
+AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
+  Eigen::Vector3d axis;
+  Eigen::Matrix<double, 3, 2> d_axis;
+  chart_.evaluate(place[0], place[1], axis, d_axis);
+  Normal sum;
+  for (const ScannedTorque& torque : torques_) {
+    const Eigen::Vector3d own = torque.to_rotor * axis;
+    Eigen::Vector3d rest = torque.rest;
+    Eigen::Matrix3d d_own = Eigen::Matrix3d::Zero();
+    for (const ScannedPartner& partner : torque.partners) {
+      if (interacts(curve_, partner.axis_rotor, own)) {
+        const PairTorque pair = is_pole_ ? linearizePairTorque(curve_, own, partner.axis_rotor)
+                                         : linearizePairTorque(curve_, partner.axis_rotor, own);
+        rest -= partner.weight * pair.torque;
+        d_own -= partner.weight * (is_pole_ ? pair.d_pole : pair.d_coil);
+      }
+    }
+    const Eigen::Vector3d residual = torque.whitening * rest;
+    const Eigen::Matrix<double, 3, 2> jacobian =
+        torque.whitening * d_own * torque.to_rotor * d_axis;
+    const double square = residual.squaredNorm() / limit_;
+    const double weight = 1.0 / (1.0 + square);
+    sum.misfit += limit_ * std::log1p(square);
+    sum.gradient += weight * jacobian.transpose() * residual;
+    sum.information += weight * jacobian.transpose() * jacobian;
+  }
+  return sum;
+}
+
+/// The minimum below a place of the scan.
+Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place) const {
+  constexpr int kMaxIterations = 20;
+  constexpr double kNothing = 1e-5;  // [rad]: the estimator goes on from there
+  double damping = 1e-3;
+  Normal here = linearized(place);
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    Eigen::Matrix2d damped = here.information;
+    damped.diagonal() *= 1.0 + damping;
+    damped.diagonal().array() += 1e-6;
+    Eigen::Vector2d step = -damped.ldlt().solve(here.gradient);
+    // Beyond one step of the scan is another place of it.
+    step *= std::min(1.0, step_ / std::max(step.norm(), kNothing));
+    const Normal there = linearized(place + step);
+    if (there.misfit < here.misfit) {
+      place += step;
+      here = there;
+      damping *= 0.1;
+      if (step.norm() < kNothing) {
+        break;
+      }
+    } else {
+      damping *= 10.0;
+      if (step.norm() < kNothing) {
+        break;
+      }
+    }
+  }
+  return place;
+}
+
+/// Places of the scan that no neighbour is better than, best first.
+std::vector<Eigen::Vector2d> AxisScan::localMinima() const {
+  const int width = 2 * steps_ + 1;
+  const auto place = [this](int row, int column) {
+    return Eigen::Vector2d(step_ * (row - steps_), step_ * (column - steps_));
+  };
+  Eigen::MatrixXd misfits(width, width);
+  for (int row = 0; row < width; ++row) {
+    for (int column = 0; column < width; ++column) {
+      misfits(row, column) = misfit(place(row, column));
+    }
+  }
+  std::vector<std::pair<double, Eigen::Vector2d>> minima;
+  for (int row = 0; row < width; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const int top = std::max(row - 1, 0);
+      const int left = std::max(column - 1, 0);
+      const double least = misfits
+                               .block(top,
+                                      left,
+                                      std::min(row + 1, width - 1) - top + 1,
+                                      std::min(column + 1, width - 1) - left + 1)
+                               .minCoeff();
+      if (misfits(row, column) <= least) {
+        minima.emplace_back(misfits(row, column), place(row, column));
+      }
+    }
+  }
+  std::sort(
+      minima.begin(), minima.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(minima.size());
+  for (const auto& [value, where] : minima) {
+    places.push_back(where);
+  }
+  return places;
+}
+
+std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const {
+  constexpr std::size_t kMostStarts = 4;
+  constexpr std::size_t kMostFineStarts = 64;
+  constexpr double kWithin = 36.0;     // of χ²: six standard deviations
+  constexpr double kFarBetter = 16.0;  // of χ²
+  constexpr double kSamePlace = 1e-3;  // [rad]
+  std::vector<ScannedPlace> found;
+  if (torques_.empty()) {
+    return found;
+  }
+  const Normal here = linearized(present);
+  const auto is_known = [&](const ScannedPlace& there) {
+    const Eigen::Vector2d apart = there.place - present;
+    const bool is_within = apart.dot(here.information * apart) < kWithin && there.gain < kFarBetter;
+    return is_within || apart.norm() < kSamePlace ||
+           std::any_of(found.begin(), found.end(), [&](const ScannedPlace& other) {
+             return (other.place - there.place).norm() < kSamePlace;
+           });
+  };
+  std::vector<Eigen::Vector2d> starts = localMinima();
+  starts.resize(std::min(starts.size(), steps_ == kSteps ? kMostStarts : kMostFineStarts));
+  for (const Eigen::Vector2d& start : starts) {
+    const Eigen::Vector2d place = descended(start);
+    const ScannedPlace there{place, here.misfit - misfit(place)};
+    if (isWithin(place) && !is_known(there)) {
+      found.push_back(there);
+    }
+  }
+  return found;
+}
+
+}  // namespace sac
