@@ -14,6 +14,9 @@ namespace {
 /// More than clocks of a computer drift apart between two commands [s].
 constexpr double kClockJump = 0.05;
 
+/// An amplifier that deviated so often does so again: somebody must look at it.
+constexpr int kMostFaults = 3;
+
 std::string withTwoDigits(double value) {
   return format("%.2f", value);
 }
@@ -32,6 +35,8 @@ CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t
     : limits_(limits),
       coils_(coils),
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))),
+      lowest_(setpoints_),
+      highest_(setpoints_),
       deviating_(coils, 0) {
   validate(limits);
 }
@@ -48,6 +53,7 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   was_commanded_ = true;
   owner_ = command.caller;
   last_stamp_ = command.stamp;
+  zero_commanded_ = command.currents.isZero(0.0);
   expires_at_ = now.steady + limits_.watchdog - age;
   return {};
 }
@@ -128,6 +134,8 @@ void CurrentSupervisor::close() {
 void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   const std::lock_guard<std::mutex> lock(mutex_);
   setpoints_ = setpoints;
+  lowest_ = lowest_.cwiseMin(setpoints);
+  highest_ = highest_.cwiseMax(setpoints);
   if (!setpoints.isZero(0.0)) {
     zero_confirmed_ = false;
   }
@@ -136,24 +144,52 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
 void CurrentSupervisor::observe(const Eigen::VectorXd& measured) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
-  for (std::size_t coil = 0; coil < coils_; ++coil) {
-    const auto index = static_cast<Eigen::Index>(coil);
-    const bool deviates = std::abs(measured[index] - setpoints_[index]) > limits_.deviation;
-    deviating_[coil] = deviates ? deviating_[coil] + 1 : 0;
-    if (fault_.empty() && deviating_[coil] >= limits_.deviating_beats) {
-      fault_ = describeDeviation(coil, measured[index]);
-    }
-  }
   const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
   // Current that flows though zero is set is no longer confirmed to be zero.
   zero_confirmed_ = !flows && setpoints_.isZero(0.0);
+  if (fault_.empty()) {
+    compare(measured);
+  } else {
+    zero_beats_ = zero_confirmed_ ? zero_beats_ + 1 : 0;
+    endFault();
+  }
+  lowest_ = setpoints_;
+  highest_ = setpoints_;
 }
 
-std::string CurrentSupervisor::describeDeviation(std::size_t coil, double measured) const {
-  return "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
-         " A where " + withTwoDigits(setpoints_[static_cast<Eigen::Index>(coil)]) +
-         " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
-         "Switch it off, look after it and its wires, then start the driver anew";
+void CurrentSupervisor::compare(const Eigen::VectorXd& measured) {
+  for (std::size_t coil = 0; coil < coils_; ++coil) {
+    const auto index = static_cast<Eigen::Index>(coil);
+    const double beyond =
+        std::max(lowest_[index] - measured[index], measured[index] - highest_[index]);
+    deviating_[coil] = beyond > limits_.deviation ? deviating_[coil] + 1 : 0;
+    if (fault_.empty() && deviating_[coil] >= limits_.deviating_beats) {
+      fail(coil, measured[index]);
+    }
+  }
+}
+
+void CurrentSupervisor::fail(std::size_t coil, double measured) {
+  ++faults_;
+  zero_beats_ = 0;
+  zero_commanded_ = false;
+  fault_ = "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
+           " A where " + withTwoDigits(setpoints_[static_cast<Eigen::Index>(coil)]) +
+           " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
+           "Switch it off, look after it and its wires, then ";
+  fault_ += faults_ < kMostFaults
+                ? "command zero: commands are followed again when zero is measured"
+                : "start the driver anew: it happened for the third time";
+}
+
+// Whoever wants current must first have seen that there is a fault, and say so by a zero: a command
+// that goes on through it may be given blindly.
+void CurrentSupervisor::endFault() {
+  const bool has_ended = zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
+  if (has_ended && faults_ < kMostFaults) {
+    fault_.clear();
+    std::fill(deviating_.begin(), deviating_.end(), 0);
+  }
 }
 
 std::string CurrentSupervisor::owner(double steady) const {
@@ -164,6 +200,11 @@ std::string CurrentSupervisor::owner(double steady) const {
 std::string CurrentSupervisor::fault() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return fault_;
+}
+
+int CurrentSupervisor::faults() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return faults_;
 }
 
 bool CurrentSupervisor::isZeroConfirmed() const {

@@ -290,6 +290,14 @@ TEST_F(CoilDriverTest, AnAmplifierThatDoesNotApplyIsToldAndItsHeartbeatWithheld)
   }
   EXPECT_EQ(bus_.at(kUnit, RegisterTable::kHolding, 101), heartbeat);
   EXPECT_TRUE(allZero());
+  // Zero is measured; once it is commanded, too, all is as before.
+  now_ += 0.005;
+  ASSERT_EQ(offer(pattern(3, 0.0)), "");
+  beat();
+  EXPECT_FALSE(beat().fault);
+  EXPECT_NE(bus_.at(kUnit, RegisterTable::kHolding, 101), heartbeat);
+  follow(pattern(3, 1.5));
+  EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
 }
 
 TEST_F(CoilDriverTest, AStalledLoopTakesNoLargeStep) {

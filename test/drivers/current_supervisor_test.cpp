@@ -173,7 +173,7 @@ TEST(CurrentSupervisor, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
   EXPECT_EQ(faultAfter({{1.0, 1.1, 100}}), "");
   EXPECT_EQ(faultAfter({{0.0, 2.0, 3}}), "");
   EXPECT_EQ(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0}, {0.0, 2.0, 3}}), "");
-  for (const Flow& flow : {Flow{0.0, 2.0, 4}, Flow{1.0, 0.0, 4}, Flow{1.0, -1.0, 4}}) {
+  for (const Flow& flow : {Flow{0.0, 2.0, 4}, Flow{1.0, 0.0, 5}, Flow{1.0, -1.0, 4}}) {
     EXPECT_NE(faultAfter({flow}), "") << flow.set << ' ' << flow.measured;
   }
   const std::string fault = faultAfter({{0.0, 2.0, 4}, {0.0, 0.0, 100}});
@@ -181,7 +181,113 @@ TEST(CurrentSupervisor, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
   EXPECT_NE(fault.find("Switch it off"), std::string::npos) << fault;
 }
 
-TEST(CurrentSupervisor, AfterSuchAnErrorNoCommandIsFollowedAnyMore) {
+// Of a loop that is held up: every beat finds that the command has run out, or that there is one
+// again.
+TEST(CurrentSupervisor, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
+  std::vector<Flow> late;
+  for (int n = 0; n < 20; ++n) {
+    late.push_back({2.0, 0.0});
+    late.push_back({0.0, 2.0});
+  }
+  EXPECT_EQ(faultAfter(late), "");
+  // On the way from one to the other.
+  EXPECT_EQ(faultAfter({{0.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}, {2.0, 1.0}, {0.0, 1.0}, {2.0, 1.0}}),
+            "");
+  // Beyond both, and what was set once does not excuse what flows for long.
+  EXPECT_NE(faultAfter({{2.0, 0.0}, {0.0, 2.3}, {2.0, -0.3}, {0.0, 2.3}, {2.0, 2.3}}), "");
+  EXPECT_NE(faultAfter({{2.0, 2.0}, {0.0, 2.0, 5}}), "");
+}
+
+/// A supervisor in a fault, by a current in the second coil.
+class FaultOfCurrents : public ::testing::Test {
+ protected:
+  FaultOfCurrents() { deviate(); }
+
+  void deviate() { observe(4, 2.0); }
+  void observe(int beats, double measured) {
+    for (int n = 0; n < beats; ++n) {
+      supervisor_.setting(amperes(0.0));
+      supervisor_.observe(amperes(0.0, measured));
+    }
+  }
+  /// What follows happens a moment later.
+  void command(double current) {
+    now_ += 0.1;
+    ASSERT_EQ(supervisor_.offer(given("/owner", now_, current), at(now_)), "");
+  }
+  bool isFollowed() const { return supervisor_.command(now_).has_value(); }
+
+  CurrentSupervisor supervisor_{limits(), 2};
+  double now_ = 10.0;
+};
+
+TEST_F(FaultOfCurrents, EndsWhenZeroWasMeasuredForAsLongAndIsCommanded) {
+  ASSERT_NE(supervisor_.fault(), "");
+  EXPECT_NE(supervisor_.fault().find("command zero"), std::string::npos) << supervisor_.fault();
+  observe(3, 0.0);
+  command(0.0);
+  EXPECT_FALSE(isFollowed());
+  observe(1, 0.1);
+  EXPECT_EQ(supervisor_.fault(), "");
+  EXPECT_EQ(supervisor_.faults(), 1);
+  EXPECT_TRUE(isFollowed());
+  command(1.0);
+  EXPECT_EQ((*supervisor_.command(now_))[0], 1.0);
+}
+
+TEST_F(FaultOfCurrents, StaysWhileAnythingButZeroIsCommanded) {
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "nothing was commanded";
+  command(1.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "the commander goes on blindly";
+  command(0.0);
+  command(1.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "it wants current again";
+  EXPECT_FALSE(isFollowed());
+  command(0.0);
+  observe(1, 0.0);
+  EXPECT_EQ(supervisor_.fault(), "");
+}
+
+TEST_F(FaultOfCurrents, StaysWhileMoreThanZeroIsMeasured) {
+  command(0.0);
+  for (int n = 0; n < 10; ++n) {
+    observe(3, 0.0);
+    observe(1, 0.2);
+    EXPECT_NE(supervisor_.fault(), "");
+  }
+  observe(4, 0.0);
+  EXPECT_EQ(supervisor_.fault(), "");
+}
+
+TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
+  CurrentSupervisor supervisor(limits(), 2);
+  ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
+  for (const double measured : {2.0, 0.0}) {
+    for (int n = 0; n < 4; ++n) {
+      supervisor.observe(amperes(measured));
+    }
+  }
+  EXPECT_NE(supervisor.fault(), "");
+}
+
+TEST_F(FaultOfCurrents, StaysTheThirdTime) {
+  for (int fault = 1; fault < 3; ++fault) {
+    EXPECT_EQ(supervisor_.faults(), fault);
+    command(0.0);
+    observe(4, 0.0);
+    ASSERT_EQ(supervisor_.fault(), "");
+    deviate();
+  }
+  EXPECT_NE(supervisor_.fault().find("start the driver anew"), std::string::npos);
+  command(0.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "");
+}
+
+TEST(CurrentSupervisor, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
   for (int n = 0; n < 4; ++n) {
     supervisor.observe(amperes(0.0, 2.0));

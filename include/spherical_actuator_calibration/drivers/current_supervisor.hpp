@@ -66,12 +66,17 @@ class CurrentSupervisor {
 
   /// These setpoints [A] go to the amplifier next: from now on current may flow.
   void setting(const Eigen::VectorXd& setpoints);
-  /// These currents [A] were measured after the last setpoints were written.
+  /// These currents [A] were measured after the last setpoints were written. They are held against
+  /// all that was set since the measurement before: where the last setpoints have not acted yet, as
+  /// the beat was late or the current needs a moment, those before still flow.
   void observe(const Eigen::VectorXd& measured);
-  /// What flows against what was set, and what to do. Once it is not empty it stays, until the
-  /// amplifier was looked after and the driver is started anew. The heartbeat must be withheld, so
-  /// that the amplifier's own watchdog acts.
+  /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
+  /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
+  /// watchdog acts. It ends when zero was measured in all coils for `deviating_beats` beats in a
+  /// row, and the last command that was accepted since it began is zero. The third one stays.
   std::string fault() const;
+  /// How often there was one.
+  int faults() const;
   /// Whether zero was measured in all coils since anything else was set.
   bool isZeroConfirmed() const;
   /// In words, why it is not; empty when it is.
@@ -81,7 +86,9 @@ class CurrentSupervisor {
   std::string refusal(const CoilCommand& command, const Instant& now) const;
   bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
   void noticeClockJump(const Instant& now);
-  std::string describeDeviation(std::size_t coil, double measured) const;
+  void compare(const Eigen::VectorXd& measured);
+  void fail(std::size_t coil, double measured);
+  void endFault();
 
   const SupervisorLimits limits_;
   const std::size_t coils_;
@@ -94,10 +101,15 @@ class CurrentSupervisor {
   std::optional<double> last_stamp_;   ///< its stamp
   std::optional<double> wall_offset_;  ///< wall less steady clock, when it came
   Eigen::VectorXd setpoints_;
+  Eigen::VectorXd lowest_;   ///< that was set since the last measurement [A]
+  Eigen::VectorXd highest_;  ///< likewise
   std::optional<Eigen::VectorXd> measured_;
   bool zero_confirmed_ = false;
   std::vector<int> deviating_;  ///< beats in a row, for each coil
   std::string fault_;
+  int faults_ = 0;
+  int zero_beats_ = 0;           ///< in a row, since the fault
+  bool zero_commanded_ = false;  ///< by the last command that was accepted since the fault
 };
 
 }  // namespace sac
