@@ -77,6 +77,8 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
   options.enable_address = readAddress(map, "enable_address");
   requireHeartbeat(map);
   options.heartbeat_address = readAddress(map, "heartbeat_address");
+  options.memory_limit =
+      map.number("memory_limit", ValueRange::closed(50.0, 1e6, "MB"), options.memory_limit);
   if (map.has("tripped")) {
     options.tripped = readRegisterField(map.map("tripped"));
   }

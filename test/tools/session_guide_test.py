@@ -4,8 +4,9 @@
 import io
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
-from spherical_actuator_calibration.session_guide import progress
+from spherical_actuator_calibration.session_guide import progress, session
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
 from spherical_actuator_calibration.session_guide.terminal import Terminal
@@ -125,6 +126,72 @@ class CommandLine(unittest.TestCase):
         ):
             with self.assertRaisesRegex(OptionError, name):
                 parse(arguments)
+
+
+class Coils:
+    """Of a laboratory whose driver follows again once it was commanded zero for a while, if at all."""
+
+    def __init__(self, clock, cured_at, needs_zero):
+        self._clock = clock
+        self._cured_at = cured_at
+        self._needs_zero = needs_zero
+        self._pattern = 3
+
+    def excite(self, coil, _current):
+        self._pattern = coil
+        if coil == 0 and self._clock[0] >= self._cured_at:
+            self._needs_zero = False
+
+    def is_excited(self):
+        return self._clock[0] >= self._cured_at and not self._needs_zero and self._pattern == 3
+
+    @staticmethod
+    def driver_complaint():
+        return "coil 3 carries 0.00 A"
+
+
+class WaitingForCurrent(unittest.TestCase):
+    def waited(self, cured_at, needs_zero=False, timeout=60.0):
+        """Time [s] until the coils carried current, and what was said meanwhile."""
+        clock = [0.0]
+
+        def sleep(seconds):
+            clock[0] += seconds
+
+        screen = Screen(False)
+        guided = session.Session.__new__(session.Session)
+        guided._options = Options(current_timeout=timeout)
+        guided._terminal = Terminal(screen)
+        guided._laboratory = Coils(clock, cured_at, needs_zero)
+        fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
+        with mock.patch.object(session, "rospy", fake):
+            try:
+                guided._wait_for_current(3)
+            except RuntimeError as error:
+                return clock[0], str(error)
+        return clock[0], screen.getvalue()
+
+    def test_says_nothing_of_a_moment(self):
+        waited, said = self.waited(0.5)
+        self.assertLess(waited, 1.0)
+        self.assertEqual(said, "")
+
+    def test_tells_once_why_and_goes_on(self):
+        waited, said = self.waited(30.0)
+        self.assertLess(waited, 40.0)
+        self.assertEqual(said.count("\n"), 1)
+        self.assertIn("Coil 3 does not carry its current: check the amplifier", said)
+        self.assertIn("coil 3 carries 0.00 A", said)
+
+    def test_commands_the_zero_that_a_driver_in_fault_waits_for(self):
+        waited, _ = self.waited(0.0, needs_zero=True)
+        self.assertLess(waited, 10.0)
+
+    def test_ends_and_tells_why_after_its_time(self):
+        waited, said = self.waited(1e9, timeout=60.0)
+        self.assertGreater(waited, 60.0)
+        self.assertLess(waited, 75.0)
+        self.assertIn("coil 3 carries 0.00 A. See to that", said)
 
 
 class Screen(io.StringIO):

@@ -3,6 +3,7 @@
 import threading
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
@@ -22,6 +23,8 @@ class Laboratory:
         self._joints = None
         self._joints_time = None
         self._currents = None
+        self._driver = f"{ns[1:]}/coil_driver: output"
+        self._driver_status = None
         self._command = [0.0] * coils
         self._lock = threading.Lock()
         self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
@@ -29,6 +32,7 @@ class Laboratory:
         self._subscribers = [
             rospy.Subscriber(ns + "/joint_states", JointState, self._keep_joints),
             rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
         ]
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
 
@@ -42,6 +46,11 @@ class Laboratory:
     def _keep_currents(self, message):
         with self._lock:
             self._currents = tuple(message.current)
+
+    def _keep_diagnostics(self, message):
+        for status in message.status:
+            if status.name == self._driver:
+                self._driver_status = status
 
     def _repeat(self, _event):
         # Under the lock, so that commands go out in the order of their stamps.
@@ -71,6 +80,11 @@ class Laboratory:
             largest = max(map(abs, self._command))
             tolerance = max(0.05, CURRENT_ERROR * largest)
             return all(abs(a - b) <= tolerance for a, b in zip(self._currents, self._command))
+
+    def driver_complaint(self):
+        """What the coil driver says is wrong; empty when it says nothing."""
+        status = self._driver_status
+        return status.message if status is not None and status.level != DiagnosticStatus.OK else ""
 
     def drive_to(self, joints):
         self._targets.publish(JointState(name=self._names, position=list(joints)))

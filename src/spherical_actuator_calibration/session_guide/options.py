@@ -19,6 +19,7 @@ class Options:
     current: float = 2.0
     dwell: float = 0.5
     settling: float = 0.3
+    current_timeout: float = 120.0
     wanted_stddev: float = 0.0
     drive_fixture: bool = False
     assume_yes: bool = False
@@ -32,6 +33,7 @@ class Options:
             "current": (0.01, 1000.0),
             "dwell": (0.05, 600.0),
             "settling": (0.0, 600.0),
+            "current_timeout": (1.0, 3600.0),
             "wanted_stddev": (0.0, 1.0),
         }
         for name, (least, most) in ranges.items():
@@ -63,6 +65,12 @@ def parse(arguments):
     add("--current", type=float, default=default.current, help="of an excited coil [A] (%(default)s)")
     add("--dwell", type=float, default=default.dwell, help="of each capture [s] (%(default)s)")
     add("--settling", type=float, default=default.settling, help="before it [s] (%(default)s)")
+    add(
+        "--current-timeout",
+        type=float,
+        default=default.current_timeout,
+        help="end when coils do not carry what is commanded for so long [s] (%(default)s)",
+    )
     add(
         "--wanted-stddev",
         type=float,

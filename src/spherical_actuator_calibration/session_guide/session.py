@@ -13,6 +13,9 @@ ZERO_CAPTURE = 3.0
 FURTHER_POSES = 2  # that are added at a time where parameters stay open
 MOST_ROUNDS = 4
 SLOW = 5.0  # [s] after which the operator is told what the session waits for
+# [s] without current before it is tried again: a driver whose currents deviated follows again after zero was commanded
+# and measured.
+PAUSE = 1.0
 
 
 class Session:
@@ -132,13 +135,32 @@ class Session:
         tolerance = progress.SAME_POSE if self._options.drive_fixture else 0.1
         return pose.is_at(joints, tolerance)
 
-    def _wait_for_current(self, coil):
+    def _wait_for_current(self, pattern):
+        """Until the coils carry what is commanded. Raises RuntimeError when that takes too long."""
         begin = rospy.get_time()
+        while not self._has_current():
+            waited = rospy.get_time() - begin
+            what = f"Coil {pattern} does not carry its current" if pattern else "A coil carries current"
+            complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
+            if waited > self._options.current_timeout:
+                raise RuntimeError(
+                    f"{what}, after {waited:.0f} s: {complaint}. See to that, and start guided_session again."
+                )
+            self._terminal.say_once(
+                f"{what}: check the amplifier (tripped?) and the coil driver ({complaint})."
+            )
+            self._laboratory.excite(0, 0.0)
+            rospy.sleep(PAUSE)
+            self._laboratory.excite(pattern, self._options.current)
+
+    def _has_current(self):
+        """Whether the coils carry what is commanded, soon."""
+        end = rospy.get_time() + SLOW
         while not self._laboratory.is_excited():
-            if rospy.get_time() - begin > SLOW:
-                what = f"Coil {coil} does not carry its current" if coil else "A coil carries current"
-                self._terminal.say_once(what + ": check the amplifier (tripped?) and the coil driver.")
+            if rospy.get_time() > end:
+                return False
             rospy.sleep(POLL)
+        return True
 
     def _capture(self, pose, pattern):
         """Captures one pattern; repeats, and says why, until it is held."""
