@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
 #include "spherical_actuator_calibration/ros/devices/coil_driver_node.hpp"
+#include "spherical_actuator_calibration/ros/node/memory_limit.hpp"
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
@@ -11,6 +12,8 @@ int main(int argc, char** argv) {
       "coil_driver",
       [&zero_confirmed](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
         const sac::CurrentAmplifierOptions options = sac::loadCurrentAmplifierOptions(private_node);
+        sac::handleFatalExceptions();
+        sac::limitMemory(options.memory_limit);
         sac::CoilDriverNode coil_driver(node,
                                         private_node,
                                         sac::loadDescriptionParameter(node).actuator,
@@ -20,5 +23,5 @@ int main(int argc, char** argv) {
         zero_confirmed = coil_driver.stop();
       });
   // Whoever started this program must not take it for done while current may flow.
-  return status == 0 && !zero_confirmed ? 1 : status;
+  return status == 0 && (!zero_confirmed || sac::failedFatally()) ? 1 : status;
 }

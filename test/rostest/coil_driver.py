@@ -3,11 +3,13 @@
 
 import math
 import signal
+import struct
 import subprocess
 import sys
 import threading
 import unittest
 
+import hostile_peer
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
@@ -277,6 +279,35 @@ class CoilDriver(unittest.TestCase):
         measured = len(self.measured)
         wait_for(lambda: len(self.measured) > measured + 5, "further beats")
         self.assertEqual(self.device.holding_at(HEARTBEAT), heartbeat)
+
+    def test_a_deviation_ends_when_zero_is_measured_and_commanded(self):
+        node = self.started(watchdog=PATIENT, deviation={"tolerance": 0.15, "beats": 20})
+        self.follow()
+        self.device.holding.are_applied = False
+        self.commander.command = None
+        node.wait_for_level("output", ERROR)
+        self.device.holding.are_applied = True
+        # Whoever goes on as if nothing was gets no current.
+        self.commander.command = self.pattern(3, 1.5)
+        measured = len(self.measured)
+        wait_for(lambda: len(self.measured) > measured + 60, "further beats")
+        self.assertTrue(self.is_zero())
+        self.assertEqual(node.level("output"), ERROR)
+        self.commander.command = self.pattern(3, 0.0)
+        wait_for(lambda: node.level("output") != ERROR, "the end of the error")
+        self.follow()
+        self.assertEqual(node.value("output", "deviations"), "1")
+
+    def test_ends_at_zero_when_it_gets_no_memory(self):
+        node = self.started(watchdog=PATIENT, memory_limit=300)
+        self.follow()
+        with hostile_peer.connect(f"{node.name}/get_loggers") as link:
+            link.sendall(struct.pack("<I", 900000000))  # what roscpp makes room for
+            written = node.wait_for_end()
+        self.assertTrue(self.is_zero())
+        self.assertEqual(self.device.holding_at(ENABLE), [0])
+        self.assertNotEqual(node.process.returncode, 0)
+        self.assertIn("the node ends", written)
 
     def test_an_unattended_amplifier_must_be_accepted(self):
         parameters = rospy.get_param("/shipped/coil_driver")

@@ -7,17 +7,22 @@ its limit [s]. Exit status: 0 all is within the limits, 1 something is not.
 """
 
 import argparse
+import contextlib
 import dataclasses
 import math
 import pathlib
 import signal
+import struct
 import sys
 import tempfile
 import time
 from typing import Callable
 
+import hostile_peer
 import rospy
-from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command
+from calibration_client import wait_for
+from driver_node import OK
+from fault_laboratory import CURRENT, PATIENCE, Laboratory, Master, Outcome, command
 from modbus_device import free_port
 from sensor_faults import sensor_fault
 
@@ -150,6 +155,17 @@ def thrown(laboratory):
     return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
 
 
+def without_memory(laboratory):
+    """Connections say that they send more than the driver may have."""
+    with contextlib.ExitStack() as links:
+        for _ in range(3):
+            begin = time.monotonic()
+            link = links.enter_context(hostile_peer.connect(f"{laboratory.driver.name}/get_loggers"))
+            link.sendall(struct.pack("<I", 900000000))
+        status = status_of(laboratory)
+    return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
+
+
 def clock_jump(seconds):
     """Of the driver alone: the commands are of another time."""
 
@@ -213,6 +229,22 @@ def not_applied(make):
     return run
 
 
+def applied_again(laboratory):
+    """After zero was commanded and is measured, commands are followed as before."""
+    laboratory.amplifier.stick()
+    begin = laboratory.commander.change(zero)
+    told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
+    laboratory.amplifier.obey()
+    laboratory.commander.change(command)
+    laboratory.watch(2.0)
+    defect = "the error ends without a commanded zero" if laboratory.amplifier.is_on() else ""
+    laboratory.commander.change(zero)
+    wait_for(lambda: laboratory.driver.level("output") == OK, "the end of the error", PATIENCE)
+    laboratory.commander.change(command)
+    wait_for(laboratory.amplifier.is_on, "current as before", PATIENCE)
+    return Outcome(told=told, defect=defect)
+
+
 # -- the master -----------------------------------------------------------------------------------------------------
 
 
@@ -267,6 +299,7 @@ def faults_of(master):
         Fault("driver: SIGINT", ended(signal.SIGINT), end),
         Fault("driver: SIGTERM, never applied", ended_while_stuck, (None, None, None), is_short=True),
         Fault("driver: exception", thrown, end, is_short=True, preload=True),
+        Fault("driver: no memory", without_memory, end),
         Fault("driver's clock +1 h", clock_jump(JUMP), stop, preload=True),
         Fault("driver's clock -1 h", clock_jump(-JUMP), stop, preload=True),
         Fault("all clocks -1 h, then commands stop", common_clock_jump, stop, preload=True),
@@ -280,6 +313,7 @@ def faults_of(master):
         Fault("amplifier: link cut", misbehaving("cut"), (None, 0.7, None)),
         Fault("zero acknowledged, not applied", not_applied(zero), (None, 1.0, 0.5), is_short=True),
         Fault("the same, commands stop", not_applied(lambda: None), (None, 1.0, 0.75)),
+        Fault("the same, then applied again", applied_again, (None, None, 0.5)),
         *(
             Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
             for how in ("silence", "dribble", "reset", "wrong id", "endless")

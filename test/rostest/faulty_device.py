@@ -137,6 +137,11 @@ class FaultyAmplifier(FaultyDevice):
             self._stuck = True
             return time.monotonic()
 
+    def obey(self):
+        """From now on all is applied again."""
+        with self._lock:
+            self._stuck = False
+
     def _intervals(self):
         with self._lock:
             history = list(self._history)

@@ -31,6 +31,9 @@ struct CurrentAmplifierOptions {
   /// Only an operator who accepts that nothing ends the currents when the driver is killed goes
   /// without.
   std::optional<int> heartbeat_address;
+  /// More memory than it has at its start the program that drives it must not take [MB]. One lying
+  /// length on a link of ROS asks for up to 1000.
+  double memory_limit = 2000.0;
 };
 
 /// Reads a configuration (config/coil_driver.yaml) from a map whose other keys are the caller's.

@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 #include "spherical_actuator_calibration/ros/node/wall_stamp.hpp"
 
@@ -164,9 +165,8 @@ void CoilDriverNode::beat() {
     }
     const ros::Time before = ros::Time::now();
     const CoilDriver::Beat beat = driver_.beat(steadySeconds());
-    const ros::Time after = ros::Time::now();
     if (beat.measured) {
-      publish(*beat.measured, before + (after - before) * 0.5);
+      publish(*beat.measured, middleOf(before, ros::Time::now()));
     }
     tell(beat);
   } catch (const std::exception& error) {
@@ -225,6 +225,7 @@ void CoilDriverNode::diagnoseOutput(DiagnosticStatus& status) {
   status.add("largest setpoint [A]", setpoints_.cwiseAbs().maxCoeff());
   status.add("sum of setpoints [A]", setpoints_.cwiseAbs().sum());
   status.add("commands clamped", clamped_);
+  status.add("deviations", supervisor.faults());
 }
 
 }  // namespace sac

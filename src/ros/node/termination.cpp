@@ -1,17 +1,35 @@
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <thread>
 
 #include <ros/callback_queue.h>
 #include <ros/init.h>
+
+#include <unistd.h>
 
 namespace sac {
 namespace {
 
 volatile std::sig_atomic_t g_termination_requested = 0;
+volatile std::sig_atomic_t g_failed_fatally = 0;
 
 void requestTermination(int /*signal*/) {
   g_termination_requested = 1;
+}
+
+// Memory may be what is wanting: nothing here asks for any.
+[[noreturn]] void endInOrder() {
+  constexpr char kWords[] = "An exception that nobody catches: the node ends.\n";
+  constexpr std::chrono::seconds kPatience{2};
+  g_failed_fatally = 1;
+  g_termination_requested = 1;
+  static_cast<void>(!::write(STDERR_FILENO, kWords, sizeof kWords - 1));
+  std::this_thread::sleep_for(kPatience);
+  std::abort();
 }
 
 // How long a signal may wait when no callback is due [s].
@@ -29,6 +47,14 @@ void handleTerminationSignals() {
 
 bool terminationRequested() {
   return g_termination_requested != 0;
+}
+
+void handleFatalExceptions() {
+  std::set_terminate(endInOrder);
+}
+
+bool failedFatally() {
+  return g_failed_fatally != 0;
 }
 
 void spinUntilTermination() {

@@ -10,6 +10,14 @@ void handleTerminationSignals();
 /// True once SIGINT or SIGTERM came.
 bool terminationRequested();
 
+/// Makes an exception that nobody catches, such as one of want of memory in a thread of roscpp, end
+/// the program as SIGTERM does, so that what is dangerous ends first: its thread stands still. What
+/// has not ended two seconds later is aborted.
+void handleFatalExceptions();
+
+/// True once there was one: the exit status must tell it.
+bool failedFatally();
+
 /// Serves the global callback queue until a signal came or ROS is shut down from outside. ROS
 /// itself still runs afterwards in the first case, so that last messages can be sent.
 void spinUntilTermination();
