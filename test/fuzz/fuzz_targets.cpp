@@ -14,6 +14,7 @@ const std::vector<Target>& targets() {
       {"dimensions", readDimensionsFile},
       {"configuration", readConfigurationFile},
       {"registers", readRegisters},
+      {"words", readRegisterWords},
       {"plan", readPlanFile},
       {"samples", readSamplesFile},
       {"messages", readMessages},

@@ -34,6 +34,7 @@ class MemoryFile {
 void readDescriptionFile(const std::uint8_t* data, std::size_t size);
 void readDimensionsFile(const std::uint8_t* data, std::size_t size);
 void readConfigurationFile(const std::uint8_t* data, std::size_t size);
+void readRegisterWords(const std::uint8_t* data, std::size_t size);
 void readRegisters(const std::uint8_t* data, std::size_t size);
 void readPlanFile(const std::uint8_t* data, std::size_t size);
 void readSamplesFile(const std::uint8_t* data, std::size_t size);

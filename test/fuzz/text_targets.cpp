@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,23 +83,28 @@ void readRegisters(const std::uint8_t* data, std::size_t size) {
     map.finish();
     return options;
   });
-  // Every bit pattern of registers is some number, and whole numbers come back.
-  std::vector<std::uint16_t> words(2);
-  for (std::size_t n = 0; n + 4 <= size; n += 4) {
-    words = {static_cast<std::uint16_t>(data[n] << 8U | data[n + 1]),
-             static_cast<std::uint16_t>(data[n + 2] << 8U | data[n + 3])};
-    for (const RegisterType type : {RegisterType::kInt16,
-                                    RegisterType::kUint16,
-                                    RegisterType::kInt32,
-                                    RegisterType::kUint32,
-                                    RegisterType::kFloat32}) {
-      for (const WordOrder order : {WordOrder::kHighFirst, WordOrder::kLowFirst}) {
-        const double value = decodeRegisters(words.data(), type, order);
-        if (type != RegisterType::kFloat32) {
-          const std::vector<std::uint16_t> again = encodeRegisters(value, type, order);
-          require(decodeRegisters(again.data(), type, order) == value);
-        }
-      }
+}
+
+// Every bit pattern of registers is some number, and whole numbers come back. The first byte tells
+// which of the types and orders they have.
+void readRegisterWords(const std::uint8_t* data, std::size_t size) {
+  constexpr RegisterType kTypes[] = {RegisterType::kInt16,
+                                     RegisterType::kUint16,
+                                     RegisterType::kInt32,
+                                     RegisterType::kUint32,
+                                     RegisterType::kFloat32};
+  if (size == 0) {
+    return;
+  }
+  const RegisterType type = kTypes[data[0] % std::size(kTypes)];
+  const WordOrder order = data[0] < 0x80 ? WordOrder::kHighFirst : WordOrder::kLowFirst;
+  for (std::size_t n = 1; n + 4 <= size; n += 4) {
+    const std::uint16_t words[] = {static_cast<std::uint16_t>(data[n] << 8U | data[n + 1]),
+                                   static_cast<std::uint16_t>(data[n + 2] << 8U | data[n + 3])};
+    const double value = decodeRegisters(words, type, order);
+    if (type != RegisterType::kFloat32) {
+      const std::vector<std::uint16_t> again = encodeRegisters(value, type, order);
+      require(decodeRegisters(again.data(), type, order) == value);
     }
   }
 }
