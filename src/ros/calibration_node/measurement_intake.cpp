@@ -15,8 +15,9 @@
 namespace sac {
 namespace {
 
-/// Messages that may wait while the receiving thread is held up: seconds at the highest rates.
-constexpr std::uint32_t kQueueLength = 20000;
+/// Messages that may wait while the receiving thread is held up: seconds at the highest rates. What
+/// is too long for its stream is refused faster than it can come, so that it does not pile up.
+constexpr std::uint32_t kQueueLength = 10000;
 
 /// A stream that is absent, such as a tracker which is switched off, is told but is no error of the
 /// calibration; what is too old or too slow for a dwell is.

@@ -99,12 +99,32 @@ TEST(CheckedMessage, BelievesNoLength) {
 }
 
 TEST(CheckedMessage, RefusesWhatIsTooLong) {
+  constexpr std::size_t kLargest = kLargestMessage<sensor_msgs::JointState>;
   sensor_msgs::JointState message;
-  message.header.frame_id.assign(kLargestMessage, 'x');
+  message.header.frame_id.assign(kLargest, 'x');
   EXPECT_NE(read<sensor_msgs::JointState>(bytesOf(message)).defect.find("are the most that is"),
             std::string::npos);
-  message.header.frame_id.resize(kLargestMessage - 100);
+  message.header.frame_id.resize(kLargest - 100);
   EXPECT_EQ(read<sensor_msgs::JointState>(bytesOf(message)).defect, "");
+}
+
+// A queue of ten thousand holds no more than a node may have.
+TEST(CheckedMessage, OfStreamsAreShort) {
+  constexpr std::size_t kQueue = 10000;
+  constexpr std::size_t kMost = std::size_t{200} << 20U;
+  EXPECT_LT(kQueue * kLargestMessage<sensor_msgs::JointState>, kMost);
+  EXPECT_LT(kQueue * kLargestMessage<geometry_msgs::QuaternionStamped>, kMost);
+  EXPECT_LT(kQueue * kLargestMessage<geometry_msgs::Vector3Stamped>, kMost);
+  // Of a thousand coils, and of a hundred joints.
+  msg::CoilCurrents currents;
+  currents.current.resize(1000);
+  EXPECT_EQ(read<msg::CoilCurrents>(bytesOf(currents)).defect, "");
+  sensor_msgs::JointState joints;
+  joints.name.assign(100, "a_joint_with_a_rather_long_name");
+  joints.position.resize(100);
+  joints.velocity.resize(100);
+  joints.effort.resize(100);
+  EXPECT_EQ(read<sensor_msgs::JointState>(bytesOf(joints)).defect, "");
 }
 
 }  // namespace

@@ -9,14 +9,31 @@
 #include <vector>
 
 #include <boost/array.hpp>
+#include <geometry_msgs/QuaternionStamped.h>
+#include <geometry_msgs/Vector3Stamped.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
+#include <sensor_msgs/JointState.h>
+#include <spherical_actuator_calibration/CoilCurrents.h>
+
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
 
 /// A message that comes from outside is not longer than this [byte]: samples of thousands of coils
-/// are shorter.
+/// are shorter. Those of streams are short, so that a queue of thousands of them, and the time to
+/// read it, are small however somebody floods it.
+template <typename Message>
 inline constexpr std::size_t kLargestMessage = std::size_t{4} << 20U;
+template <>
+inline constexpr std::size_t kLargestMessage<sensor_msgs::JointState> = std::size_t{16} << 10U;
+template <>
+inline constexpr std::size_t kLargestMessage<msg::CoilCurrents> = std::size_t{64} << 10U;
+template <>
+inline constexpr std::size_t kLargestMessage<geometry_msgs::QuaternionStamped> =
+    std::size_t{4} << 10U;
+template <>
+inline constexpr std::size_t kLargestMessage<geometry_msgs::Vector3Stamped> = std::size_t{4} << 10U;
 
 /// Reads messages from bytes, and believes no length in them before it has seen the bytes. roscpp
 /// makes room for as many entries as an array says it has before it looks whether they are there:
@@ -105,9 +122,9 @@ struct Checked {
 /// Reads the bytes of a message; what is wrong with them is told by `defect`.
 template <typename Message>
 void readChecked(const std::uint8_t* data, std::size_t size, Checked<Message>& checked) {
-  if (size > kLargestMessage) {
+  if (size > kLargestMessage<Message>) {
     checked.defect = "it is " + std::to_string(size) + " bytes long; " +
-                     std::to_string(kLargestMessage) + " are the most that is read";
+                     std::to_string(kLargestMessage<Message>) + " are the most that is read";
     return;
   }
   try {
