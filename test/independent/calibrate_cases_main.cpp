@@ -49,6 +49,7 @@ void calibrate(const CalibratedDescription& start,
                 one.stddev,
                 one.observable ? "identified" : "open");
   }
+  std::printf("complete %s\n", session.isComplete() ? "yes" : "no");
   printCovariance(session.state().belief.covariance);
   const GradedCalibration graded = gradeCalibration(session);
   std::printf("grade %s %s\n", gradeName(graded.grade).c_str(), graded.reason.c_str());

@@ -22,7 +22,8 @@ class Outcome:
     reason: str
     cycles: list  # (name, success, message)
     solve_time: float  # [s] of the last cycle
-    joint_covariance: np.ndarray = None  # 9x9, of the coordinates of the joints
+    complete: bool  # exit status 0 of calibrate_bag
+    joint_covariance: np.ndarray  # 9x9, of the coordinates of the joints
 
     def refined(self):
         return self.cycles and self.cycles[-1][0] == "refine" and self.cycles[-1][1]
@@ -38,7 +39,7 @@ def registration_config(registration, more=""):
 
 
 def read_outcomes(text, names):
-    outcomes, rows, cycles, solve_time, covariance = [], {}, [], 0.0, None
+    outcomes, rows, cycles, solve_time, complete, covariance = [], {}, [], 0.0, False, None
     for line in text.splitlines():
         word, _, rest = line.partition(" ")
         if word == "case":
@@ -50,13 +51,15 @@ def read_outcomes(text, names):
         elif word == "parameter":
             name, value, stddev, identified = rest.split(" ")
             rows[name] = (float(value), float(stddev), identified == "identified")
+        elif word == "complete":
+            complete = rest == "yes"
         elif word == "covariance":
             covariance = np.array(rest.split(" "), float).reshape(9, 9)
         elif word == "grade":
             grade, _, reason = rest.partition(" ")
             chosen = [rows[name] for name in names]
             values, stddevs, identified = (np.array(column) for column in zip(*chosen))
-            outcomes.append(Outcome(values, stddevs, identified, grade, reason, cycles, solve_time, covariance))
+            outcomes.append(Outcome(values, stddevs, identified, grade, reason, cycles, solve_time, complete, covariance))
     return outcomes
 
 

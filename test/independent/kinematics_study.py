@@ -142,7 +142,7 @@ class Case:
 class Tally:
     def __init__(self):
         self.counts = collections.Counter()
-        self.squares = self.freedom = self.stated = 0.0
+        self.squares = self.freedom = 0.0
 
     def add(self, case, outcome):
         if not outcome.cycles or not outcome.cycles[0][1]:
@@ -173,6 +173,13 @@ def study(count, first_seed=0):
     return tallies, lines
 
 
+def pooled_error(tallies):
+    """rms error over the bound of all cases, and its standard error."""
+    squares, freedom = (sum(getattr(tally, what) for tally in tallies.values()) for what in ("squares", "freedom"))
+    pooled = np.sqrt(squares / freedom)
+    return pooled, pooled / np.sqrt(2.0 * freedom)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=1000)
@@ -183,9 +190,8 @@ def main():
     for kind, tally in tallies.items():
         print(f"{kind:20} error/bound {tally.error_over_bound():.3f}, {tally.counts['done']} done, "
               f"{tally.counts['refused']} refused, {tally.counts['wrong']} wrong")
-    squares, freedom = (sum(getattr(tally, what) for tally in tallies.values()) for what in ("squares", "freedom"))
-    pooled = np.sqrt(squares / freedom)
-    print(f"{'all':20} error/bound {pooled:.3f} +- {pooled / np.sqrt(2.0 * freedom):.3f}")
+    pooled, uncertainty = pooled_error(tallies)
+    print(f"{'all':20} error/bound {pooled:.3f} +- {uncertainty:.3f}")
     return 1 if pooled > 1.05 or any(tally.counts["wrong"] for tally in tallies.values()) else 0
 
 

@@ -57,22 +57,22 @@ def verdict(unit, errors, outcome):
     return "silent", ", ".join(f"{names[p]} off by {apart[p]:.0f} standard deviations" for p in wrong[:4])
 
 
-def study(half_width, count, first_seed=0):
-    """Counts of verdicts, and a line for each silent session."""
+def study(half_width, seeds):
+    """Counts of verdicts, and a line for each silent or told session."""
     unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(joint=2e-5)
-    made = [session(unit, sensors, half_width, seed) for seed in range(first_seed, first_seed + count)]
+    made = [session(unit, sensors, half_width, seed) for seed in seeds]
     exact = cases.registration_config((0.0, 0.0, 0.0))
     outcomes = cases.calibrate(unit, [(sensors, dwells, 0) for _, dwells in made], exact)
     counts, lines = collections.Counter(), []
-    for n, ((errors, _), outcome) in enumerate(zip(made, outcomes)):
+    for seed, (errors, _), outcome in zip(seeds, made, outcomes):
         kind, words = verdict(unit, errors, outcome)
         counts[kind] += 1
         if kind == "right" and not outcome.identified.all():
             counts["right, with open parameters"] += 1
         if kind == "silent":
-            lines.append(f"seed {first_seed + n}: {words}")
+            lines.append(f"seed {seed}: {words}")
         elif kind == "told":
-            lines.append(f"seed {first_seed + n}: told: {outcome.reason[:150]}")
+            lines.append(f"seed {seed}: told: {outcome.reason[:150]}")
     return counts, lines
 
 
@@ -84,7 +84,8 @@ def main():
     options = parser.parse_args()
     silent = 0
     for half_width in options.range:
-        counts, lines = study(half_width, options.sessions, options.first_seed)
+        seeds = range(options.first_seed, options.first_seed + options.sessions)
+        counts, lines = study(half_width, seeds)
         silent += counts["silent"]
         print("\n".join(lines))
         print(f"+-{half_width:.2f} rad: {counts['right']} right ({counts['right, with open parameters']} with open "
