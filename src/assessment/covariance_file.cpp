@@ -5,10 +5,36 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
+#include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
+#include "spherical_actuator_calibration/assessment/uncertainty_budget.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 
 namespace sac {
 namespace {
+
+/// Shares of each parameter's variance, a row each, a column for each source.
+void writeBudget(YamlWriter& writer, const CalibrationSession& session) {
+  const std::vector<BudgetEntry> budget = uncertaintyBudget(session);
+  if (budget.empty()) {
+    return;
+  }
+  const Eigen::MatrixXd shares = budgetShares(budget);
+  std::vector<std::string> sources;
+  sources.reserve(budget.size());
+  for (const BudgetEntry& entry : budget) {
+    sources.push_back(yamlText(entry.source));
+  }
+  std::vector<std::string> rows;
+  for (Eigen::Index p = 0; p < shares.rows(); ++p) {
+    const Eigen::RowVectorXd row = shares.row(p);
+    rows.push_back(yamlNumbers(row));
+  }
+  writer.map(1, "budget");
+  writer.line(2,
+              "# share of each parameter's variance (rows, as above) from each source (columns)");
+  writer.entry(2, "sources", yamlList(sources));
+  writer.list(2, "shares", rows);
+}
 
 const CycleReport* lastSuccess(const CalibrationSession& session) {
   const CycleReport* last = nullptr;
@@ -18,24 +44,11 @@ const CycleReport* lastSuccess(const CalibrationSession& session) {
   return last;
 }
 
-/// ∂reported/∂coordinates, by central differences: axes turn smoothly into their angles.
-Eigen::MatrixXd reportedJacobian(const ParameterSpace& space, const Eigen::VectorXd& x) {
-  constexpr double kStep = 1e-5;
-  Eigen::MatrixXd jacobian(space.size(), space.size());
-  for (Eigen::Index p = 0; p < space.size(); ++p) {
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(space.size(), p);
-    jacobian.col(p) =
-        (space.reportedValues(x + step) - space.reportedValues(x - step)) / (2.0 * kStep);
-  }
-  return jacobian;
-}
-
 }  // namespace
 
-Eigen::MatrixXd reportedCovariance(const CalibrationSession& session) {
-  const ParameterBelief& belief = session.state().belief;
-  const Eigen::MatrixXd jacobian = reportedJacobian(session.model().space(), belief.x);
-  return jacobian * belief.covariance * jacobian.transpose();
+int degreesOfFreedom(const CalibrationSession& session) {
+  const CycleReport* last = lastSuccess(session);
+  return last == nullptr ? 0 : last->degrees_of_freedom;
 }
 
 double coverageFactor(const CalibrationSession& session) {
@@ -64,7 +77,6 @@ std::string renderCovariance(const CalibrationSession& session) {
     const Eigen::RowVectorXd row = covariance.row(p);
     rows.push_back(yamlNumbers(row));
   }
-  const CycleReport* last = lastSuccess(session);
   YamlWriter writer;
   writer.map(0, "covariance");
   writer.entry(1, "actuator", yamlText(session.start().actuator.name));
@@ -76,8 +88,8 @@ std::string renderCovariance(const CalibrationSession& session) {
   writer.list(1, "matrix", rows);
   writer.line(1, "# value +- coverage_factor times standard deviation holds 95 %");
   writer.entry(1, "coverage_factor", yamlNumber(coverageFactor(session)));
-  writer.entry(
-      1, "degrees_of_freedom", std::to_string(last == nullptr ? 0 : last->degrees_of_freedom));
+  writer.entry(1, "degrees_of_freedom", std::to_string(degreesOfFreedom(session)));
+  writeBudget(writer, session);
   return writer.text();
 }
 

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_certificate.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/covariance_file.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
@@ -55,6 +56,7 @@ struct Files {
   std::string report;       ///< empty: no report is wanted
   std::string report_page;  ///< the same for people
   std::string covariance;   ///< empty: none is wanted
+  std::string certificate;  ///< the same
 };
 
 Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) {
@@ -71,8 +73,12 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.report_page = (fs::path(*options.report_folder) / "report.html").string();
   }
   files.covariance = options.covariance_path.value_or("");
-  for (const std::string& path :
-       {files.description, files.urdf, files.covariance, options.corrected_path.value_or("")}) {
+  files.certificate = options.certificate_path.value_or("");
+  for (const std::string& path : {files.description,
+                                  files.urdf,
+                                  files.covariance,
+                                  files.certificate,
+                                  options.corrected_path.value_or("")}) {
     requireNewFile(path, options.overwrite);
   }
   if (options.report_folder) {
@@ -207,8 +213,24 @@ void printGrade(const CalibrationSession& session) {
   std::cout << "grade: " << gradeName(graded.grade) << "\n" << graded.reason << "\n";
 }
 
+/// Nobody certifies what the samples contradict.
+void writeCertificate(const CalibrationSession& session,
+                      const CalibrationOrigin& origin,
+                      const CertificateIssuer& issuer,
+                      const std::string& path,
+                      OverwritePolicy policy) {
+  const Grade grade = gradeCalibration(session).grade;
+  if (grade == Grade::kFailed || grade == Grade::kContradicted) {
+    std::cout << "Certificate: " << path << " is not written: see the grade.\n";
+    return;
+  }
+  writeFileAtomically(path, renderCertificate(session, origin, issuer), policy);
+  std::cout << "Certificate: " << path << "\n";
+}
+
 void writeResult(const CalibrationSession& session,
                  const CalibrationOrigin& origin,
+                 const CertificateIssuer& issuer,
                  const Files& files,
                  OverwritePolicy policy) {
   const CalibratedDescription result = session.description(origin);
@@ -217,6 +239,9 @@ void writeResult(const CalibrationSession& session,
   if (!files.covariance.empty()) {
     writeFileAtomically(files.covariance, renderCovariance(session), policy);
     std::cout << "Covariance: " << files.covariance << "\n";
+  }
+  if (!files.certificate.empty()) {
+    writeCertificate(session, origin, issuer, files.certificate, policy);
   }
   if (!files.urdf.empty()) {
     writeCalibratedUrdf(files.urdf_template,
@@ -246,6 +271,8 @@ int calibrateBag(const CalibrateBagOptions& options) {
       options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
   const std::optional<Actuator> truth = truthOf(options, start.actuator);
   const Files files = prepareFiles(options, start.actuator);
+  const CertificateIssuer issuer =
+      options.issuer_path ? loadCertificateIssuer(*options.issuer_path) : CertificateIssuer{};
 
   Recording recording = readBags(options, start.actuator, config);
   const std::vector<std::string> lines = describe(recording.report);
@@ -276,7 +303,7 @@ int calibrateBag(const CalibrateBagOptions& options) {
     printGrade(session);
     return kIncomplete;
   }
-  writeResult(session, origin, files, options.overwrite);
+  writeResult(session, origin, issuer, files, options.overwrite);
   printGrade(session);
   return session.isComplete() ? kComplete : kIncomplete;
 }

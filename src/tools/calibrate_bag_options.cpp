@@ -53,6 +53,13 @@ void check(const CalibrateBagOptions& options) {
   if (options.output_path.empty() && (options.urdf_path || options.report_folder)) {
     throw ConfigError("--urdf and --report need --output: without it nothing is calibrated.");
   }
+  if (options.output_path.empty() && (options.covariance_path || options.certificate_path)) {
+    throw ConfigError(
+        "--covariance and --certificate need --output: without it nothing is calibrated.");
+  }
+  if (options.issuer_path && !options.certificate_path) {
+    throw ConfigError("--issuer serves --certificate only: name the file to write by it.");
+  }
   if (options.urdf_template_path && !options.urdf_path) {
     throw ConfigError("--urdf-template serves --urdf only: name the file to write by --urdf.");
   }
@@ -113,7 +120,15 @@ void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
   line.add("covariance",
            options.covariance_path,
            "YAML",
-           "covariance of all parameters to write, with names and units");
+           "covariance of all parameters to write, with names, units and uncertainty budget");
+  line.add("certificate",
+           options.certificate_path,
+           "XML",
+           "digital calibration certificate to write (PTB's DCC 3.3, with the covariance)");
+  line.add("issuer",
+           options.issuer_path,
+           "YAML",
+           "laboratory, person and customer that the certificate names");
   line.add("truth", options.truth_path, "YAML", "true parameters, to compare with");
   line.add("date", options.date, "ISO8601", "date of the calibration, in UTC; without it now");
 }

@@ -28,6 +28,8 @@ struct CalibrateBagOptions {
   std::optional<std::string> urdf_path;
   std::optional<std::string> urdf_template_path;
   std::optional<std::string> covariance_path;
+  std::optional<std::string> certificate_path;
+  std::optional<std::string> issuer_path;  ///< who issues the certificate
   std::optional<std::string> report_folder;
   std::optional<std::string> date;  ///< of the calibration; nothing: now
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;

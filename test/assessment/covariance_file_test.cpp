@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {

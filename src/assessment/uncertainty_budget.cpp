@@ -1,0 +1,213 @@
+#include "spherical_actuator_calibration/assessment/uncertainty_budget.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <map>
+
+#include <Eigen/Cholesky>
+
+#include "estimated_part.hpp"
+#include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+
+namespace sac {
+namespace {
+
+/// With V the covariance of the residuals of a dwell, δx = −N⁻¹ (Σ JᵀV⁻¹ e + what is known
+/// beforehand): every source of e, and of that, adds a covariance of its own.
+class Budget {
+ public:
+  Budget(const CalibrationSession& session, const CycleReport& report)
+      : session_(session),
+        report_(report),
+        options_(session.config().estimation),
+        space_(session.model().space()),
+        belief_(session.state().belief),
+        chosen_(estimatedCoordinates(space_, report)) {
+    problem_.model = &session.model();
+    problem_.samples = &session.samples();
+    problem_.observations =
+        selectObservations(session.samples(), {report.cycle, report.coil}, options_);
+    problem_.prior = belief_;
+    held_.assign(static_cast<std::size_t>(space_.size()), true);
+    for (const Eigen::Index p : chosen_) {
+      held_[static_cast<std::size_t>(p)] = false;
+    }
+    const auto size = static_cast<Eigen::Index>(chosen_.size());
+    information_ = Eigen::MatrixXd::Zero(size, size);
+    others_ = Eigen::MatrixXd::Zero(size, space_.size());
+  }
+
+  std::vector<BudgetEntry> entries() {
+    if (chosen_.empty()) {
+      return {};
+    }
+    sumObservations();
+    sumKnowledge();
+    return propagated();
+  }
+
+ private:
+  struct Dwell {
+    Eigen::MatrixXd jacobian;  ///< rows of all observations, in all coordinates
+    Eigen::MatrixXd loading;   ///< of joint readings and the torque without current
+    Eigen::VectorXd variance;  ///< noise of each row's own
+    Eigen::MatrixXd held;      ///< covariance that held coordinates add, block by block
+    std::vector<bool> is_orientation;
+  };
+
+  Eigen::MatrixXd& of(const std::string& source) {
+    const auto size = static_cast<Eigen::Index>(chosen_.size());
+    const auto found = std::find(sources_.begin(), sources_.end(), source);
+    if (found == sources_.end()) {
+      sources_.push_back(source);
+      meat_[source] = Eigen::MatrixXd::Zero(size, size);
+    }
+    return meat_[source];
+  }
+
+  void sumObservations();
+  Dwell dwellOf(const std::vector<std::size_t>& observations,
+                const ObservationEvaluator& evaluator) const;
+  void add(const Dwell& dwell);
+  void sumKnowledge();
+  std::vector<BudgetEntry> propagated();
+
+  const CalibrationSession& session_;
+  const CycleReport& report_;
+  const EstimationOptions& options_;
+  const ParameterSpace& space_;
+  const ParameterBelief& belief_;
+  std::vector<Eigen::Index> chosen_;
+  EstimationProblem problem_;
+  std::vector<bool> held_;
+  Eigen::MatrixXd information_;
+  Eigen::MatrixXd others_;  ///< Σ JᵀV⁻¹J_held
+  std::vector<std::string> sources_;
+  std::map<std::string, Eigen::MatrixXd> meat_;  ///< covariance of N δx by each source
+};
+
+void Budget::sumObservations() {
+  const ObservationEvaluator evaluator(problem_, options_);
+  const std::vector<std::size_t> kept = keptObservations(problem_, report_);
+  const SharedErrorModel shared = groupByDwell(problem_, options_);
+  const auto is_kept = [&](std::size_t n) {
+    return std::binary_search(kept.begin(), kept.end(), n);
+  };
+  for (const std::size_t n : kept) {
+    if (!shared.shares[n]) {
+      add(dwellOf({n}, evaluator));
+    }
+  }
+  for (const std::vector<std::size_t>& dwell : shared.dwells) {
+    std::vector<std::size_t> serving;
+    std::copy_if(dwell.begin(), dwell.end(), std::back_inserter(serving), is_kept);
+    if (!serving.empty()) {
+      add(dwellOf(serving, evaluator));
+    }
+  }
+}
+
+Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
+                              const ObservationEvaluator& evaluator) const {
+  const auto rows = 3 * static_cast<Eigen::Index>(observations.size());
+  Dwell dwell;
+  dwell.jacobian = Eigen::MatrixXd::Zero(rows, space_.size());
+  dwell.loading.resize(rows, kSharedErrors);
+  dwell.variance.resize(rows);
+  dwell.held = Eigen::MatrixXd::Zero(rows, rows);
+  LinearizedObservation linear;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const std::size_t n = observations[k];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
+    evaluator.linearize(n, belief_.x, linear);
+    dwell.jacobian.middleRows<3>(row) = linear.jacobian;
+    dwell.loading.middleRows<3>(row) = evaluator.sharedErrors(n, linear);
+    dwell.variance.segment<3>(row) = evaluator.ownNoise(n).diagonal();
+    dwell.held.block<3, 3>(row, row) = evaluator.heldCovariance(linear, held_);
+    dwell.is_orientation.push_back(problem_.observations[n].quantity == Quantity::kOrientation);
+  }
+  return dwell;
+}
+
+void Budget::add(const Dwell& dwell) {
+  Eigen::MatrixXd covariance = dwell.held + dwell.loading * dwell.loading.transpose();
+  covariance.diagonal() += dwell.variance;
+  const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, chosen_);
+  const Eigen::MatrixXd weighed = covariance.llt().solve(J);  // V⁻¹J
+  information_ += J.transpose() * weighed;
+  others_ += weighed.transpose() * dwell.jacobian;
+  for (std::size_t k = 0; k < dwell.is_orientation.size(); ++k) {
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
+    const Eigen::MatrixXd part =
+        dwell.variance.segment<3>(row).cwiseSqrt().asDiagonal() * weighed.middleRows<3>(row);
+    of(dwell.is_orientation[k] ? "orientation" : "torque") += part.transpose() * part;
+  }
+  const Eigen::MatrixXd shares = weighed.transpose() * dwell.loading;
+  const auto joints = shares.leftCols<3>();
+  const auto torques = shares.rightCols<3>();
+  of("joint_reading") += joints * joints.transpose();
+  of("torque_without_current") += torques * torques.transpose();
+}
+
+/// What was stated of effects, what held open directions, and what held coordinates were known by.
+void Budget::sumKnowledge() {
+  for (std::size_t k = 0; k < chosen_.size(); ++k) {
+    const Eigen::Index effect = chosen_[k] - space_.effect();
+    const double variance = effect < 0 ? 0.0 : space_.effects().statedVariance(effect);
+    if (variance > 0.0) {
+      const auto place = static_cast<Eigen::Index>(k);
+      information_(place, place) += 1.0 / variance;
+      of(space_.effects().at(effect).name)(place, place) += 1.0 / variance;
+    }
+  }
+  const Eigen::MatrixXd open = priorInformation(report_.open_directions, belief_, chosen_);
+  information_ += open;
+  Eigen::MatrixXd covariance = belief_.covariance;
+  for (const Eigen::Index p : chosen_) {
+    covariance.row(p).setZero();
+    covariance.col(p).setZero();
+  }
+  of("earlier_knowledge") += open + others_ * covariance * others_.transpose();
+}
+
+std::vector<BudgetEntry> Budget::propagated() {
+  const auto size = static_cast<Eigen::Index>(chosen_.size());
+  const Eigen::MatrixXd reported = reportedJacobian(space_, belief_.x)(Eigen::all, chosen_) *
+                                   information_.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  std::vector<BudgetEntry> entries;
+  for (const std::string& source : sources_) {
+    const Eigen::VectorXd variance =
+        (reported * meat_[source]).cwiseProduct(reported).rowwise().sum();
+    if (variance.maxCoeff() > 0.0) {
+      entries.push_back({source, variance});
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::vector<BudgetEntry> uncertaintyBudget(const CalibrationSession& session) {
+  if (session.reports().empty() || !session.reports().back().success) {
+    return {};
+  }
+  return Budget(session, session.reports().back()).entries();
+}
+
+Eigen::MatrixXd budgetShares(const std::vector<BudgetEntry>& budget) {
+  Eigen::MatrixXd shares;
+  for (const BudgetEntry& entry : budget) {
+    shares.conservativeResize(entry.variance.size(), shares.cols() + 1);
+    shares.rightCols<1>() = entry.variance;
+  }
+  for (Eigen::Index p = 0; p < shares.rows(); ++p) {
+    const double sum = shares.row(p).sum();
+    shares.row(p) *= sum > 0.0 ? 1.0 / sum : 0.0;
+  }
+  return shares;
+}
+
+}  // namespace sac
