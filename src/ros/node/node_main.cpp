@@ -4,10 +4,21 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/names.h>
+#include <ros/service_manager.h>
 
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 namespace sac {
+namespace {
+
+// roscpp offers this service to everybody. Where rosconsole is built with log4cxx 1.0, as Debian has
+// it, the answer frees what log4cxx goes on to use: two calls end the node by SIGSEGV.
+void withdrawGetLoggers() {
+  ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve("~get_loggers"));
+}
+
+}  // namespace
 
 int runNode(int argc,
             char** argv,
@@ -19,6 +30,7 @@ int runNode(int argc,
   // The last handle to go ends ROS, and with it the console that errors are told on.
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
+  withdrawGetLoggers();
   try {
     body(node, private_node);
   } catch (const std::exception& error) {
