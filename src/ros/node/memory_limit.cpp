@@ -1,10 +1,10 @@
 #include "spherical_actuator_calibration/ros/node/memory_limit.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <system_error>
 
 #include <sys/resource.h>
 
@@ -43,7 +43,7 @@ void limitMemory(double megabytes) {
   }
   is_limited = is_limited && ::setrlimit(RLIMIT_DATA, &limit) == 0;
   if (!is_limited) {
-    throw Error(std::string("The memory cannot be limited: ") + std::strerror(errno));
+    throw Error("The memory cannot be limited: " + std::generic_category().message(errno));
   }
 }
 
