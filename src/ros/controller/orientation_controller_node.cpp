@@ -117,7 +117,7 @@ void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters&
     ROS_INFO_STREAM("Revision " << message.revision << " of the parameters ("
                                 << printable(message.source) << ") is in force.");
   } catch (const Error& error) {
-    ROS_ERROR_STREAM("The parameters are refused: " << error.what());
+    ROS_ERROR_STREAM("The parameters are refused: " << printable(error.what()));
   }
 }
 
@@ -132,7 +132,7 @@ void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& mes
       last_reading_ = steadySeconds();
     }
   } catch (const Error& error) {
-    last_refusal_ = std::string("joint_states: ") + error.what();
+    last_refusal_ = "joint_states: " + printable(error.what());
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
   }
 }
@@ -151,7 +151,7 @@ void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionSta
         message.header.stamp.isZero() ? stampFromRos(ros::Time::now()) : target.stamp;
     controller_.setTarget(stamp, target.q_stator_rotor.normalized().toRotationMatrix());
   } catch (const Error& error) {
-    last_refusal_ = std::string("orientation_target: ") + error.what();
+    last_refusal_ = "orientation_target: " + printable(error.what());
     ROS_WARN_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
   }
 }

@@ -5,6 +5,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
@@ -39,12 +40,35 @@ ros::Subscriber TransformLookup::listen(const ros::NodeHandle& node,
   constexpr std::uint32_t kQueueLength = 100;
   const auto receive = [this, topic, is_static](const tf2_msgs::TFMessage::ConstPtr& message) {
     forgetWhenTheClockWentBack();
+    bool are_nameable = true;
     for (const geometry_msgs::TransformStamped& transform : message->transforms) {
-      buffer_.setTransform(transform, topic, is_static);
+      if (isNameable(transform.header.frame_id) && isNameable(transform.child_frame_id)) {
+        buffer_.setTransform(transform, topic, is_static);
+      } else {
+        are_nameable = false;
+      }
+    }
+    if (!are_nameable) {
+      throw DataError("its frames have names that cannot be shown, or are too many.");
     }
   };
   return subscribeChecked<tf2_msgs::TFMessage>(
       node, topic, kQueueLength, receive, tellRefusal(topic));
+}
+
+// tf2 prints names as they are, and keeps every one for ever.
+bool TransformLookup::isNameable(const std::string& frame) {
+  constexpr std::size_t kLongestName = 200;
+  constexpr std::size_t kMostFrames = 2000;
+  if (frames_.count(frame) > 0) {
+    return true;
+  }
+  const bool is_good =
+      frames_.size() < kMostFrames && frame.size() <= kLongestName && printable(frame) == frame;
+  if (is_good) {
+    frames_.insert(frame);
+  }
+  return is_good;
 }
 
 void TransformLookup::forgetWhenTheClockWentBack() {

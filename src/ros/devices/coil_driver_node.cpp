@@ -10,6 +10,7 @@
 #include <ros/init.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -149,7 +150,7 @@ void CoilDriverNode::receive(const msg::CoilCurrents& message, const std::string
   const std::string refusal = driver_.offer(commandFromRos(message, sender), instantNow());
   if (!refusal.empty()) {
     commands_.refuse(refusal);
-    ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, "coil_command is refused: " << refusal);
+    ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, "coil_command is refused: " << printable(refusal));
     return;
   }
   commands_.accept(ros::Time::now());

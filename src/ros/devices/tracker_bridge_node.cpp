@@ -7,6 +7,7 @@
 #include <ros/transport_hints.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
@@ -114,7 +115,8 @@ void TrackerBridgeNode::receive(const geometry_msgs::PoseStamped::ConstPtr& mess
     poses_.accept(message->header.stamp);
   } catch (const Error& error) {
     poses_.refuse(error.what());
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A tracker pose is refused: " << error.what() << ".");
+    ROS_WARN_STREAM_THROTTLE(kWarningPeriod,
+                             "A tracker pose is refused: " << printable(error.what()) << ".");
   }
   publishTorques();
   tellClockResets();
@@ -175,7 +177,7 @@ void TrackerBridgeNode::publishTorques() {
 
 void TrackerBridgeNode::refuseWrench(const std::string& reason) {
   wrenches_.refuse(reason);
-  ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A wrench is refused: " << reason << ".");
+  ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A wrench is refused: " << printable(reason) << ".");
 }
 
 void TrackerBridgeNode::tellClockResets() {

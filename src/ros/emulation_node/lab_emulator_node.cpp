@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
@@ -108,7 +109,7 @@ void LabEmulatorNode::receiveTarget(const sensor_msgs::JointState& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     fixture_.setTarget(target);
   } catch (const DataError& error) {
-    ROS_WARN_STREAM("fixture/target: " << error.what());
+    ROS_WARN_STREAM("fixture/target: " << printable(error.what()));
   }
 }
 

@@ -13,6 +13,7 @@
 #include <ros/subscriber.h>
 #include <ros/transport_hints.h>
 
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_message.hpp"
 
 namespace sac {
@@ -22,7 +23,7 @@ namespace sac {
 ///
 /// receive(const boost::shared_ptr<const Message>&) takes a message, with a second argument, a
 /// const std::string&, also the name of the node that sent it; refuse(const std::string&) takes the
-/// reason why one is not used: "it …", or the sentence of the exception.
+/// reason why one is not used, printable: "it …", or the sentence of the exception.
 template <typename Message, typename Receive, typename Refuse>
 ros::Subscriber subscribeChecked(ros::NodeHandle node,
                                  const std::string& topic,
@@ -46,7 +47,7 @@ ros::Subscriber subscribeChecked(ros::NodeHandle node,
         receive(message);
       }
     } catch (const std::exception& error) {
-      refuse(error.what());
+      refuse(printable(error.what()));
     }
   };
   return node.subscribe<Checked<Message>, const Event&>(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -35,6 +36,7 @@ class TransformLookup {
  private:
   ros::Subscriber listen(const ros::NodeHandle& node, const std::string& topic, bool is_static);
   void forgetWhenTheClockWentBack();
+  bool isNameable(const std::string& frame);
   void wait(const std::string& parent, const std::string& child, const ros::Time& time);
 
   const ros::WallDuration wait_;
@@ -42,6 +44,7 @@ class TransformLookup {
   tf2_ros::Buffer buffer_;
   ros::CallbackQueue queue_;
   ros::Time newest_;                            ///< of the ROS clock; used by the receiving thread
+  std::set<std::string> frames_;                ///< that are known; likewise
   std::array<ros::Subscriber, 2> subscribers_;  ///< of /tf and /tf_static
   ros::AsyncSpinner receiver_;
 };
