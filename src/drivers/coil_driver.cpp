@@ -69,7 +69,7 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
     follow(now, result);
   }
   last_beat_ = now;
-  result.measured = measure();
+  result.measured = measure(now);
   return result;
 }
 
@@ -89,9 +89,9 @@ void CoilDriver::follow(double now, Beat& result) {
                    result.fault ? Heartbeat::kWithheld : Heartbeat::kGiven);
 }
 
-Eigen::VectorXd CoilDriver::measure() {
+Eigen::VectorXd CoilDriver::measure(double now) {
   Eigen::VectorXd measured = amplifier_.read();
-  supervisor_.observe(measured);
+  supervisor_.observe(measured, now);
   return measured;
 }
 
@@ -130,7 +130,7 @@ std::string CoilDriver::stop() {
   try {
     allowOneBeat();
     transport_.open();
-    measure();
+    measure(last_beat_.value_or(0.0));
   } catch (const Error& error) {
     transport_.close();
     return error.what();

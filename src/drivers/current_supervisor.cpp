@@ -17,6 +17,9 @@ constexpr double kClockJump = 0.05;
 /// An amplifier that deviated so often does so again: somebody must look at it.
 constexpr int kMostFaults = 3;
 
+/// Watchdogs of amplifiers take longer [s].
+constexpr double kOwnZero = 0.2;
+
 std::string withTwoDigits(double value) {
   return format("%.2f", value);
 }
@@ -141,7 +144,7 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   }
 }
 
-void CurrentSupervisor::observe(const Eigen::VectorXd& measured) {
+void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
   const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
@@ -149,8 +152,9 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured) {
   zero_confirmed_ = !flows && setpoints_.isZero(0.0);
   if (fault_.empty()) {
     compare(measured);
+    fault_at_ = steady;
   } else {
-    zero_beats_ = zero_confirmed_ ? zero_beats_ + 1 : 0;
+    watchZero(steady);
     endFault();
   }
   lowest_ = setpoints_;
@@ -172,20 +176,28 @@ void CurrentSupervisor::compare(const Eigen::VectorXd& measured) {
 void CurrentSupervisor::fail(std::size_t coil, double measured) {
   ++faults_;
   zero_beats_ = 0;
+  obeyed_ = false;
   zero_commanded_ = false;
   fault_ = "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
            " A where " + withTwoDigits(setpoints_[static_cast<Eigen::Index>(coil)]) +
            " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
-           "Switch it off, look after it and its wires, then ";
-  fault_ += faults_ < kMostFaults
-                ? "command zero: commands are followed again when zero is measured"
-                : "start the driver anew: it happened for the third time";
+           "Switch it off, look after it and its wires, then start the driver anew";
+}
+
+void CurrentSupervisor::watchZero(double steady) {
+  if (!zero_confirmed_) {
+    zero_beats_ = 0;
+    obeyed_ = false;
+    return;
+  }
+  ++zero_beats_;
+  obeyed_ = obeyed_ || (zero_beats_ == 1 && steady - fault_at_ <= kOwnZero);
 }
 
 // Whoever wants current must first have seen that there is a fault, and say so by a zero: a command
 // that goes on through it may be given blindly.
 void CurrentSupervisor::endFault() {
-  const bool has_ended = zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
+  const bool has_ended = obeyed_ && zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
   if (has_ended && faults_ < kMostFaults) {
     fault_.clear();
     std::fill(deviating_.begin(), deviating_.end(), 0);

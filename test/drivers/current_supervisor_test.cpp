@@ -163,7 +163,7 @@ std::string faultAfter(const std::vector<Flow>& flows) {
   for (const Flow& flow : flows) {
     for (int n = 0; n < flow.beats; ++n) {
       supervisor.setting(amperes(flow.set));
-      supervisor.observe(amperes(flow.measured));
+      supervisor.observe(amperes(flow.measured), 0.0);
     }
   }
   return supervisor.fault();
@@ -207,7 +207,8 @@ class FaultOfCurrents : public ::testing::Test {
   void observe(int beats, double measured) {
     for (int n = 0; n < beats; ++n) {
       supervisor_.setting(amperes(0.0));
-      supervisor_.observe(amperes(0.0, measured));
+      beat_ += 0.005;
+      supervisor_.observe(amperes(0.0, measured), beat_);
     }
   }
   /// What follows happens a moment later.
@@ -219,11 +220,11 @@ class FaultOfCurrents : public ::testing::Test {
 
   CurrentSupervisor supervisor_{limits(), 2};
   double now_ = 10.0;
+  double beat_ = 10.0;
 };
 
 TEST_F(FaultOfCurrents, EndsWhenZeroWasMeasuredForAsLongAndIsCommanded) {
   ASSERT_NE(supervisor_.fault(), "");
-  EXPECT_NE(supervisor_.fault().find("command zero"), std::string::npos) << supervisor_.fault();
   observe(3, 0.0);
   command(0.0);
   EXPECT_FALSE(isFollowed());
@@ -253,7 +254,7 @@ TEST_F(FaultOfCurrents, StaysWhileAnythingButZeroIsCommanded) {
 
 TEST_F(FaultOfCurrents, StaysWhileMoreThanZeroIsMeasured) {
   command(0.0);
-  for (int n = 0; n < 10; ++n) {
+  for (int n = 0; n < 5; ++n) {
     observe(3, 0.0);
     observe(1, 0.2);
     EXPECT_NE(supervisor_.fault(), "");
@@ -262,12 +263,22 @@ TEST_F(FaultOfCurrents, StaysWhileMoreThanZeroIsMeasured) {
   EXPECT_EQ(supervisor_.fault(), "");
 }
 
+// Its own watchdog made it zero, as the heartbeat was withheld: with the next heartbeat the current
+// that it does not let go of would be back.
+TEST_F(FaultOfCurrents, StaysWhereTheAmplifierDidNotObeyByItself) {
+  command(0.0);
+  observe(50, 2.0);
+  observe(1000, 0.0);
+  EXPECT_NE(supervisor_.fault(), "");
+  EXPECT_FALSE(isFollowed());
+}
+
 TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
   CurrentSupervisor supervisor(limits(), 2);
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
   for (const double measured : {2.0, 0.0}) {
     for (int n = 0; n < 4; ++n) {
-      supervisor.observe(amperes(measured));
+      supervisor.observe(amperes(measured), 0.0);
     }
   }
   EXPECT_NE(supervisor.fault(), "");
@@ -290,7 +301,7 @@ TEST_F(FaultOfCurrents, StaysTheThirdTime) {
 TEST(CurrentSupervisor, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
   for (int n = 0; n < 4; ++n) {
-    supervisor.observe(amperes(0.0, 2.0));
+    supervisor.observe(amperes(0.0, 2.0), 0.0);
   }
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
   EXPECT_FALSE(supervisor.command(10.0));
@@ -301,18 +312,18 @@ TEST(CurrentSupervisor, ZeroIsConfirmedOnlyByAMeasurementAfterwards) {
   CurrentSupervisor supervisor(limits(), 2);
   EXPECT_FALSE(supervisor.isZeroConfirmed());
   EXPECT_NE(supervisor.unconfirmedReason(), "");
-  supervisor.observe(amperes(0.01));
+  supervisor.observe(amperes(0.01), 0.0);
   EXPECT_TRUE(supervisor.isZeroConfirmed());
   supervisor.setting(amperes(1.0));
   EXPECT_FALSE(supervisor.isZeroConfirmed());
-  supervisor.observe(amperes(0.0));  // it has not begun to flow
+  supervisor.observe(amperes(0.0), 0.0);  // it has not begun to flow
   EXPECT_FALSE(supervisor.isZeroConfirmed());
   supervisor.setting(amperes(0.0));
   EXPECT_FALSE(supervisor.isZeroConfirmed());
-  supervisor.observe(amperes(0.0, -0.2));
+  supervisor.observe(amperes(0.0, -0.2), 0.0);
   EXPECT_FALSE(supervisor.isZeroConfirmed());
   EXPECT_NE(supervisor.unconfirmedReason().find("0.20 A"), std::string::npos);
-  supervisor.observe(amperes(0.0, -0.1));
+  supervisor.observe(amperes(0.0, -0.1), 0.0);
   EXPECT_TRUE(supervisor.isZeroConfirmed());
   EXPECT_EQ(supervisor.unconfirmedReason(), "");
 }

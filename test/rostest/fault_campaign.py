@@ -20,9 +20,7 @@ from typing import Callable
 
 import hostile_peer
 import rospy
-from calibration_client import wait_for
-from driver_node import OK
-from fault_laboratory import CURRENT, PATIENCE, Laboratory, Master, Outcome, command
+from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command
 from modbus_device import free_port
 from sensor_faults import sensor_fault
 
@@ -160,7 +158,7 @@ def without_memory(laboratory):
     with contextlib.ExitStack() as links:
         for _ in range(3):
             begin = time.monotonic()
-            link = links.enter_context(hostile_peer.connect(f"{laboratory.driver.name}/get_loggers"))
+            link = links.enter_context(hostile_peer.connect(f"{laboratory.driver.name}/set_logger_level"))
             link.sendall(struct.pack("<I", 900000000))
         status = status_of(laboratory)
     return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
@@ -230,19 +228,17 @@ def not_applied(make):
 
 
 def applied_again(laboratory):
-    """After zero was commanded and is measured, commands are followed as before."""
+    """When only the amplifier's own watchdog can have ended the current, no command brings it back."""
     laboratory.amplifier.stick()
     begin = laboratory.commander.change(zero)
     told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
+    laboratory.watch(1.0)
     laboratory.amplifier.obey()
+    laboratory.watch(1.0)
     laboratory.commander.change(command)
-    laboratory.watch(2.0)
-    defect = "the error ends without a commanded zero" if laboratory.amplifier.is_on() else ""
-    laboratory.commander.change(zero)
-    wait_for(lambda: laboratory.driver.level("output") == OK, "the end of the error", PATIENCE)
-    laboratory.commander.change(command)
-    wait_for(laboratory.amplifier.is_on, "current as before", PATIENCE)
-    return Outcome(told=told, defect=defect)
+    laboratory.watch(1.0)
+    defect = "there is current again" if laboratory.amplifier.is_on() else ""
+    return Outcome(watchdog=laboratory.amplifier.on_until(begin)[1], told=told, defect=defect)
 
 
 # -- the master -----------------------------------------------------------------------------------------------------
@@ -313,7 +309,7 @@ def faults_of(master):
         Fault("amplifier: link cut", misbehaving("cut"), (None, 0.7, None)),
         Fault("zero acknowledged, not applied", not_applied(zero), (None, 1.0, 0.5), is_short=True),
         Fault("the same, commands stop", not_applied(lambda: None), (None, 1.0, 0.75)),
-        Fault("the same, then applied again", applied_again, (None, None, 0.5)),
+        Fault("the same, then applied again", applied_again, (None, 1.0, 0.5)),
         *(
             Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
             for how in ("silence", "dribble", "reset", "wrong id", "endless")

@@ -54,7 +54,7 @@ class CoilDriver {
   void connect();
   Beat exchange(double now);
   void follow(double now, Beat& result);
-  Eigen::VectorXd measure();
+  Eigen::VectorXd measure(double now);
   void forget();
   void setZero();
   void allowOneBeat() { transport_.allow(options_.link.response_timeout); }

@@ -68,12 +68,14 @@ class CurrentSupervisor {
   void setting(const Eigen::VectorXd& setpoints);
   /// These currents [A] were measured after the last setpoints were written. They are held against
   /// all that was set since the measurement before: where the last setpoints have not acted yet, as
-  /// the beat was late or the current needs a moment, those before still flow.
-  void observe(const Eigen::VectorXd& measured);
+  /// the beat was late or the current needs a moment, those before still flow. `steady`: when [s].
+  void observe(const Eigen::VectorXd& measured, double steady);
   /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
   /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
   /// watchdog acts. It ends when zero was measured in all coils for `deviating_beats` beats in a
-  /// row, and the last command that was accepted since it began is zero. The third one stays.
+  /// row, the first of them within 0.2 s, and the last command that was accepted since it began is
+  /// zero: then it was the amplifier that obeyed, and not its watchdog that acted, after which it
+  /// would have current again with the next heartbeat. The third one stays.
   std::string fault() const;
   /// How often there was one.
   int faults() const;
@@ -88,6 +90,7 @@ class CurrentSupervisor {
   void noticeClockJump(const Instant& now);
   void compare(const Eigen::VectorXd& measured);
   void fail(std::size_t coil, double measured);
+  void watchZero(double steady);
   void endFault();
 
   const SupervisorLimits limits_;
@@ -108,7 +111,9 @@ class CurrentSupervisor {
   std::vector<int> deviating_;  ///< beats in a row, for each coil
   std::string fault_;
   int faults_ = 0;
-  int zero_beats_ = 0;           ///< in a row, since the fault
+  double fault_at_ = 0.0;  ///< by the steady clock [s]
+  bool obeyed_ = false;    ///< zero was measured before the amplifier's watchdog can have acted
+  int zero_beats_ = 0;     ///< in a row, since the fault
   bool zero_commanded_ = false;  ///< by the last command that was accepted since the fault
 };
 

@@ -12,8 +12,8 @@
 namespace sac {
 namespace {
 
-// roscpp offers this service to everybody. Where rosconsole is built with log4cxx 1.0, as Debian has
-// it, the answer frees what log4cxx goes on to use: two calls end the node by SIGSEGV.
+// roscpp offers this service to everybody. Where rosconsole is built with log4cxx 1.0, as Debian
+// has it, the answer frees what log4cxx goes on to use: two calls end the node by SIGSEGV.
 void withdrawGetLoggers() {
   ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve("~get_loggers"));
 }
