@@ -1,7 +1,7 @@
 """A peer of ROS that says what no library lets one say: any bytes on topics, services and connections."""
 
 import contextlib
-import os
+import itertools
 import re
 import socket
 import struct
@@ -14,6 +14,7 @@ import rosgraph
 from calibration_client import wait_for
 
 CALLER = "/hostile"
+NUMBERS = itertools.count()  # the master takes who comes from two addresses for two nodes, and forgets the first
 PATIENCE = 60.0  # [s] of one answer, on however busy a computer
 
 
@@ -44,6 +45,7 @@ class HostilePublisher:
     """Publishes bytes on a topic. `welcome(link)` answers the header of each subscriber; without it, as it should be."""
 
     def __init__(self, topic, message_class, welcome=None):
+        self._caller = f"{CALLER}_{next(NUMBERS)}"
         self._topic = topic
         self._class = message_class
         self._welcome = welcome or self._greet
@@ -58,7 +60,7 @@ class HostilePublisher:
         threading.Thread(target=self._slave.serve_forever, daemon=True).start()
         self._uri = f"http://127.0.0.1:{self._slave.server_address[1]}/"
         self._master = xmlrpc.client.ServerProxy(rosgraph.get_master_uri())
-        self._master.registerPublisher(CALLER, topic, message_class._type, self._uri)
+        self._master.registerPublisher(self._caller, topic, message_class._type, self._uri)
 
     def _request_topic(self, *_):
         return [1, "", ["TCPROS", "127.0.0.1", self._listener.getsockname()[1]]]
@@ -84,7 +86,7 @@ class HostilePublisher:
 
     def greet(self, link, **changes):
         fields = {
-            "callerid": CALLER,
+            "callerid": self._caller,
             "md5sum": self._class._md5sum,
             "type": self._class._type,
             "topic": self._topic,
@@ -111,7 +113,7 @@ class HostilePublisher:
 
     def close(self):
         with contextlib.suppress(OSError, xmlrpc.client.Error):
-            self._master.unregisterPublisher(CALLER, self._topic, self._uri)
+            self._master.unregisterPublisher(self._caller, self._topic, self._uri)
         self._slave.shutdown()
         self._slave.server_close()
         self._listener.close()
@@ -156,7 +158,3 @@ def flood(link_or_publisher, content, seconds):
         link_or_publisher.send(content)
         count += 1
     return count
-
-
-def descriptors(pid):
-    return len(os.listdir(f"/proc/{pid}/fd"))
