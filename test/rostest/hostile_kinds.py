@@ -184,7 +184,8 @@ def poles(count, polar):
 
 
 ALL = list(GOOD)
-FRAMED = ["measured_orientation", "measured_torque", "tracker/pose", "ft_sensor/wrench", "orientation_target", "samples"]
+FRAMED = ["measured_orientation", "measured_torque", "tracker/pose", "ft_sensor/wrench", "orientation_target"]
+FRAMED += ["samples"]
 TURNED = ["measured_orientation", "tracker/pose", "orientation_target"]
 MEASURED = ["coil_currents", "coil_command"]
 TF = ["/tf", "/tf_static"]
@@ -232,7 +233,7 @@ MESSAGES = {
 }
 
 
-# -- kinds of publishers: each answers the header of a subscriber -------------------------------------------------------
+# -- kinds of publishers: each answers the header of a subscriber ----------------------------------------------------
 
 
 def greeting(**changes):
@@ -282,7 +283,7 @@ PUBLISHERS = {
 }
 
 
-# -- kinds of connections: what a node hears from who connects to it -----------------------------------------------------
+# -- kinds of connections: what a node hears from who connects to it -------------------------------------------------
 
 
 CONNECTIONS = {
@@ -305,7 +306,7 @@ def text(value):
     return framed(value.encode())
 
 
-# -- kinds of requests: service, and the bytes of its request ------------------------------------------------------------
+# -- kinds of requests: service, and the bytes of its request --------------------------------------------------------
 
 
 REQUESTS = {

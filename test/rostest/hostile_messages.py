@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""No message, request or connection ends a node, makes it large, or keeps it from answering: lengths that lie, bytes that
-are missing, numbers and stamps at the ends of their ranges, text that a terminal would obey, floods."""
+"""No message, request or connection ends a node, makes it large, or keeps it from answering: lengths that lie, bytes
+that are missing, numbers and stamps at the ends of their ranges, text that a terminal would obey, floods."""
 
 import collections
 import contextlib

@@ -42,7 +42,7 @@ def receive_framed(link):
 
 
 class HostilePublisher:
-    """Publishes bytes on a topic. `welcome(link)` answers the header of each subscriber; without it, as it should be."""
+    """Publishes bytes on a topic. `welcome(link)` answers each subscriber's header; without it, as it should be."""
 
     def __init__(self, topic, message_class, welcome=None):
         self._caller = f"{CALLER}_{next(NUMBERS)}"
