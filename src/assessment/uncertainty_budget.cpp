@@ -20,8 +20,7 @@ namespace {
 class Budget {
  public:
   Budget(const CalibrationSession& session, const CycleReport& report)
-      : session_(session),
-        report_(report),
+      : report_(report),
         options_(session.config().estimation),
         space_(session.model().space()),
         belief_(session.state().belief),
@@ -75,7 +74,6 @@ class Budget {
   void sumKnowledge();
   std::vector<BudgetEntry> propagated();
 
-  const CalibrationSession& session_;
   const CycleReport& report_;
   const EstimationOptions& options_;
   const ParameterSpace& space_;
