@@ -47,8 +47,13 @@ class DriverNode:
         return self._reported(task).message
 
     def value(self, task, key):
-        values = {item.key: item.value for item in self._reported(task).values}
-        return values[key]
+        """Waits for it: the first report, "starting up", has no values."""
+
+        def known():
+            values = {item.key: item.value for item in self._reported(task).values}
+            return (values[key],) if key in values else None
+
+        return wait_for(known, f"{key} among the diagnostics of {task}")[0]
 
     def _reported(self, task):
         """The last report, or the first when none has come yet."""
