@@ -6,6 +6,8 @@ import struct
 import threading
 import time
 
+from links import receive
+
 REGISTERS = 256
 HEADER = struct.Struct(">HHHB")  # transaction, protocol, length, unit
 READ_HOLDING, READ_INPUT, WRITE = 3, 4, 16
@@ -51,24 +53,14 @@ class FaultyDevice:
     def _serve(self, link):
         with link, contextlib.suppress(OSError, EOFError):
             while True:
-                header = self._receive(link, HEADER.size)
+                header = receive(link, HEADER.size)
                 transaction, _, length, unit = HEADER.unpack(header)
-                body = self._receive(link, length - 1)
+                body = receive(link, length - 1)
                 if self.behaviour == "cut":
                     return  # as if the request had never come
                 with self._lock:
                     answer = self._carry_out(body)
                 self._send(link, transaction, HEADER.pack(transaction, 0, len(answer) + 1, unit) + answer)
-
-    @staticmethod
-    def _receive(link, count):
-        received = b""
-        while len(received) < count:
-            part = link.recv(count - len(received))
-            if not part:
-                raise EOFError
-            received += part
-        return received
 
     def _carry_out(self, body):
         function, address, count = struct.unpack(">BHH", body[:5])

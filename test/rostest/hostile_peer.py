@@ -12,6 +12,7 @@ import xmlrpc.server
 
 import rosgraph
 from calibration_client import wait_for
+from links import receive, serve_each
 
 CALLER = "/hostile"
 NUMBERS = itertools.count()  # the master takes who comes from two addresses for two nodes, and forgets the first
@@ -25,16 +26,6 @@ def framed(content):
 
 def header(**fields):
     return framed(b"".join(framed(f"{key}={value}".encode()) for key, value in fields.items()))
-
-
-def receive(link, count):
-    received = b""
-    while len(received) < count:
-        part = link.recv(count - len(received))
-        if not part:
-            raise EOFError
-        received += part
-    return received
 
 
 def receive_framed(link):
@@ -53,7 +44,7 @@ class HostilePublisher:
         self._lock = threading.Lock()
         self.visits = 0  # connections of subscribers so far
         self._listener = socket.create_server(("127.0.0.1", 0))
-        threading.Thread(target=self._accept, daemon=True).start()
+        serve_each(self._listener, self._serve)
         self._slave = xmlrpc.server.SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False, allow_none=True)
         self._slave.register_function(self._request_topic, "requestTopic")
         self._slave.register_function(lambda *_: [1, "", 0], "publisherUpdate")
@@ -64,14 +55,6 @@ class HostilePublisher:
 
     def _request_topic(self, *_):
         return [1, "", ["TCPROS", "127.0.0.1", self._listener.getsockname()[1]]]
-
-    def _accept(self):
-        while True:
-            try:
-                link, _ = self._listener.accept()
-            except OSError:
-                return
-            threading.Thread(target=self._serve, args=(link,), daemon=True).start()
 
     def _serve(self, link):
         with contextlib.suppress(OSError, EOFError):

@@ -7,6 +7,7 @@ import tempfile
 import threading
 
 from calibration_client import wait_for
+from links import serve_each
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
 from pymodbus_servers import serve_serial, serve_tcp
 
@@ -103,15 +104,7 @@ class RudeServer:
         self._answer = answer
         self._listener = socket.create_server(("127.0.0.1", port), reuse_port=False)
         self.requests = 0
-        threading.Thread(target=self._accept, daemon=True).start()
-
-    def _accept(self):
-        while True:
-            try:
-                link, _ = self._listener.accept()
-            except OSError:
-                return
-            threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+        serve_each(self._listener, self._serve)
 
     def _serve(self, link):
         with link:
