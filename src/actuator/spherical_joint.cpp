@@ -1,5 +1,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 
+#include <cmath>
+
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -25,11 +27,21 @@ JointLinearization linearizeRotorOrientation(const JointGeometry& joints,
   Eigen::Matrix3d A = Eigen::Matrix3d::Identity();
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Eigen::Vector3d axis = joints.axes.col(k);
-    const double angle = q[k] + joints.offsets[k];
-    const Eigen::Vector3d v = axis * angle;
+    const double length = axis.norm();
+    const Eigen::Vector3d unit = axis / length;
+    const double turn = (q[k] + joints.offsets[k]) * length;
+    const double sine = std::sin(turn);
+    const double cosine = std::cos(turn);
+    const Eigen::Matrix3d cross = skew(unit);
+    const Eigen::Matrix3d along = unit * unit.transpose();
     linear.d_offset.col(k) = A * axis;
-    linear.d_axis[static_cast<std::size_t>(k)] = angle * A * leftJacobian(v);
-    A = A * rotationExp(v);
+    // Angle times J_l, which has no quotient that small angles would spoil.
+    Eigen::Matrix3d d_axis = (1.0 - cosine) * cross + (turn - sine) * along;
+    d_axis.diagonal().array() += sine;
+    linear.d_axis[static_cast<std::size_t>(k)].noalias() = A * (d_axis / length);
+    Eigen::Matrix3d R = sine * cross + (1.0 - cosine) * along;
+    R.diagonal().array() += cosine;
+    A = (A * R).eval();
   }
   linear.R_stator_rotor = A;
   return linear;
