@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -11,6 +12,8 @@
 #include "effects_at.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 
 namespace sac {
@@ -24,8 +27,10 @@ class ScannedModel {
                const Eigen::VectorXd& x);
 
   const TorqueCurve& curve() const { return curve_; }
-  std::vector<ScannedTorque> torquesOfPole(std::size_t pole) const;
-  std::vector<ScannedTorque> torquesOfCoil(std::size_t coil) const;
+  /// Those that the axis can change while it stays within an angle of the nominal one [rad]: the
+  /// others say nothing of where it is.
+  ScannedTorques torquesOfPole(std::size_t pole, double within) const;
+  ScannedTorques torquesOfCoil(std::size_t coil, double within) const;
 
  private:
   struct Torque {
@@ -34,11 +39,21 @@ class ScannedModel {
     Eigen::Matrix3d whitening;
     const std::vector<Excitation>* excitations;
   };
+  /// One coil of one torque.
+  struct Exerted {
+    std::size_t torque;
+    double current;  ///< [A]
+  };
 
-  double weight(std::size_t pole, const Excitation& excitation) const {
+  double weight(std::size_t pole, std::size_t coil, double current) const {
     const Actuator& nominal = space_.nominal();
-    return excitation.current * nominal.coils[excitation.coil].gain * nominal.poles[pole].polarity *
-           nominal.poles[pole].gain * effects_.strength(pole, excitation.coil);
+    return current * nominal.coils[coil].gain * nominal.poles[pole].polarity *
+           nominal.poles[pole].gain * effects_.strength(pole, coil);
+  }
+  /// Cosine of the angle between two axes beyond which they do not interact, wherever one of them
+  /// is within an angle [rad].
+  double cosReach(double within) const {
+    return std::cos(std::min(kPi, curve_.supportEnd() + within));
   }
   Eigen::Vector3d torqueOf(const ScannedPartner& partner, const Eigen::Vector3d& pole_rotor) const {
     return partner.weight * pairTorque(curve_, pole_rotor, partner.axis_rotor);
@@ -50,7 +65,34 @@ class ScannedModel {
   std::vector<Eigen::Vector3d> poles_rotor_;
   std::vector<Eigen::Vector3d> coils_stator_;
   std::vector<Torque> torques_;
+  std::vector<std::vector<Exerted>> by_coil_;
 };
+
+/// So many of them, spread over all.
+template <typename Item>
+std::vector<Item> spread(const std::vector<Item>& items, std::size_t most) {
+  if (items.size() <= most) {
+    return items;
+  }
+  // One of each stretch, not always at the same place of it: sessions repeat their patterns.
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const double stretch = static_cast<double>(items.size()) / static_cast<double>(most);
+  std::vector<Item> chosen;
+  chosen.reserve(most);
+  double place = 0.0;
+  for (std::size_t k = 0; k < most; ++k) {
+    place = std::fmod(place + kGoldenRatio, 1.0);
+    chosen.push_back(items[static_cast<std::size_t>((static_cast<double>(k) + place) * stretch)]);
+  }
+  return chosen;
+}
+
+/// Enough to tell one basin of the misfit from another.
+constexpr std::size_t kMostTorques = 200;
+
+double standsFor(std::size_t all, std::size_t chosen) {
+  return chosen == 0 ? 1.0 : static_cast<double>(all) / static_cast<double>(chosen);
+}
 
 TorqueCurve curveAt(const CalibrationModel& model, const EffectsAt& effects) {
   const std::optional<TorqueCurve> changed = effects.changedCurve();
@@ -62,7 +104,8 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
                            const Eigen::VectorXd& x)
     : space_(problem.model->space()),
       effects_(space_, x),
-      curve_(curveAt(*problem.model, effects_)) {
+      curve_(curveAt(*problem.model, effects_)),
+      by_coil_(space_.coils()) {
   for (std::size_t i = 0; i < space_.poles(); ++i) {
     const Eigen::Index at = space_.pole(i);
     poles_rotor_.emplace_back(space_.poleChart(i).axis(x[at], x[at + 1]));
@@ -81,6 +124,9 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
         (*problem.samples)[problem.observations[n].sample].joint_position;
     const Eigen::Vector3d q = reading + effects_.readingColumns(reading) * effects_.values();
     const Eigen::Matrix3d& W = observations.whitening()[n];
+    for (const Excitation& excitation : observations.evaluator().excitations(n)) {
+      by_coil_[excitation.coil].push_back({torques_.size(), excitation.current});
+    }
     torques_.push_back({W.partialPivLu().solve(residuals[n]),
                         rotorOrientation(joints, q).transpose(),
                         W,
@@ -88,36 +134,65 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
   }
 }
 
-std::vector<ScannedTorque> ScannedModel::torquesOfPole(std::size_t pole) const {
-  std::vector<ScannedTorque> result;
+ScannedTorques ScannedModel::torquesOfPole(std::size_t pole, double within) const {
+  const double cos_reach = cosReach(within);
+  const Eigen::Vector3d nominal = space_.poleChart(pole).axis(0.0, 0.0);
+  const auto is_near = [&](const Torque& torque, const Excitation& excitation) {
+    return nominal.dot(torque.R_rotor_stator * coils_stator_[excitation.coil]) > cos_reach;
+  };
+  std::vector<const Torque*> near;
   for (const Torque& torque : torques_) {
-    ScannedTorque scanned{torque.residual, Eigen::Matrix3d::Identity(), torque.whitening, {}};
-    for (const Excitation& excitation : *torque.excitations) {
-      const ScannedPartner partner{torque.R_rotor_stator * coils_stator_[excitation.coil],
-                                   weight(pole, excitation)};
-      scanned.rest += torqueOf(partner, poles_rotor_[pole]);
-      scanned.partners.push_back(partner);
+    if (std::any_of(torque.excitations->begin(), torque.excitations->end(), [&](const auto& coil) {
+          return is_near(torque, coil);
+        })) {
+      near.push_back(&torque);
     }
-    result.push_back(std::move(scanned));
+  }
+  const std::vector<const Torque*> chosen = spread(near, kMostTorques);
+  ScannedTorques result{{}, standsFor(near.size(), chosen.size())};
+  for (const Torque* torque : chosen) {
+    ScannedTorque scanned{torque->residual, Eigen::Matrix3d::Identity(), torque->whitening, {}};
+    for (const Excitation& excitation : *torque->excitations) {
+      if (is_near(*torque, excitation)) {
+        const ScannedPartner partner{torque->R_rotor_stator * coils_stator_[excitation.coil],
+                                     weight(pole, excitation.coil, excitation.current)};
+        scanned.rest += torqueOf(partner, poles_rotor_[pole]);
+        scanned.partners.push_back(partner);
+      }
+    }
+    result.torques.push_back(std::move(scanned));
   }
   return result;
 }
 
-std::vector<ScannedTorque> ScannedModel::torquesOfCoil(std::size_t coil) const {
-  std::vector<ScannedTorque> result;
-  for (const Torque& torque : torques_) {
-    for (const Excitation& excitation : *torque.excitations) {
-      if (excitation.coil != coil) {
-        continue;
+ScannedTorques ScannedModel::torquesOfCoil(std::size_t coil, double within) const {
+  const double cos_reach = cosReach(within);
+  const Eigen::Vector3d nominal = space_.coilChart(coil).axis(0.0, 0.0);
+  const auto is_near = [&](const Exerted& exerted, std::size_t pole) {
+    return (torques_[exerted.torque].R_rotor_stator * nominal).dot(poles_rotor_[pole]) > cos_reach;
+  };
+  std::vector<Exerted> near;
+  for (const Exerted& exerted : by_coil_[coil]) {
+    for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {
+      if (is_near(exerted, i)) {
+        near.push_back(exerted);
+        break;
       }
-      ScannedTorque scanned{torque.residual, torque.R_rotor_stator, torque.whitening, {}};
-      const ScannedPartner self{torque.R_rotor_stator * coils_stator_[coil], 1.0};
-      for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {
-        scanned.partners.push_back({poles_rotor_[i], weight(i, excitation)});
+    }
+  }
+  const std::vector<Exerted> chosen = spread(near, kMostTorques);
+  ScannedTorques result{{}, standsFor(near.size(), chosen.size())};
+  for (const Exerted& exerted : chosen) {
+    const Torque& torque = torques_[exerted.torque];
+    ScannedTorque scanned{torque.residual, torque.R_rotor_stator, torque.whitening, {}};
+    const ScannedPartner self{torque.R_rotor_stator * coils_stator_[coil], 1.0};
+    for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {
+      if (is_near(exerted, i)) {
+        scanned.partners.push_back({poles_rotor_[i], weight(i, coil, exerted.current)});
         scanned.rest += scanned.partners.back().weight * torqueOf(self, poles_rotor_[i]);
       }
-      result.push_back(std::move(scanned));
     }
+    result.torques.push_back(std::move(scanned));
   }
   return result;
 }
@@ -152,9 +227,7 @@ class DrawingDistance {
     if (squares.size() < kLeast) {
       return 0.0;
     }
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    return std::sqrt(*middle / kMedianOfTwo);
+    return std::sqrt(medianOf(std::move(squares)) / kMedianOfTwo);
   }
 
   const ParameterSpace& space_;
@@ -179,30 +252,40 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
     return modes;
   }
   const ScannedModel model(problem, observations, x);
+  const CoarseCurve coarse_curve(model.curve());
+  // The present place may be farther off than the scan looks.
+  const auto within = [&](Eigen::Index first) {
+    return std::max(AxisScan::reach(search.range), 1.1 * x.segment<2>(first).norm());
+  };
   // Few torques may fit elsewhere as well by chance. The prior is no judge: an earlier cycle may
   // have left it in the wrong place.
   const DrawingDistance distance(space, x, search.tolerance);
-  const auto scan = [&](Eigen::Index first,
-                        const AxisChart& chart,
-                        bool is_pole,
-                        std::vector<ScannedTorque> torques) {
-    const Eigen::Vector2d present = x.segment<2>(first);
-    const AxisScan axis(
-        model.curve(), chart, is_pole, std::move(torques), search.range, search.transition);
-    for (const ScannedPlace& other : axis.others(present)) {
-      modes.push_back({first,
-                       other.place,
-                       other.gain + distance(first, present) - distance(first, other.place)});
-    }
-  };
+  const auto scan =
+      [&](Eigen::Index first, const AxisChart& chart, bool is_pole, ScannedTorques torques) {
+        const Eigen::Vector2d present = x.segment<2>(first);
+        const AxisScan axis(model.curve(),
+                            coarse_curve,
+                            chart,
+                            is_pole,
+                            std::move(torques),
+                            search.range,
+                            search.transition);
+        for (const ScannedPlace& other : axis.others(present)) {
+          modes.push_back({first,
+                           other.place,
+                           other.gain + distance(first, present) - distance(first, other.place)});
+        }
+      };
   for (std::size_t i = 0; i < space.poles(); ++i) {
     if (is_estimated(space.pole(i))) {
-      scan(space.pole(i), space.poleChart(i), true, model.torquesOfPole(i));
+      const Eigen::Index first = space.pole(i);
+      scan(first, space.poleChart(i), true, model.torquesOfPole(i, within(first)));
     }
   }
   for (std::size_t j = 0; j < space.coils(); ++j) {
     if (is_estimated(space.coil(j))) {
-      scan(space.coil(j), space.coilChart(j), false, model.torquesOfCoil(j));
+      const Eigen::Index first = space.coil(j);
+      scan(first, space.coilChart(j), false, model.torquesOfCoil(j, within(first)));
     }
   }
   return modes;

@@ -19,36 +19,67 @@ constexpr int kFineSteps = 18;
 
 }  // namespace
 
+CoarseCurve::CoarseCurve(const TorqueCurve& curve) : first_(curve.cosSupportEnd()) {
+  constexpr std::size_t kIntervals = 1024;
+  per_kappa_ = static_cast<double>(kIntervals) / (1.0 - first_);
+  for (std::size_t n = 0; n <= kIntervals; ++n) {
+    const double kappa = std::min(first_ + static_cast<double>(n) / per_kappa_, 1.0);
+    values_.push_back(curve.safe(kappa, std::sqrt((1.0 - kappa) * (1.0 + kappa))).h);
+  }
+}
+
+double CoarseCurve::h(double kappa) const {
+  const double place = (std::min(kappa, 1.0) - first_) * per_kappa_;
+  const std::size_t n = std::min(static_cast<std::size_t>(place), values_.size() - 2);
+  return values_[n] + (place - static_cast<double>(n)) * (values_[n + 1] - values_[n]);
+}
+
+double AxisScan::reach(double range) {
+  // To the corners, a step beyond the edge; angles and coordinates differ by less than a tenth.
+  return 1.1 * std::sqrt(2.0) * (range + range / kSteps);
+}
+
 AxisScan::AxisScan(const TorqueCurve& curve,
+                   const CoarseCurve& coarse_curve,
                    const AxisChart& chart,
                    bool is_pole,
-                   std::vector<ScannedTorque> torques,
+                   ScannedTorques torques,
                    double range,
                    double transition)
     : curve_(curve),
+      coarse_curve_(coarse_curve),
       chart_(chart),
       is_pole_(is_pole),
-      torques_(std::move(torques)),
+      torques_(std::move(torques.torques)),
+      each_stands_for_(torques.each_stands_for),
       limit_(transition * transition),
       range_(range),
       steps_(torques_.size() <= kFewTorques ? kFineSteps : kSteps),
       step_(range / steps_) {}
 
-double AxisScan::misfit(const Eigen::Vector2d& place) const {
+/// Of a place of the grid: what decides where to look closely.
+double AxisScan::coarseMisfit(const Eigen::Vector2d& place) const {
+  constexpr double kLarge = 1e100;
   const Eigen::Vector3d axis = chart_.axis(place[0], place[1]);
+  const double sign = is_pole_ ? 1.0 : -1.0;
   double sum = 0.0;
+  double product = 1.0;  // of what the logarithms would be summed up of
   for (const ScannedTorque& torque : torques_) {
     const Eigen::Vector3d own = torque.to_rotor * axis;
     Eigen::Vector3d rest = torque.rest;
     for (const ScannedPartner& partner : torque.partners) {
       if (interacts(curve_, partner.axis_rotor, own)) {
-        rest -= partner.weight * (is_pole_ ? pairTorque(curve_, own, partner.axis_rotor)
-                                           : pairTorque(curve_, partner.axis_rotor, own));
+        const double h = coarse_curve_.h(own.dot(partner.axis_rotor));
+        rest -= sign * partner.weight * h * own.cross(partner.axis_rotor);
       }
     }
-    sum += limit_ * std::log1p((torque.whitening * rest).squaredNorm() / limit_);
+    product *= 1.0 + (torque.whitening * rest).squaredNorm() / limit_;
+    if (product > kLarge) {
+      sum += std::log(product);
+      product = 1.0;
+    }
   }
-  return sum;
+  return limit_ * (sum + std::log(product));
 }
 
 AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
@@ -120,7 +151,7 @@ std::vector<Eigen::Vector2d> AxisScan::localMinima() const {
   Eigen::MatrixXd misfits(width, width);
   for (int row = 0; row < width; ++row) {
     for (int column = 0; column < width; ++column) {
-      misfits(row, column) = misfit(place(row, column));
+      misfits(row, column) = coarseMisfit(place(row, column));
     }
   }
   std::vector<std::pair<double, Eigen::Vector2d>> minima;
@@ -172,10 +203,13 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
   starts.resize(std::min(starts.size(), steps_ == kSteps ? kMostStarts : kMostFineStarts));
   for (const Eigen::Vector2d& start : starts) {
     const Eigen::Vector2d place = descended(start);
-    const ScannedPlace there{place, here.misfit - misfit(place)};
+    const ScannedPlace there{place, here.misfit - linearized(place).misfit};
     if (isWithin(place) && !is_known(there)) {
       found.push_back(there);
     }
+  }
+  for (ScannedPlace& there : found) {
+    there.gain *= each_stands_for_;
   }
   return found;
 }

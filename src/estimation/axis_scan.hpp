@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,26 +24,50 @@ struct ScannedTorque {
   std::vector<ScannedPartner> partners;
 };
 
+/// The torques that a scan goes by.
+struct ScannedTorques {
+  std::vector<ScannedTorque> torques;
+  double each_stands_for = 1.0;  ///< so many measured ones, where there are very many
+};
+
 /// Another minimum of the misfit of an axis.
 struct ScannedPlace {
   Eigen::Vector2d place;  ///< in the chart of the axis [rad]
-  double gain;            ///< by how much the misfit is smaller there than at the present place
+  /// By how much the misfit of all measured torques is smaller there than at the present place.
+  double gain;
+};
+
+/// h(κ) of a torque curve (TorqueCurve::Safe) between points of a table: to 1e-5 of its peak, for
+/// the first look.
+class CoarseCurve {
+ public:
+  explicit CoarseCurve(const TorqueCurve& curve);
+  double h(double kappa) const;
+
+ private:
+  double first_;  ///< κ below which there is no torque
+  double per_kappa_;
+  std::vector<double> values_;
 };
 
 /// The robust misfit of the torques of one pole or coil over its two angles, all else held.
 class AxisScan {
  public:
-  /// Keeps references to curve and chart. `range`: half width of the scan [rad]; `transition`:
+  /// Keeps references to curves and chart. `range`: half width of the scan [rad]; `transition`:
   /// whitened norm beyond which a misfit fades.
   AxisScan(const TorqueCurve& curve,
+           const CoarseCurve& coarse_curve,
            const AxisChart& chart,
            bool is_pole,
-           std::vector<ScannedTorque> torques,
+           ScannedTorques torques,
            double range,
            double transition);
 
   /// Minima that are not the one of `present`: beyond what its torques leave open of it.
   std::vector<ScannedPlace> others(const Eigen::Vector2d& present) const;
+
+  /// How far from the nominal axis a scan of this range looks [rad].
+  static double reach(double range);
 
  private:
   /// Half the gradient and half the Gauss–Newton Hessian beside the misfit.
@@ -54,7 +77,7 @@ class AxisScan {
     Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   };
 
-  double misfit(const Eigen::Vector2d& place) const;
+  double coarseMisfit(const Eigen::Vector2d& place) const;
   Normal linearized(const Eigen::Vector2d& place) const;
   Eigen::Vector2d descended(Eigen::Vector2d place) const;
   bool isWithin(const Eigen::Vector2d& place) const {
@@ -63,9 +86,11 @@ class AxisScan {
   std::vector<Eigen::Vector2d> localMinima() const;
 
   const TorqueCurve& curve_;
+  const CoarseCurve& coarse_curve_;
   const AxisChart& chart_;
   bool is_pole_;
   std::vector<ScannedTorque> torques_;
+  double each_stands_for_;
   double limit_;
   double range_;
   int steps_;  ///< from the nominal axis to the edge of the scan

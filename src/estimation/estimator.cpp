@@ -10,6 +10,7 @@
 #include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
 #include "problem_check.hpp"
+#include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "weighted_observations.hpp"
@@ -20,12 +21,6 @@ namespace {
 constexpr int kComponents = 3;  // of one observation
 /// Half width of the search for other modes of a pole or coil: six usual tolerances [rad].
 constexpr double kModeRange = 0.18;
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The steps of one estimation. Invariant: the weights belong to the last call of updateWeights().
 class Estimator {
@@ -56,6 +51,7 @@ class Estimator {
   bool solveReweighted();
   bool solveRobustly(double transition);
   bool solveWithoutOutliers();
+  const std::vector<AxisMode>& modes();
   void takeBetterModes();
   double robustMisfit() const;
   double outlierLimit() const;
@@ -70,11 +66,14 @@ class Estimator {
   std::vector<bool> held_;  ///< per coordinate: not estimated
   Solution solution_;
   Estimate result_;
+  std::vector<AxisMode> modes_;
+  Eigen::VectorXd modes_at_;  ///< the solution that modes_ are the other modes of
 };
 
 /// Chooses the coordinates to estimate, the free ones of the problem without those held whole, and
 /// the prior of the directions that are held.
 void Estimator::setFree(const UnidentifiedPart& part) {
+  modes_at_.resize(0);
   solution_.estimated.clear();
   std::set_difference(problem_.free.begin(),
                       problem_.free.end(),
@@ -273,18 +272,26 @@ double Estimator::robustMisfit() const {
   return sum;
 }
 
+/// Other modes of the present solution.
+const std::vector<AxisMode>& Estimator::modes() {
+  if (modes_at_.size() == 0 || modes_at_ != solution_.x()) {
+    const ModeSearch search{kModeRange, transition(), options_.tolerance};
+    modes_ = otherModes(problem_, observations_, solution_.x(), solution_.estimated, search);
+    modes_at_ = solution_.x();
+  }
+  return modes_;
+}
+
 /// Moves poles and coils whose torques, also those rejected, fit far better elsewhere, and solves
 /// again from there; else an axis that rests in a wrong place rejects the very samples that would
 /// call it back. Keeps the better of both solutions.
 void Estimator::takeBetterModes() {
   constexpr int kMaxRounds = 3;
-  const ModeSearch search{kModeRange, transition(), options_.tolerance};
   for (int round = 0; round < kMaxRounds; ++round) {
     const double worthwhile = outlierLimit();
     Eigen::VectorXd moved = solution_.x();
     std::map<Eigen::Index, double> best;
-    for (const AxisMode& mode :
-         otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
+    for (const AxisMode& mode : modes()) {
       double& gain = best.try_emplace(mode.first, worthwhile).first->second;
       if (mode.gain > gain) {
         gain = mode.gain;
@@ -339,9 +346,7 @@ bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
 /// places in their uncertainty.
 void Estimator::widenAmbiguous() {
   constexpr double kNearlyAsWell = 16.0;  // of χ²: four standard deviations
-  const ModeSearch search{kModeRange, transition(), options_.tolerance};
-  for (const AxisMode& mode :
-       otherModes(problem_, observations_, solution_.x(), solution_.estimated, search)) {
+  for (const AxisMode& mode : modes()) {
     if (mode.gain > -kNearlyAsWell) {
       const Eigen::Vector2d apart = mode.place - solution_.x().segment<2>(mode.first);
       result_.belief.covariance.block<2, 2>(mode.first, mode.first) += apart * apart.transpose();
