@@ -55,13 +55,22 @@ void iterate(benchmark::State& state, Cycle cycle) {
 
 /// A whole cycle as an operator asks for it: weights, iteration, outlier test, observability,
 /// covariance, uncertainty over the workspace, report.
-void runWholeCycle(benchmark::State& state, Cycle cycle) {
-  const CycleScenario scenario = cycleScenario(cycle, static_cast<std::size_t>(state.range(0)));
+void runWholeCycle(benchmark::State& state, const CycleScenario& scenario) {
   CycleOutcome outcome;
   for (auto _ : state) {
     outcome = runCycle(scenario.model, scenario.samples, scenario.state, scenario.request, {});
   }
   tell(state, scenario, outcome.report.success, outcome.report.iterations, outcome.state.belief.x);
+}
+
+void runWholeCycle(benchmark::State& state, Cycle cycle) {
+  runWholeCycle(state, cycleScenario(cycle, static_cast<std::size_t>(state.range(0))));
+}
+
+/// The same by the number of coils, at a number of samples that stays.
+void refineManyCoils(benchmark::State& state) {
+  constexpr std::size_t kSamples = 4000;
+  runWholeCycle(state, manyCoilsScenario(static_cast<std::size_t>(state.range(0)), kSamples));
 }
 
 constexpr int kMany = 100000;
@@ -75,6 +84,7 @@ BENCHMARK_CAPTURE(runWholeCycle, refine, Cycle::kRefine)
     ->Arg(kMany / 10)
     ->Arg(kMany)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(refineManyCoils)->Arg(24)->Arg(96)->Arg(400)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(runWholeCycle, joint, Cycle::kJoint)
     ->Arg(30)
     ->Arg(kMany)

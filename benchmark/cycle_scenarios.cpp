@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac::benchmarks {
@@ -188,6 +189,45 @@ std::string toJson(const Sample& sample) {
 }
 
 }  // namespace
+
+CycleScenario manyCoilsScenario(std::size_t coils, std::size_t samples) {
+  constexpr std::size_t kLayers = 8;
+  constexpr double kHighest = 0.35;     // elevation of the outermost layers [rad]
+  constexpr double kMadeWithin = 0.02;  // errors of manufacture [rad]
+  scenarios::Generator generator(kSeed);
+  Actuator nominal = scenarios::paperNominal();
+  nominal.coils.clear();
+  for (std::size_t j = 0; j < coils; ++j) {
+    const std::size_t layer = j % kLayers;
+    const double elevation =
+        kHighest * (2.0 * static_cast<double>(layer) / static_cast<double>(kLayers - 1) - 1.0);
+    nominal.coils.push_back(
+        {elevation, 2.0 * kPi * static_cast<double>(j) / static_cast<double>(coils), 1.0});
+  }
+  const Actuator truth = scenarios::perturbed(nominal, kMadeWithin, kMadeWithin, generator);
+  const std::size_t orientations = samples / (kTorquesPerOrientation + 1);
+  std::vector<Sample> session =
+      scenarios::orientationSamples(truth,
+                                    scenarios::randomPoses(orientations, kTilt, generator),
+                                    0.0,
+                                    scenarios::uniformStddev(kOrientationNoise),
+                                    generator);
+  const std::size_t each = std::max(nominal.poles.size(), (samples - orientations) / coils);
+  for (std::size_t coil = 0; coil < coils; ++coil) {
+    const std::vector<Sample> more = scenarios::torqueSamples(
+        truth,
+        scenarios::posesThatSeeEveryPole(truth, coil, each, kTilt, generator),
+        coil,
+        kCurrent,
+        0.0,
+        scenarios::uniformStddev(kTorqueNoise),
+        generator);
+    session.insert(session.end(), more.begin(), more.end());
+  }
+  CalibrationModel model{ParameterSpace(nominal)};
+  CalibrationState state = initialState(Cycle::kRefine, model.space(), truth);
+  return {std::move(model), {Cycle::kRefine, std::nullopt}, std::move(session), state, truth};
+}
 
 CycleScenario cycleScenario(Cycle cycle, std::size_t samples) {
   const Actuator truth = scenarios::paperTruth();

@@ -24,6 +24,10 @@ struct CycleScenario {
 /// its samples is an orientation, the others are torques of all coils in turn.
 CycleScenario cycleScenario(Cycle cycle, std::size_t samples);
 
+/// The refinement of an actuator with as many coils as wanted (a multiple of 8, in as many layers),
+/// `samples` in all, each coil's at poses where it sees poles.
+CycleScenario manyCoilsScenario(std::size_t coils, std::size_t samples);
+
 /// Largest difference between coordinates `x` and the truth over those that the cycle estimates
 /// [rad].
 double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x);
