@@ -9,6 +9,7 @@
 
 #include "chi_square_limit.hpp"
 #include "observability.hpp"
+#include "observed_information.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -36,24 +37,18 @@ class Conclusion {
   }
 
  private:
-  struct Information {
-    Eigen::MatrixXd data;   ///< F×F: Σ JᵀS⁻¹J
-    Eigen::MatrixXd noise;  ///< F×F: Σ JᵀS⁻¹RS⁻¹J, R the sensor noise alone
-    Eigen::MatrixXd others;  ///< F×P: Σ JᵀS⁻¹J_held, zero columns for the estimated coordinates
-  };
-
   void judgeMisfit();
   double priorMisfit() const;
   double statedMisfit() const;
-  Information sumInformation();
-  void addDwell(const std::vector<std::size_t>& dwell,
-                InformationSum& data,
-                Eigen::MatrixXd& noise);
   Eigen::MatrixXd priorInformation() const;
+  Eigen::MatrixXd priorCovariance() const;
   void findCovariance();
+  void addHeld(const Eigen::MatrixXd& others, const Eigen::MatrixXd& of_held);
   void fillBelief(const Eigen::MatrixXd& own, Eigen::MatrixXd covariance);
-  Eigen::Matrix3d residualCovariance(std::size_t observation,
-                                     const LinearizedObservation& linear) const;
+  Eigen::Matrix3d residualCovariance(std::size_t observation, const LinearizedObservation& linear);
+  Eigen::Matrix3d sharedWithHeld(std::size_t observation,
+                                 const LinearizedObservation& linear,
+                                 const Eigen::Matrix3d& noise) const;
   void listResiduals();
   double errorAt(const Eigen::VectorXd& x, ErrorMeasure measure) const;
   void listErrors();
@@ -66,8 +61,9 @@ class Conclusion {
   Eigen::MatrixXd inverse_;         ///< F×F: inverse information of the estimated coordinates
   Eigen::MatrixXd own_covariance_;  ///< F×F: theirs, from stated noise and held coordinates
   Eigen::MatrixXd with_held_;       ///< F×P: between them and held coordinates
-  /// R V⁻¹J, 3×F, of the observations of dwells: R the covariance of the sensors alone.
-  std::map<std::size_t, Eigen::MatrixXd> weighed_;
+  std::map<std::size_t, Eigen::MatrixXd> weighed_;  ///< see ObservedInformation
+  LinearizedObservation linear_;                    ///< of the observation at hand
+  WhitenedObservation whitened_;
 };
 
 void Conclusion::judgeMisfit() {
@@ -113,77 +109,19 @@ double Conclusion::statedMisfit() const {
   return count == 0 ? 0.0 : std::sqrt(sum / count);
 }
 
-Conclusion::Information Conclusion::sumInformation() {
-  const Eigen::Index size = solution_.x().size();
-  const ChosenCoordinates every = ChosenCoordinates::all(size);
-  InformationSum data(size);
-  InformationSum noise(chosen_.size());
-  LinearizedObservation linear;
-  WhitenedObservation whitened;
-  for (std::size_t n = 0; n < observations_.size(); ++n) {
-    if (!observations_.active()[n] || observations_.shared().shares[n]) {
-      continue;
+/// Σ over a and b of J_a M(a, b) J_bᵀ, where the places of the columns a and b of J are given.
+Eigen::Matrix3d between(const Eigen::Matrix3Xd& J,
+                        const std::vector<Eigen::Index>& places,
+                        const Eigen::MatrixXd& M) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    Eigen::Vector3d product = Eigen::Vector3d::Zero();
+    for (std::size_t a = 0; a < places.size(); ++a) {
+      product += J.col(static_cast<Eigen::Index>(a)) * M(places[a], places[b]);
     }
-    observations_.evaluator().linearize(n, solution_.x(), linear);
-    const Eigen::Matrix3d& W = observations_.whitening()[n];
-    whiten(linear, W, every, whitened);
-    data.add(whitened);
-    // S⁻¹RS⁻¹ = WᵀLLᵀW with W R Wᵀ = LLᵀ.
-    const Eigen::Matrix3d share = W * observations_.evaluator().noise(n, linear) * W.transpose();
-    const Eigen::Matrix3d lower = share.llt().matrixL();
-    whiten(linear, lower.transpose() * W, chosen_, whitened);
-    noise.add(whitened);
+    sum += product * J.col(static_cast<Eigen::Index>(b)).transpose();
   }
-  Eigen::MatrixXd noise_of_dwells = Eigen::MatrixXd::Zero(chosen_.size(), chosen_.size());
-  for (const std::vector<std::size_t>& dwell : observations_.shared().dwells) {
-    addDwell(dwell, data, noise_of_dwells);
-  }
-  const Eigen::MatrixXd information = data.information();
-  Information result;
-  result.data = information(solution_.estimated, solution_.estimated);
-  result.noise = noise.information() + noise_of_dwells;
-  result.others = information(solution_.estimated, Eigen::all);
-  result.others(Eigen::all, solution_.estimated).setZero();
-  return result;
-}
-
-/// With V the covariance of the stacked residuals of a dwell, Y = V⁻¹J has the rows Wᵀ(A − G M⁻¹C)
-/// for A = W J, M = I + Σ GᵀG and C = Σ GᵀA, and the shared errors weigh in it as M⁻¹C.
-void Conclusion::addDwell(const std::vector<std::size_t>& dwell,
-                          InformationSum& data,
-                          Eigen::MatrixXd& noise) {
-  const Eigen::Index size = solution_.x().size();
-  const ChosenCoordinates every = ChosenCoordinates::all(size);
-  DwellSum sum(size);
-  sum.begin();
-  LinearizedObservation linear;
-  WhitenedObservation whitened;
-  for (const std::size_t n : dwell) {
-    if (observations_.active()[n]) {
-      observations_.evaluator().linearize(n, solution_.x(), linear);
-      whiten(linear, observations_.whitening()[n], every, whitened);
-      sum.add(whitened, observations_.shared().loading[n]);
-    }
-  }
-  sum.addTo(data);
-  const Eigen::MatrixXd shares =
-      (sum.elimination().covariance() * sum.crossed())(Eigen::all, solution_.estimated);
-  Eigen::MatrixXd information = shares.transpose() * shares;
-  for (const std::size_t n : dwell) {
-    if (!observations_.active()[n]) {
-      continue;
-    }
-    const ObservationEvaluator& evaluator = observations_.evaluator();
-    evaluator.linearize(n, solution_.x(), linear);
-    const Eigen::Matrix3d& W = observations_.whitening()[n];
-    const SharedLoading& G = observations_.shared().loading[n];
-    Eigen::MatrixXd& weighed = weighed_[n];
-    weighed = W.transpose() * (W * linear.jacobian(Eigen::all, solution_.estimated) - G * shares);
-    information += weighed.transpose() * evaluator.ownNoise(n) * weighed;
-    // Σ over the dwell of cov(e_n, e_m) Y_m.
-    weighed = (evaluator.ownNoise(n) * weighed + W.inverse() * G * shares).eval();
-  }
-  noise += information;
+  return sum;
 }
 
 /// F×F: what the prior of held directions tells of the estimated coordinates.
@@ -192,27 +130,54 @@ Eigen::MatrixXd Conclusion::priorInformation() const {
   return directions * solution_.prior.covariance.ldlt().solve(directions.transpose());
 }
 
+/// F×F: the part of their covariance that is due to that prior.
+Eigen::MatrixXd Conclusion::priorCovariance() const {
+  const Eigen::MatrixXd spread =
+      inverse_ * solution_.prior.directions(solution_.estimated, Eigen::all);
+  return spread * solution_.prior.covariance.ldlt().solve(spread.transpose());
+}
+
 void Conclusion::findCovariance() {
-  const Information information = sumInformation();
+  ObservedInformation information = observedInformation(solution_);
+  weighed_ = std::move(information.weighed);
   const Eigen::Index count = chosen_.size();
   result_.condition_number =
       judgeInformation(information.data, solution_.options->unobservable_stddev)
           .identified_condition_number;
-  const Eigen::MatrixXd prior_information = priorInformation();
   inverse_ =
-      (information.data + prior_information).llt().solve(Eigen::MatrixXd::Identity(count, count));
-  const Eigen::MatrixXd noise_covariance = inverse_ * information.noise * inverse_;
-  const Eigen::MatrixXd prior_covariance = inverse_ * prior_information * inverse_;
+      (information.data + priorInformation()).llt().solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd prior_covariance = priorCovariance();
+  const Eigen::MatrixXd noise_covariance = information.is_noise_alone
+                                               ? (inverse_ - prior_covariance).eval()
+                                               : (inverse_ * information.noise * inverse_).eval();
   Eigen::MatrixXd covariance = solution_.problem->prior.covariance;
   for (const Eigen::Index a : solution_.estimated) {
     covariance.row(a).setZero();
     covariance.col(a).setZero();
   }
-  const Eigen::MatrixXd gain = -inverse_ * information.others;  // F×P: ∂estimated/∂held
-  with_held_ = gain * covariance;
-  own_covariance_ = noise_covariance + prior_covariance + with_held_ * gain.transpose();
+  own_covariance_ = noise_covariance + prior_covariance;
+  addHeld(information.others, covariance);
   const double scale = result_.covariance_scale * result_.covariance_scale;
   fillBelief(own_covariance_ + (scale - 1.0) * noise_covariance, std::move(covariance));
+}
+
+/// What the uncertainty of held coordinates adds. `others`: F×P, see ObservedInformation;
+/// `of_held`: P×P.
+void Conclusion::addHeld(const Eigen::MatrixXd& others, const Eigen::MatrixXd& of_held) {
+  std::vector<Eigen::Index> uncertain;
+  for (Eigen::Index p = 0; p < of_held.rows(); ++p) {
+    if (of_held(p, p) > 0.0) {
+      uncertain.push_back(p);
+    }
+  }
+  with_held_.setZero(chosen_.size(), of_held.cols());
+  if (uncertain.empty()) {
+    return;
+  }
+  // F×U: ∂estimated/∂held.
+  const Eigen::MatrixXd gain = -inverse_ * others(Eigen::all, uncertain);
+  with_held_ = gain * of_held(uncertain, Eigen::all);
+  own_covariance_ += with_held_(Eigen::all, uncertain) * gain.transpose();
 }
 
 /// `own`: of the estimated coordinates; `covariance`: of the held ones, all else zero.
@@ -228,27 +193,28 @@ void Conclusion::fillBelief(const Eigen::MatrixXd& own, Eigen::MatrixXd covarian
 /// Covariance of a residual after the solution: smaller than the observation's own for those that
 /// took part in it, larger for those that did not.
 Eigen::Matrix3d Conclusion::residualCovariance(std::size_t observation,
-                                               const LinearizedObservation& linear) const {
+                                               const LinearizedObservation& linear) {
   const ObservationEvaluator& evaluator = observations_.evaluator();
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> J =
-      linear.jacobian(Eigen::all, solution_.estimated);
-  Eigen::Matrix<double, Eigen::Dynamic, 3> with_others(J.cols(), 3);
-  with_others.setZero();
-  for (const Eigen::Index b : linear.columns) {
-    with_others += with_held_.col(b) * linear.jacobian.col(b).transpose();
+  const Eigen::Matrix3d noise = evaluator.noise(observation, linear);
+  const Eigen::Matrix3d of_held = evaluator.heldCovariance(linear, held_);
+  whiten(linear, Eigen::Matrix3d::Identity(), chosen_, whitened_);
+  const WhitenedObservation& own = whitened_;
+  Eigen::Matrix3d covariance =
+      noise + of_held + between(own.jacobian, own.columns, own_covariance_);
+  if (!of_held.isZero(0.0)) {
+    Eigen::Matrix3d crossed = Eigen::Matrix3d::Zero();
+    for (const Eigen::Index b : linear.columns) {
+      for (std::size_t a = 0; a < own.columns.size(); ++a) {
+        crossed += own.jacobian.col(static_cast<Eigen::Index>(a)) * with_held_(own.columns[a], b) *
+                   linear.jacobian.col(b).transpose();
+      }
+    }
+    covariance += crossed + crossed.transpose();
   }
-  const Eigen::Matrix3d crossed = J.lazyProduct(with_others);
-  Eigen::Matrix3d covariance = evaluator.covariance(observation, linear, held_) + crossed +
-                               crossed.transpose() +
-                               J.lazyProduct(own_covariance_).eval().lazyProduct(J.transpose());
   if (observations_.active()[observation]) {
-    const Eigen::Matrix3d& W = observations_.whitening()[observation];
-    const Eigen::Matrix3d noise = evaluator.noise(observation, linear);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> weighed =
-        observations_.shared().shares[observation]
-            ? Eigen::Matrix<double, 3, Eigen::Dynamic>(weighed_.at(observation))
-            : Eigen::Matrix<double, 3, Eigen::Dynamic>(noise * W.transpose() * W * J);
-    const Eigen::Matrix3d shared = weighed.lazyProduct(inverse_).eval().lazyProduct(J.transpose());
+    const bool is_weighed = !of_held.isZero(0.0) || weighed_.count(observation) > 0;
+    const Eigen::Matrix3d shared = is_weighed ? sharedWithHeld(observation, linear, noise)
+                                              : between(own.jacobian, own.columns, inverse_);
     covariance -= shared + shared.transpose();
     // A residual that its own parameters absorb wholly has no variance left: keep a floor.
     constexpr double kFloor = 1e-6;
@@ -257,18 +223,31 @@ Eigen::Matrix3d Conclusion::residualCovariance(std::size_t observation,
   return covariance;
 }
 
+/// Covariance of the noise of an observation with what the solution, which took part of it up, says
+/// of its residual.
+Eigen::Matrix3d Conclusion::sharedWithHeld(std::size_t observation,
+                                           const LinearizedObservation& linear,
+                                           const Eigen::Matrix3d& noise) const {
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  const Rows J = linear.jacobian(Eigen::all, solution_.estimated);
+  const Eigen::Matrix3d& W = observations_.whitening()[observation];
+  const Rows weighed = observations_.shared().shares[observation]
+                           ? Rows(weighed_.at(observation))
+                           : Rows(noise * W.transpose() * W * J);
+  return weighed.lazyProduct(inverse_).eval().lazyProduct(J.transpose());
+}
+
 void Conclusion::listResiduals() {
-  LinearizedObservation linear;
   result_.residuals.reserve(observations_.size());
   for (std::size_t n = 0; n < observations_.size(); ++n) {
-    observations_.evaluator().linearize(n, solution_.x(), linear);
+    observations_.evaluator().linearize(n, solution_.x(), linear_);
     ObservationResidual entry;
     entry.observation = solution_.problem->observations[n];
-    entry.residual = linear.residual;
+    entry.residual = linear_.residual;
     entry.rejected = !observations_.active()[n];
-    const Eigen::LDLT<Eigen::Matrix3d> factor(residualCovariance(n, linear));
-    entry.standardized =
-        std::sqrt(std::max(0.0, linear.residual.dot(factor.solve(linear.residual))) / kComponents);
+    const Eigen::LDLT<Eigen::Matrix3d> factor(residualCovariance(n, linear_));
+    entry.standardized = std::sqrt(
+        std::max(0.0, linear_.residual.dot(factor.solve(linear_.residual))) / kComponents);
     result_.residuals.push_back(entry);
   }
 }

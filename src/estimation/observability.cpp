@@ -3,9 +3,17 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace sac {
+
+bool leavesNothingOpen(const Eigen::MatrixXd& information, double limit) {
+  // All eigenvalues exceed 1/limit² where what they exceed it by has a Cholesky factor.
+  Eigen::MatrixXd excess = information;
+  excess.diagonal().array() -= 1.0 / (limit * limit);
+  return excess.llt().info() == Eigen::Success;
+}
 
 Observability judgeInformation(const Eigen::MatrixXd& information, double limit) {
   constexpr double kParticipation = 0.01;
@@ -14,14 +22,19 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
   if (n == 0) {
     return result;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information, Eigen::EigenvaluesOnly);
   // Eigenvalues ascend: the open directions come first.
   Eigen::Index open = 0;
   while (open < n && eigen.eigenvalues()[open] * limit * limit < 1.0) {
     ++open;
   }
   result.rank = n - open;
-  result.open_directions = eigen.eigenvectors().leftCols(open);
+  result.open_directions.resize(n, 0);
+  if (open > 0) {
+    // The vectors cost several times the values, and most sessions leave nothing open.
+    eigen.compute(information);
+    result.open_directions = eigen.eigenvectors().leftCols(open);
+  }
   const Eigen::VectorXd participation = result.open_directions.rowwise().squaredNorm();
   for (Eigen::Index k = 0; k < n; ++k) {
     if (participation[k] > kParticipation) {

@@ -21,6 +21,9 @@ struct Observability {
   double condition_number = 0.0;
 };
 
+/// Whether it leaves no direction open, see judgeInformation(); much cheaper than that.
+bool leavesNothingOpen(const Eigen::MatrixXd& information, double limit);
+
 /// Judges an information matrix N = JᵀΣ⁻¹J (n×n) of coordinates of one unit: eigenvectors with
 /// eigenvalue below 1/`limit`² are directions that the data leave open. A coordinate belongs to
 /// them when its squared components there sum to more than 1 %.

@@ -90,7 +90,11 @@ double DwellElimination::squaredMisfit() const {
 
 void DwellSum::begin() {
   entries_.clear();
-  crossed_.setZero();
+  for (const Eigen::Index column : columns_) {
+    crossed_.col(column).setZero();
+    touched_[static_cast<std::size_t>(column)] = false;
+  }
+  columns_.clear();
   elimination_ = DwellElimination();
 }
 
@@ -100,8 +104,13 @@ void DwellSum::add(const WhitenedObservation& observation,
   entries_.push_back({observation, loading, weight});
   elimination_.add(loading, observation.residual, weight);
   for (std::size_t k = 0; k < observation.columns.size(); ++k) {
-    crossed_.col(observation.columns[k]) +=
+    const Eigen::Index column = observation.columns[k];
+    crossed_.col(column) +=
         weight * loading.transpose() * observation.jacobian.col(static_cast<Eigen::Index>(k));
+    if (!touched_[static_cast<std::size_t>(column)]) {
+      touched_[static_cast<std::size_t>(column)] = true;
+      columns_.push_back(column);
+    }
   }
 }
 
@@ -112,7 +121,9 @@ void DwellSum::addTo(InformationSum& sum) const {
     corrected.residual -= entry.loading * errors;
     sum.add(corrected, entry.weight);
   }
-  sum.takeOff(crossed_, elimination_.covariance(), errors.squaredNorm());
+  std::vector<Eigen::Index> columns = columns_;
+  std::sort(columns.begin(), columns.end());
+  sum.takeOff(crossed_, columns, elimination_.covariance(), errors.squaredNorm());
 }
 
 }  // namespace sac

@@ -18,7 +18,9 @@ class OpenCoordinates {
   }
 
   Observability judged(double limit) const {
-    return judgeInformation(information_(places_, places_), limit);
+    const Eigen::MatrixXd information = information_(places_, places_);
+    return leavesNothingOpen(information, limit) ? Observability()
+                                                 : judgeInformation(information, limit);
   }
 
   /// Whether the data would leave a coordinate open though all else were known.

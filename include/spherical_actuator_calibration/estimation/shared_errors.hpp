@@ -56,7 +56,9 @@ class DwellElimination {
 /// Whitened observations of one dwell, added to a sum with u eliminated.
 class DwellSum {
  public:
-  explicit DwellSum(Eigen::Index size) : crossed_(kSharedErrors, size) {}
+  explicit DwellSum(Eigen::Index size)
+      : crossed_(decltype(crossed_)::Zero(kSharedErrors, size)),
+        touched_(static_cast<std::size_t>(size), false) {}
 
   /// Forgets the dwell before.
   void begin();
@@ -76,6 +78,8 @@ class DwellSum {
   };
   std::vector<Entry> entries_;
   Eigen::Matrix<double, kSharedErrors, Eigen::Dynamic> crossed_;
+  std::vector<bool> touched_;          ///< per column of crossed_: it may not be zero
+  std::vector<Eigen::Index> columns_;  ///< that are touched
   DwellElimination elimination_;
 };
 

@@ -62,11 +62,20 @@ class InformationSum {
   void add(const WhitenedObservation& observation, double weight = 1.0);
 
   /// Takes CᵀKC off the information, what was spent on quantities beside the coordinates; they add
-  /// `misfit` of their own.
+  /// `misfit` of their own. `crossed`: C, of which only `columns` (ascending) are not zero.
   template <typename Crossed, typename Covariance>
-  void takeOff(const Crossed& crossed, const Covariance& covariance, double misfit) {
-    upper_.template triangularView<Eigen::Upper>() -=
-        crossed.transpose() * (covariance * crossed).eval();
+  void takeOff(const Crossed& crossed,
+               const std::vector<Eigen::Index>& columns,
+               const Covariance& covariance,
+               double misfit) {
+    const Eigen::MatrixXd own = crossed(Eigen::all, columns);
+    const Eigen::MatrixXd spent = covariance * own;
+    for (std::size_t b = 0; b < columns.size(); ++b) {
+      for (std::size_t a = 0; a <= b; ++a) {
+        upper_(columns[a], columns[b]) -=
+            own.col(static_cast<Eigen::Index>(a)).dot(spent.col(static_cast<Eigen::Index>(b)));
+      }
+    }
     squared_misfit_ += misfit;
   }
 
