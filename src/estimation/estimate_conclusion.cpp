@@ -58,6 +58,7 @@ class Conclusion {
   const WeightedObservations& observations_;
   ChosenCoordinates chosen_;
   std::vector<bool> held_;
+  double chi_square_ = 0.0;         ///< of the active observations at the solution
   Eigen::MatrixXd inverse_;         ///< F×F: inverse information of the estimated coordinates
   Eigen::MatrixXd own_covariance_;  ///< F×F: theirs, from stated noise and held coordinates
   Eigen::MatrixXd with_held_;       ///< F×P: between them and held coordinates
@@ -68,7 +69,8 @@ class Conclusion {
 
 void Conclusion::judgeMisfit() {
   constexpr double kSignificance = 1e-3;
-  const double chi_square = observations_.chiSquare(solution_.x()) + priorMisfit();
+  chi_square_ = observations_.chiSquare(solution_.x());
+  const double chi_square = chi_square_ + priorMisfit();
   const auto unknowns = static_cast<int>(solution_.estimated.size());
   const auto held_directions = static_cast<int>(solution_.prior.directions.cols());
   result_.stated_misfit = statedMisfit();
@@ -255,7 +257,8 @@ void Conclusion::listResiduals() {
 double Conclusion::errorAt(const Eigen::VectorXd& x, ErrorMeasure measure) const {
   if (measure == ErrorMeasure::kStandardized) {
     const auto values = static_cast<double>(kComponents * observations_.activeCount());
-    return std::sqrt(observations_.chiSquare(x) / values);
+    const double chi_square = x == solution_.x() ? chi_square_ : observations_.chiSquare(x);
+    return std::sqrt(chi_square / values);
   }
   double sum = 0.0;
   for (std::size_t n = 0; n < observations_.size(); ++n) {

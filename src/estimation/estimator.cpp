@@ -322,7 +322,7 @@ void Estimator::takeBetterModes() {
 bool Estimator::refineOpen(int round, UnidentifiedPart& open) {
   constexpr int kFreeRounds = 2;
   UnidentifiedPart seen = unidentifiedAt(solution_.x());
-  if (round == 0) {
+  if (round == 0 && !seen.coordinates.empty()) {
     noteRejectedAway(seen);
   }
   const bool same_directions = seen.directions.cols() == open.directions.cols();

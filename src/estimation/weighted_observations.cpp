@@ -15,6 +15,11 @@ WeightedObservations::WeightedObservations(const EstimationProblem& problem,
 
 bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::vector<bool>& held) {
   constexpr double kNoticeable = 1e-6;
+  if (weighed_at_.size() > 0 && weighed_at_ == x && weighed_with_ == held) {
+    return false;
+  }
+  weighed_at_ = x;
+  weighed_with_ = held;
   bool changed = false;
   LinearizedObservation linear;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {

@@ -43,6 +43,7 @@ class WeightedObservations {
   };
   Setting setting() const { return {whitening_, shared_.loading, active_}; }
   void restore(Setting setting) {
+    weighed_at_.resize(0);
     whitening_ = std::move(setting.whitening);
     shared_.loading = std::move(setting.loading);
     active_ = std::move(setting.active);
@@ -80,6 +81,8 @@ class WeightedObservations {
   SharedErrorModel shared_;
   std::vector<Eigen::Matrix3d> whitening_;
   std::vector<bool> active_;
+  Eigen::VectorXd weighed_at_;      ///< the coordinates that the weights belong to, or none
+  std::vector<bool> weighed_with_;  ///< the same of the held ones
 };
 
 }  // namespace sac
