@@ -53,6 +53,7 @@ class Budget {
     Eigen::MatrixXd jacobian;  ///< rows of all observations, in all coordinates
     Eigen::MatrixXd loading;   ///< of joint readings and the torque without current
     Eigen::VectorXd variance;  ///< noise of each row's own
+    Eigen::MatrixXd readings;  ///< of errors of readings that an observation has for itself
     Eigen::MatrixXd held;      ///< covariance that held coordinates add, block by block
     std::vector<bool> is_orientation;
   };
@@ -115,6 +116,7 @@ Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
   dwell.jacobian = Eigen::MatrixXd::Zero(rows, space_.size());
   dwell.loading.resize(rows, kSharedErrors);
   dwell.variance.resize(rows);
+  dwell.readings.resize(rows, 3);
   dwell.held = Eigen::MatrixXd::Zero(rows, rows);
   LinearizedObservation linear;
   for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -123,7 +125,8 @@ Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
     evaluator.linearize(n, belief_.x, linear);
     dwell.jacobian.middleRows<3>(row) = linear.jacobian;
     dwell.loading.middleRows<3>(row) = evaluator.sharedErrors(n, linear);
-    dwell.variance.segment<3>(row) = evaluator.ownNoise(n).diagonal();
+    dwell.variance.segment<3>(row).setConstant(evaluator.ownVariance(n));
+    dwell.readings.middleRows<3>(row) = evaluator.ownReadingErrors(n, linear);
     dwell.held.block<3, 3>(row, row) = evaluator.heldCovariance(linear, held_);
     dwell.is_orientation.push_back(problem_.observations[n].quantity == Quantity::kOrientation);
   }
@@ -133,6 +136,10 @@ Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
 void Budget::add(const Dwell& dwell) {
   Eigen::MatrixXd covariance = dwell.held + dwell.loading * dwell.loading.transpose();
   covariance.diagonal() += dwell.variance;
+  for (Eigen::Index row = 0; row < dwell.readings.rows(); row += 3) {
+    const Eigen::Matrix3d own = dwell.readings.middleRows<3>(row);
+    covariance.block<3, 3>(row, row) += own * own.transpose();
+  }
   const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, chosen_);
   const Eigen::MatrixXd weighed = covariance.llt().solve(J);  // V⁻¹J
   information_ += J.transpose() * weighed;
@@ -142,6 +149,9 @@ void Budget::add(const Dwell& dwell) {
     const Eigen::MatrixXd part =
         dwell.variance.segment<3>(row).cwiseSqrt().asDiagonal() * weighed.middleRows<3>(row);
     of(dwell.is_orientation[k] ? "orientation" : "torque") += part.transpose() * part;
+    const Eigen::MatrixXd own =
+        dwell.readings.middleRows<3>(row).transpose() * weighed.middleRows<3>(row);
+    of("joint_reading") += own.transpose() * own;
   }
   const Eigen::MatrixXd shares = weighed.transpose() * dwell.loading;
   const auto joints = shares.leftCols<3>();

@@ -153,7 +153,7 @@ class HeldOutJudge {
   void whitenJudged(std::size_t n) {
     const bool is_shared = shared_.shares[n];
     const Eigen::Matrix3d whitening =
-        whiteningOf(is_shared ? evaluator_.ownNoise(n) : evaluator_.noise(n, linear_));
+        whiteningOf(is_shared ? evaluator_.ownNoise(n, linear_) : evaluator_.noise(n, linear_));
     whiten(linear_, whitening, all_, whitened_);
     if (is_shared) {
       sharing_[n] = whitened_;

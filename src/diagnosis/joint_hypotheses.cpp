@@ -48,6 +48,8 @@ Hypothesis swap(std::size_t first, std::size_t second, const Actuator& actuator)
                 sample.joint_position[static_cast<Eigen::Index>(second)]);
       std::swap(sample.joint_stddev[static_cast<Eigen::Index>(first)],
                 sample.joint_stddev[static_cast<Eigen::Index>(second)]);
+      std::swap(sample.joint_shared_stddev[static_cast<Eigen::Index>(first)],
+                sample.joint_shared_stddev[static_cast<Eigen::Index>(second)]);
     }
   };
   result.redescribe = [first, second](Actuator& described, const Eigen::VectorXd& /*values*/) {
@@ -70,6 +72,7 @@ Hypothesis unit(double factor, const std::string& words) {
     for (Sample& sample : wiring.samples) {
       sample.joint_position *= factor;
       sample.joint_stddev *= factor;
+      sample.joint_shared_stddev *= factor;
     }
   };
   result.sentence = [words, factor](const Eigen::VectorXd& /*values*/) {
@@ -90,6 +93,7 @@ Hypothesis scale(std::size_t joint, const std::string& name, double tolerance) {
     for (Sample& sample : wiring.samples) {
       sample.joint_position[static_cast<Eigen::Index>(joint)] *= values[0];
       sample.joint_stddev[static_cast<Eigen::Index>(joint)] *= std::abs(values[0]);
+      sample.joint_shared_stddev[static_cast<Eigen::Index>(joint)] *= std::abs(values[0]);
     }
   };
   result.is_material = [tolerance](const Eigen::VectorXd& values) {

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <boost/container/small_vector.hpp>
 
@@ -84,7 +85,7 @@ Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
   return noise;
 }
 
-Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation) const {
+double ObservationEvaluator::ownVariance(std::size_t observation) const {
   // What is shared can be all of it only by rounding: a weight must stay finite.
   constexpr double kLeastShare = 1e-6;
   const Observation& what = problem_.observations[observation];
@@ -94,18 +95,41 @@ Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation) const {
   const double shared = what.quantity == Quantity::kTorque
                             ? sample.torque_shared_stddev * sample.torque_shared_stddev
                             : 0.0;
-  return std::max(all - shared, kLeastShare * all) * Eigen::Matrix3d::Identity();
+  return std::max(all - shared, kLeastShare * all);
+}
+
+Eigen::Matrix3d ObservationEvaluator::ownReadingErrors(std::size_t observation,
+                                                       const LinearizedObservation& linear) const {
+  const Sample& sample = (*problem_.samples)[problem_.observations[observation].sample];
+  const Eigen::Vector3d shared = sharedJointStddev(sample);
+  Eigen::Matrix3d errors;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const double variance = std::pow(sample.joint_stddev[column], 2) - std::pow(shared[column], 2);
+    errors.col(column) =
+        std::sqrt(std::max(variance, 0.0)) * linear.jacobian.col(problem_.model->space().joint(k));
+  }
+  return errors;
+}
+
+Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation,
+                                               const LinearizedObservation& linear) const {
+  const Eigen::Matrix3d of_readings = ownReadingErrors(observation, linear);
+  Eigen::Matrix3d noise = of_readings * of_readings.transpose();
+  noise.diagonal().array() += ownVariance(observation);
+  return noise;
 }
 
 Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(
     std::size_t observation, const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
+  const Eigen::Vector3d joint_stddev = sharedJointStddev(sample);
   Eigen::Matrix<double, 3, 6> result = Eigen::Matrix<double, 3, 6>::Zero();
   for (std::size_t k = 0; k < kJoints; ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     result.col(column) =
-        sample.joint_stddev[column] * linear.jacobian.col(problem_.model->space().joint(k));
+        joint_stddev[column] * linear.jacobian.col(problem_.model->space().joint(k));
   }
   if (what.quantity == Quantity::kTorque) {
     result.rightCols<3>() = sample.torque_shared_stddev * Eigen::Matrix3d::Identity();

@@ -132,11 +132,12 @@ Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, con
     evaluator.linearize(n, solution_.x(), linear_);
     const Eigen::Matrix3d& W = observations_.whitening()[n];
     const SharedLoading& G = observations_.shared().loading[n];
+    const Eigen::Matrix3d own_noise = evaluator.ownNoise(n, linear_);
     Eigen::MatrixXd& weighed = weighed_[n];
     weighed = W.transpose() * (W * linear_.jacobian(Eigen::all, solution_.estimated) - G * shares);
-    information += weighed.transpose() * evaluator.ownNoise(n) * weighed;
+    information += weighed.transpose() * own_noise * weighed;
     // Σ over the dwell of cov(e_n, e_m) Y_m.
-    weighed = (evaluator.ownNoise(n) * weighed + W.inverse() * G * shares).eval();
+    weighed = (own_noise * weighed + W.inverse() * G * shares).eval();
   }
   return information;
 }

@@ -13,6 +13,9 @@ constexpr double kAgreement = 0.7;
 constexpr double kRounding = 1e-9;  // [rad]
 
 bool isSameDwell(const Sample& one, const Sample& other) {
+  if (one.dwell != 0 && other.dwell != 0) {
+    return one.dwell == other.dwell;
+  }
   const Eigen::Vector3d limit =
       (kAgreement * one.joint_stddev).cwiseMin(kAgreement * other.joint_stddev).cwiseMax(kRounding);
   const Eigen::Vector3d apart = (one.joint_position - other.joint_position).cwiseAbs();
@@ -20,7 +23,8 @@ bool isSameDwell(const Sample& one, const Sample& other) {
 }
 
 bool hasSharedErrors(const Sample& sample) {
-  return !sample.joint_stddev.isZero(0.0) || (sample.has_torque && sample.torque_shared_stddev > 0);
+  return !sharedJointStddev(sample).isZero(0.0) ||
+         (sample.has_torque && sample.torque_shared_stddev > 0);
 }
 
 }  // namespace

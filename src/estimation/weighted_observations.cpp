@@ -25,7 +25,7 @@ bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::ve
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     evaluator_.linearize(n, x, linear);
     const Eigen::Matrix3d noise =
-        shared_.shares[n] ? evaluator_.ownNoise(n) : evaluator_.noise(n, linear);
+        shared_.shares[n] ? evaluator_.ownNoise(n, linear) : evaluator_.noise(n, linear);
     const Eigen::Matrix3d whitening = whiteningOf(noise + evaluator_.heldCovariance(linear, held));
     if (shared_.shares[n]) {
       const SharedLoading loading = whitening * evaluator_.sharedErrors(n, linear);

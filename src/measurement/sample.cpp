@@ -24,6 +24,12 @@ class SampleCheck {
     }
   }
 
+  /// Where no uncertainty is stated, another one is assumed for the whole.
+  void requirePart(double value, double whole, const std::string& field) const {
+    requireUncertainty(value, field);
+    require(value <= whole || whole == 0.0, field + " exceeds the whole uncertainty.");
+  }
+
   void requireUncertainty(double value, const std::string& field) const {
     require(std::isfinite(value), field + " is not finite.");
     require(value >= 0.0, field + " is negative.");
@@ -45,6 +51,7 @@ void validate(const Sample& sample, std::size_t coils) {
   check.require(sample.joint_position.allFinite(), "joint_position is not finite.");
   for (Eigen::Index k = 0; k < sample.joint_stddev.size(); ++k) {
     check.requireUncertainty(sample.joint_stddev[k], "joint_stddev");
+    check.requirePart(sample.joint_shared_stddev[k], sample.joint_stddev[k], "joint_shared_stddev");
   }
   check.requireUncertainty(sample.duration, "duration");
   check.require(sample.current.allFinite(), "current is not finite.");
@@ -56,6 +63,7 @@ void validate(const Sample& sample, std::size_t coils) {
   if (sample.has_torque) {
     check.require(sample.torque.allFinite(), "torque is not finite.");
     check.requireUncertainty(sample.torque_stddev, "torque_stddev");
+    check.requirePart(sample.torque_shared_stddev, sample.torque_stddev, "torque_shared_stddev");
     check.require(static_cast<std::size_t>(sample.current.size()) == coils,
                   "current has " + std::to_string(sample.current.size()) +
                       " entries, but the actuator has " + std::to_string(coils) + " coils.");

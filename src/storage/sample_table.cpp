@@ -63,6 +63,9 @@ Sample read(RowReader& row) {
   sample.measurements = row.count();
   sample.orientation_stddev = row.number();
   sample.torque_stddev = row.number();
+  sample.dwell = row.integer();
+  sample.joint_shared_stddev = vector(row);
+  sample.torque_shared_stddev = row.number();
   return sample;
 }
 
@@ -73,8 +76,10 @@ void insert(const SQLite::Database& database, const Sample& sample, const std::s
                 "INSERT INTO samples (id, date, stamp, validation, joint_1, joint_2, joint_3, "
                 "joint_1_stddev, joint_2_stddev, joint_3_stddev, has_orientation, r11, r12, r13, "
                 "r21, r22, r23, r31, r32, r33, has_torque, torque_x, torque_y, torque_z, duration, "
-                "measurements, orientation_stddev, torque_stddev) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
-                "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                "measurements, orientation_stddev, torque_stddev, dwell, joint_1_shared_stddev, "
+                "joint_2_shared_stddev, joint_3_shared_stddev, torque_shared_stddev) VALUES (?, "
+                "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+                "?, ?, ?, ?, ?)");
   row.put(sample.id).put(date).put(sample.stamp).put(sample.validation);
   put(row, sample.joint_position);
   put(row, sample.joint_stddev);
@@ -84,6 +89,9 @@ void insert(const SQLite::Database& database, const Sample& sample, const std::s
   put(row, sample.torque);
   row.put(sample.duration).put(sample.measurements);
   row.put(sample.orientation_stddev).put(sample.torque_stddev);
+  row.put(sample.dwell);
+  put(row, sample.joint_shared_stddev);
+  row.put(sample.torque_shared_stddev);
   row.write();
 
   RowWriter current(database,
@@ -100,7 +108,9 @@ std::vector<Sample> inUse(const SQLite::Database& database) {
                 "SELECT id, stamp, validation, joint_1, joint_2, joint_3, joint_1_stddev, "
                 "joint_2_stddev, joint_3_stddev, has_orientation, r11, r12, r13, r21, r22, r23, "
                 "r31, r32, r33, has_torque, torque_x, torque_y, torque_z, duration, measurements, "
-                "orientation_stddev, torque_stddev FROM samples WHERE removal IS NULL ORDER BY id");
+                "orientation_stddev, torque_stddev, dwell, joint_1_shared_stddev, "
+                "joint_2_shared_stddev, joint_3_shared_stddev, torque_shared_stddev "
+                "FROM samples WHERE removal IS NULL ORDER BY id");
   std::vector<Sample> samples;
   while (row.next()) {
     samples.push_back(read(row));

@@ -11,7 +11,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 2;
+constexpr std::int64_t kSchemaVersion = 3;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 constexpr char kTables[] = R"sql(
@@ -39,7 +39,12 @@ CREATE TABLE samples (
   duration ANY NOT NULL,
   measurements INTEGER NOT NULL,
   orientation_stddev ANY,
-  torque_stddev ANY
+  torque_stddev ANY,
+  dwell INTEGER NOT NULL DEFAULT 0,
+  joint_1_shared_stddev ANY NOT NULL DEFAULT 0.0,
+  joint_2_shared_stddev ANY NOT NULL DEFAULT 0.0,
+  joint_3_shared_stddev ANY NOT NULL DEFAULT 0.0,
+  torque_shared_stddev ANY DEFAULT 0.0
 ) STRICT;
 
 CREATE TABLE sample_currents (
@@ -150,9 +155,17 @@ bool isEarlierSchema(const SQLite::Database& database) {
 }
 
 void upgradeSessionSchema(SQLite::Database& database) {
+  if (pragma(database, "PRAGMA user_version") < 2) {
+    database.exec(
+        "ALTER TABLE revisions ADD COLUMN covariance_of INTEGER REFERENCES revisions (number)");
+  }
   database.exec(
-      "ALTER TABLE revisions ADD COLUMN covariance_of INTEGER REFERENCES revisions (number)");
-  database.exec("PRAGMA user_version = 2");
+      "ALTER TABLE samples ADD COLUMN dwell INTEGER NOT NULL DEFAULT 0;"
+      "ALTER TABLE samples ADD COLUMN joint_1_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+      "ALTER TABLE samples ADD COLUMN joint_2_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+      "ALTER TABLE samples ADD COLUMN joint_3_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+      "ALTER TABLE samples ADD COLUMN torque_shared_stddev ANY DEFAULT 0.0");
+  database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
 void createSessionSchema(SQLite::Database& database) {

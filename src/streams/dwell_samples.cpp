@@ -168,6 +168,9 @@ class DwellSampler {
   /// Nothing, and an event, when the interval gives no sample.
   std::optional<SegmentAverage> averageOf(const StampInterval& interval) {
     SegmentAverage average = averageSegment(buffers_, interval, options_);
+    if (average.sample) {
+      average.sample->dwell = dwell_.begin;
+    }
     report_.joints.glitches += average.joint_glitches;
     report_.orientations.glitches += average.orientation_glitches;
     report_.torques.glitches += average.torque_glitches;
@@ -198,7 +201,8 @@ class DwellSampler {
       if (needs_removal(candidate)) {
         sample.torque -= zero.torque;
         sample.current -= zero.current;
-        sample.torque_stddev = std::hypot(sample.torque_stddev, std::sqrt(zero.torque_variance));
+        sample.torque_shared_stddev = std::sqrt(zero.torque_variance);
+        sample.torque_stddev = std::hypot(sample.torque_stddev, sample.torque_shared_stddev);
       } else if (!candidate.excited) {
         sample.has_torque = false;
         sample.torque.setZero();

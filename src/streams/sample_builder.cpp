@@ -56,6 +56,11 @@ void SampleBuilder::add(const JointMeasurement& measurement) {
   if (!accept(joints_, measurement.stamp, defectOf(measurement.position))) {
     return;
   }
+  for (std::size_t k = 0; k < joint_steps_.size(); ++k) {
+    const auto joint = static_cast<Eigen::Index>(k);
+    joint_steps_[k].add(measurement.position[joint]);
+    buffers_.joint_step[joint] = joint_steps_[k].step();
+  }
   queue(detector_.add(measurement.stamp, measurement.position));
   store(joints_, measurement.stamp, measurement.position.data());
 }

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "quantization.hpp"
 #include "robust_mean.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -140,8 +141,14 @@ class SegmentAverager {
       }
     }
     sample_.joint_position = estimate.mean;
+    Eigen::Vector3d of_steps;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      of_steps[k] = quantizationVariance(buffers_.joint_step[k], estimate.single_variance[k]);
+    }
     const double floor = options_.joint_stddev_floor;
-    sample_.joint_stddev = (estimate.variance.array() + floor * floor).sqrt();
+    sample_.joint_stddev = (estimate.variance + of_steps).array() + floor * floor;
+    sample_.joint_stddev = sample_.joint_stddev.cwiseSqrt();
+    sample_.joint_shared_stddev = of_steps.cwiseSqrt();
     count(estimate.count);
     return true;
   }

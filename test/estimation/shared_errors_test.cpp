@@ -106,6 +106,50 @@ TEST(SharedErrors, DwellsAreToldByReadingsThatAgree) {
   EXPECT_EQ(model.dwells[1], (std::vector<std::size_t>{3, 4, 5}));
 }
 
+TEST(SharedErrors, SamplesThatSayOfWhichDwellTheyAreNeedNoReadingsThatAgree) {
+  std::vector<Sample> samples = dwellSamples(1.5e-3);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].dwell = n < 6 ? 1 : 2;
+    samples[n].torque_shared_stddev = 5e-4;
+  }
+  const SharedErrorModel model = grouped(samples, {});
+  ASSERT_EQ(model.dwells.size(), 2U);
+  EXPECT_EQ(model.dwells[0].size(), 6U);
+  EXPECT_EQ(model.dwells[1], (std::vector<std::size_t>{6, 7, 8}));
+}
+
+TEST(SharedErrors, DwellsThatShareNothingAreNoGroups) {
+  std::vector<Sample> samples = dwellSamples(1e-5);
+  for (Sample& sample : samples) {
+    sample.dwell = 1;
+  }
+  EXPECT_TRUE(grouped(samples, {}).dwells.empty());
+}
+
+TEST(SharedErrors, WhatIsSharedAndWhatIsOwnAreAllOfTheNoise) {
+  std::vector<Sample> samples = dwellSamples(1e-5);
+  samples[0].dwell = 1;
+  samples[0].joint_shared_stddev = {4e-4, 0.0, 1e-3};
+  samples[0].torque_shared_stddev = 3e-4;
+  const CalibrationModel calibration_model{ParameterSpace(scenarios::paperNominal())};
+  const Eigen::Index size = calibration_model.space().size();
+  EstimationProblem problem;
+  problem.model = &calibration_model;
+  problem.samples = &samples;
+  problem.observations = {{0, Quantity::kTorque}};
+  problem.prior = {Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  const EstimationOptions options;
+  const ObservationEvaluator evaluator(problem, options);
+  LinearizedObservation linear;
+  evaluator.linearize(0, problem.prior.x, linear);
+  const Eigen::Matrix<double, 3, 6> shared = evaluator.sharedErrors(0, linear);
+  const Eigen::Matrix3d noise = evaluator.noise(0, linear);
+  EXPECT_LT((evaluator.ownNoise(0, linear) + shared * shared.transpose() - noise).norm(),
+            1e-12 * noise.norm());
+  EXPECT_TRUE(shared.col(1).isZero(0.0));
+  EXPECT_FALSE(shared.col(2).isZero(0.0));
+}
+
 TEST(SharedErrors, IndependentReadingsStayIndependent) {
   EXPECT_TRUE(grouped(dwellSamples(1.5e-3), {}).dwells.empty());
   EstimationOptions options;

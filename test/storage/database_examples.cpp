@@ -103,6 +103,9 @@ Sample sample(std::uint32_t id, Eigen::Index coils) {
   sample.measurements = 500 + id;
   sample.orientation_stddev = numbers.next();
   sample.torque_stddev = 5e-324;
+  sample.dwell = sample.stamp - 250'000'000;
+  sample.joint_shared_stddev = numbers.matrix(3, 1);
+  sample.torque_shared_stddev = -0.0;
   return sample;
 }
 
@@ -165,7 +168,9 @@ bool isSame(const Sample& a, const Sample& b) {
          a.has_torque == b.has_torque && isSame(a.torque, b.torque) &&
          isSame(a.current, b.current) && isSame(a.duration, b.duration) &&
          a.measurements == b.measurements && isSame(a.orientation_stddev, b.orientation_stddev) &&
-         isSame(a.torque_stddev, b.torque_stddev);
+         isSame(a.torque_stddev, b.torque_stddev) && a.dwell == b.dwell &&
+         isSame(a.joint_shared_stddev, b.joint_shared_stddev) &&
+         isSame(a.torque_shared_stddev, b.torque_shared_stddev);
 }
 
 bool isSame(const CalibrationState& a, const CalibrationState& b) {

@@ -160,6 +160,14 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
   EXPECT_TRUE(database_examples::isSame(database.current().state, state));
 }
 
+/// Samples as formats before 3 had them.
+constexpr char kWithoutSharedErrors[] =
+    "ALTER TABLE samples DROP COLUMN dwell;"
+    "ALTER TABLE samples DROP COLUMN joint_1_shared_stddev;"
+    "ALTER TABLE samples DROP COLUMN joint_2_shared_stddev;"
+    "ALTER TABLE samples DROP COLUMN joint_3_shared_stddev;"
+    "ALTER TABLE samples DROP COLUMN torque_shared_stddev";
+
 TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   constexpr Eigen::Index kParameters = 73;
   const CalibrationState state = database_examples::state(1, kParameters);
@@ -167,7 +175,8 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
     SessionDatabase database(path(), identity());
     database.addCycle(database_examples::report(1, 0, kParameters), state, false, kDate);
   }
-  // The only column that the first format did not have was the last one.
+  // What the first format did not have are the last columns of two tables.
+  database_examples::change(path(), kWithoutSharedErrors);
   database_examples::change(
       path(),
       "PRAGMA writable_schema = ON;"
@@ -183,7 +192,23 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "2");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "3");
+}
+
+TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
+  Sample sample = database_examples::sample(1, 24);
+  {
+    SessionDatabase database(path(), identity());
+    database.addSample(sample, kDate);
+  }
+  database_examples::change(path(), kWithoutSharedErrors);
+  database_examples::change(path(), "PRAGMA user_version = 2");
+  sample.dwell = 0;
+  sample.joint_shared_stddev.setZero();
+  sample.torque_shared_stddev = 0.0;
+  const std::vector<Sample> samples = SessionDatabase(path(), identity()).samplesInUse();
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_TRUE(database_examples::isSame(samples.front(), sample));
 }
 
 }  // namespace

@@ -96,6 +96,15 @@ TEST(SampleBuilder, SplitsADwellByCurrentPattern) {
     EXPECT_LT((samples[k].current - current).cwiseAbs().maxCoeff(), 1e-3);
     EXPECT_LT((samples[k].torque - Script::torque(current)).norm(), 1e-3);
   }
+  for (const Sample& sample : samples) {
+    EXPECT_EQ(sample.dwell, samples.front().dwell);
+    EXPECT_NE(sample.dwell, 0);
+    // The readings are fine, but the torque without current is the same of all.
+    EXPECT_TRUE(sample.joint_shared_stddev.isZero(0.0));
+    EXPECT_EQ(sample.torque_shared_stddev > 0.0, sample.has_torque);
+  }
+  EXPECT_EQ(samples[1].torque_shared_stddev, samples[2].torque_shared_stddev);
+  EXPECT_LT(samples[1].torque_shared_stddev, samples[1].torque_stddev);
   // The pattern from 1.6 s to 2.4 s, less settling and guard.
   EXPECT_NEAR(timeOf(samples[1].stamp), 2.04, 0.01);
   EXPECT_NEAR(samples[1].duration, 0.68, 0.01);

@@ -88,6 +88,19 @@ TEST(SegmentAverage, NoUncertaintyIsBelowItsFloor) {
   EXPECT_NEAR(average.sample->torque_stddev, options.torque_stddev_floor, 1e-12);
 }
 
+TEST(SegmentAverage, StepsOfTheReadingsAreAnErrorThatTheDwellShares) {
+  Sensors sensors;
+  sensors.joint_noise = 0.0;
+  MeasurementBuffers buffers = buffersOf(restingStreams(sensors));
+  buffers.joint_step = Eigen::Vector3d(0.0, 1.2e-3, 0.0);
+  const SegmentAverage average = averageSegment(buffers, whole_second, {});
+  ASSERT_TRUE(average.sample);
+  const double of_steps = 1.2e-3 / std::sqrt(12.0);
+  EXPECT_NEAR(average.sample->joint_shared_stddev.y(), of_steps, 0.002 * of_steps);
+  EXPECT_EQ(average.sample->joint_shared_stddev.x(), 0.0);
+  EXPECT_GE(average.sample->joint_stddev.y(), average.sample->joint_shared_stddev.y());
+}
+
 TEST(SegmentAverage, LeavesGlitchesOut) {
   Streams streams = restingStreams();
   const SegmentAverage clean = averageSegment(buffersOf(streams), whole_second, {});

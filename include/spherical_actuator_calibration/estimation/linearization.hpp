@@ -35,8 +35,12 @@ class ObservationEvaluator {
   /// Covariance of an observation from the sensors' noise alone, joint sensors included.
   Eigen::Matrix3d noise(std::size_t observation, const LinearizedObservation& linear) const;
 
-  /// Of noise() what the observations of a dwell do not share.
-  Eigen::Matrix3d ownNoise(std::size_t observation) const;
+  /// Of noise() what the observations of a dwell do not share: of the measured vector itself, per
+  /// component, and by the errors of the joints' readings, ∂residual/∂u in standard deviations.
+  double ownVariance(std::size_t observation) const;
+  Eigen::Matrix3d ownReadingErrors(std::size_t observation,
+                                   const LinearizedObservation& linear) const;
+  Eigen::Matrix3d ownNoise(std::size_t observation, const LinearizedObservation& linear) const;
   /// ∂residual/∂u for the errors that they share, in standard deviations: joints, then torque.
   Eigen::Matrix<double, 3, 6> sharedErrors(std::size_t observation,
                                            const LinearizedObservation& linear) const;

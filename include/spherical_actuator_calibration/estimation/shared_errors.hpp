@@ -25,8 +25,9 @@ struct SharedErrorModel {
   std::vector<SharedLoading> loading;  ///< G per observation; zero in none
 };
 
-/// Observations of one problem that share errors: those of consecutive samples whose readings agree
-/// far better than independent errors of their stated size would.
+/// Observations of one problem that share errors: those of consecutive samples of one dwell. Where
+/// samples do not say of which they are, those whose readings agree far better than independent
+/// errors of their stated size would.
 SharedErrorModel groupByDwell(const EstimationProblem& problem, const EstimationOptions& options);
 
 /// Elimination of u from the observations of one dwell: what is left is exactly the misfit with

@@ -35,10 +35,20 @@ struct Sample {
   std::uint32_t measurements = 0;                    ///< averaged into it
   double orientation_stddev = 0.0;                   ///< of the mean, per component [rad]
   double torque_stddev = 0.0;                        ///< of the mean, per component [N·m]
-  /// The part of it that all samples of the dwell share: of the torque without current that was
-  /// taken off, per component [N·m].
+  /// Begin of the rest that it belongs to, which others may share; 0: not known.
+  Stamp dwell = 0;
+  /// Part of joint_stddev that all samples of the dwell share: of the steps of the readings [rad].
+  Eigen::Vector3d joint_shared_stddev = Eigen::Vector3d::Zero();
+  /// Part of torque_stddev that all samples of the dwell share: of the torque without current that
+  /// was taken off, per component [N·m].
   double torque_shared_stddev = 0.0;
 };
+
+/// Standard deviation of the error that its joints' readings share with others of its dwell [rad].
+/// Where the dwell is not known, samples of one are told by equal readings: their error is one.
+inline Eigen::Vector3d sharedJointStddev(const Sample& sample) {
+  return sample.dwell != 0 ? sample.joint_shared_stddev : sample.joint_stddev;
+}
 
 /// Throws DataError that names the sample and the field: not finite, a rotation that is none
 /// (1e-6), negative uncertainty, or a current vector that has not `coils` entries though the sample

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -10,6 +11,7 @@
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/streams/dwell_detector.hpp"
+#include "spherical_actuator_calibration/streams/reading_steps.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_report.hpp"
 #include "spherical_actuator_calibration/streams/stamp_filter.hpp"
@@ -100,6 +102,7 @@ class SampleBuilder {
 
   SampleBuilderReport report_;
   MeasurementBuffers buffers_;
+  std::array<ReadingSteps, 3> joint_steps_;
   Stream joints_;
   Stream orientations_;
   Stream torques_;

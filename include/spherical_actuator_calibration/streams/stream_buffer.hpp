@@ -57,7 +57,9 @@ class StreamBuffer {
 struct MeasurementBuffers {
   explicit MeasurementBuffers(std::size_t coils) : currents(coils) {}
 
-  StreamBuffer joints{3};        ///< raw sensor angles [rad]
+  StreamBuffer joints{3};  ///< raw sensor angles [rad]
+  /// Resolution of the readings, as they tell it (ReadingSteps) [rad]; 0: none.
+  Eigen::Vector3d joint_step = Eigen::Vector3d::Zero();
   StreamBuffer orientations{4};  ///< unit quaternion q_stator_rotor as x, y, z, w
   StreamBuffer torques{3};       ///< rotor frame [N·m]
   StreamBuffer currents;         ///< per coil [A]

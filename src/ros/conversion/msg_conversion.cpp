@@ -163,6 +163,10 @@ Sample sampleFromRos(const msg::CalibrationSample& message) {
       message.current.data(), static_cast<Eigen::Index>(message.current.size()));
   sample.duration = message.duration;
   sample.measurements = message.measurements;
+  sample.dwell = stampFromRos(message.dwell);
+  sample.joint_shared_stddev =
+      Eigen::Map<const Eigen::Vector3d>(message.joint_shared_stddev.data());
+  sample.torque_shared_stddev = message.torque_shared_stddev;
   return sample;
 }
 
@@ -182,6 +186,9 @@ msg::CalibrationSample sampleToRos(const Sample& sample) {
   message.current.assign(sample.current.begin(), sample.current.end());
   message.duration = sample.duration;
   message.measurements = sample.measurements;
+  message.dwell = stampToRos(sample.dwell);
+  std::copy_n(sample.joint_shared_stddev.data(), kJoints, message.joint_shared_stddev.begin());
+  message.torque_shared_stddev = sample.torque_shared_stddev;
   return message;
 }
 

@@ -112,7 +112,9 @@ void RecordedTopics::requireTypes(const BagFile& file) const {
     }
     // Of the parameters only the beginning is read, which is the same in every release.
     const bool reads_all = found != names_.begin() + static_cast<int>(TopicRole::kParameters);
-    if (reads_all && topic.md5sum != type.md5sum) {
+    const bool is_earlier =
+        topic.name == name(TopicRole::kSamples) && topic.md5sum == kEarlierSampleMd5;
+    if (reads_all && topic.md5sum != type.md5sum && !is_earlier) {
       throw DataError(file.path + ": " + topic.name + " was recorded with another version of " +
                       type.datatype + "; convert it by `rosbag fix`.");
     }

@@ -41,6 +41,10 @@ class RecordedTopics {
   std::array<std::string, kTopicRoles> names_;
 };
 
+/// CalibrationSample as releases before 0.2 recorded it: without the last fields, so many bytes.
+inline constexpr char kEarlierSampleMd5[] = "98178712bd5d9155a3f4f20d78530a4b";
+inline constexpr std::size_t kLaterSampleBytes = 40;
+
 /// Finds the role of messages without comparing names: messages of one connection share the string
 /// with the name of their topic. Valid as long as the bags are open.
 class TopicLookup {

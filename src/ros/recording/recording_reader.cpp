@@ -146,7 +146,8 @@ class Reader {
       case TopicRole::kCurrents:
         return streams_.add(decoder_.decode(message, currents_));
       case TopicRole::kSamples:
-        return recorded_samples_.add(decoder_.decode(message, sample_));
+        return recorded_samples_.add(decoder_.decode(
+            message, sample_, message.getMD5Sum() == kEarlierSampleMd5 ? kLaterSampleBytes : 0));
       case TopicRole::kParameters:
         return requireSameUnit(decoder_.decode(message, parameters_));
     }

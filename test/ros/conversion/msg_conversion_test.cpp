@@ -30,6 +30,9 @@ Sample exampleSample() {
   sample.has_torque = true;
   sample.torque = {0.5, -0.6, 0.7};
   sample.torque_stddev = 5e-5;
+  sample.dwell = 1'500'000'000'000'000'001;
+  sample.joint_shared_stddev = {0.5e-5, 1e-5, 2e-5};
+  sample.torque_shared_stddev = 3e-5;
   sample.current = Eigen::Vector3d(1.5, 0.0, -2.0);
   sample.duration = 0.6;
   sample.measurements = 120;
@@ -59,6 +62,9 @@ TEST(MsgConversion, SamplesComeBackAsTheyWere) {
   EXPECT_EQ(back.has_torque, sample.has_torque);
   EXPECT_EQ(back.torque, sample.torque);
   EXPECT_EQ(back.torque_stddev, sample.torque_stddev);
+  EXPECT_EQ(back.dwell, sample.dwell);
+  EXPECT_EQ(back.joint_shared_stddev, sample.joint_shared_stddev);
+  EXPECT_EQ(back.torque_shared_stddev, sample.torque_shared_stddev);
   EXPECT_EQ(back.current, sample.current);
   EXPECT_EQ(back.duration, sample.duration);
   EXPECT_EQ(back.measurements, sample.measurements);

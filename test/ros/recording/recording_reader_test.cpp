@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,59 @@
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
 #include "support/recording_case.hpp"
+
+namespace sac {
+
+/// A sample as releases before 0.2 recorded it: without the last three fields.
+struct EarlierSample {
+  msg::CalibrationSample sample;
+};
+constexpr std::uint32_t kLaterBytes = 8 + 3 * 8 + 8;
+
+}  // namespace sac
+
+namespace ros {
+namespace message_traits {
+
+template <>
+struct DataType<sac::EarlierSample> : DataType<sac::msg::CalibrationSample> {
+  static const char* value(const sac::EarlierSample& /*message*/) {
+    return DataType<sac::msg::CalibrationSample>::value();
+  }
+};
+
+template <>
+struct MD5Sum<sac::EarlierSample> {
+  static const char* value(const sac::EarlierSample& /*message*/) { return value(); }
+  static const char* value() { return "98178712bd5d9155a3f4f20d78530a4b"; }
+};
+
+template <>
+struct Definition<sac::EarlierSample> {
+  static const char* value(const sac::EarlierSample& /*message*/) { return "as it was"; }
+};
+
+}  // namespace message_traits
+
+namespace serialization {
+
+template <>
+struct Serializer<sac::EarlierSample> {
+  template <typename Stream>
+  static void write(Stream& stream, const sac::EarlierSample& message) {
+    std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message.sample));
+    OStream whole(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    serialize(whole, message.sample);
+    const std::uint32_t size = serializedLength(message);
+    std::copy_n(bytes.data(), size, stream.advance(size));
+  }
+  static std::uint32_t serializedLength(const sac::EarlierSample& message) {
+    return ros::serialization::serializationLength(message.sample) - sac::kLaterBytes;
+  }
+};
+
+}  // namespace serialization
+}  // namespace ros
 
 namespace sac {
 namespace {
@@ -137,6 +191,23 @@ TEST_F(RecordingReader, PrefersRecordedSamples) {
     EXPECT_TRUE(recording.samples[1].validation);
     EXPECT_TRUE(recording.report.has_samples);
     EXPECT_FALSE(recording.report.has_streams);
+  }
+}
+
+TEST_F(RecordingReader, ReadsSamplesOfEarlierReleases) {
+  const std::vector<Sample> samples = read({session()}).samples;
+  ASSERT_NE(samples.front().dwell, 0);
+  {
+    rosbag::Bag bag(path("earlier.bag"), rosbag::bagmode::Write);
+    for (const msg::CalibrationSample& sample : bags::messagesOf(samples)) {
+      bag.write("/actuator/samples", ros::Time(1000.0), EarlierSample{sample});
+    }
+  }
+  const std::vector<Sample> read_back = read({path("earlier.bag")}).samples;
+  expectSame(read_back, samples);
+  for (const Sample& sample : read_back) {
+    EXPECT_EQ(sample.dwell, 0);
+    EXPECT_EQ(sample.torque_shared_stddev, 0.0);
   }
 }
 

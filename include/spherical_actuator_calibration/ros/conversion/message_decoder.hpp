@@ -15,9 +15,13 @@ class MessageDecoder {
  public:
   /// Fills `message` and returns it. The type must be the recorded one: see RecordedTopics. Throws
   /// what rosbag and CheckedStream throw when the bag is damaged.
+  /// `later`: bytes of fields that were appended to the type after the recording; they are zero.
   template <typename Message>
-  const Message& decode(const rosbag::MessageInstance& instance, Message& message) {
+  const Message& decode(const rosbag::MessageInstance& instance,
+                        Message& message,
+                        std::size_t later = 0) {
     instance.write(bytes_);
+    bytes_.append(later);
     CheckedStream stream(bytes_.data(), bytes_.size());
     stream.next(message);
     return message;
@@ -31,6 +35,7 @@ class MessageDecoder {
       bytes_.resize(size);
       return bytes_.data();
     }
+    void append(std::size_t zeros) { bytes_.resize(bytes_.size() + zeros, 0); }
     std::uint8_t* data() { return bytes_.data(); }
     std::uint32_t size() const { return static_cast<std::uint32_t>(bytes_.size()); }
 
