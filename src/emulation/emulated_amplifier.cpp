@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/emulation/emulated_amplifier.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +11,7 @@ namespace sac {
 void validate(const AmplifierDynamics& dynamics) {
   requireInRange("amplifier time constant", dynamics.time_constant, ValueRange::nonNegative("s"));
   requireInRange("amplifier watchdog", dynamics.watchdog, ValueRange::positive("s"));
+  requireInRange("amplifier delay", dynamics.delay, ValueRange::closed(0.0, 0.5, "s"));
 }
 
 EmulatedAmplifier::EmulatedAmplifier(const CurrentAmplifierOptions& options,
@@ -22,6 +24,7 @@ EmulatedAmplifier::EmulatedAmplifier(const CurrentAmplifierOptions& options,
       server_(server),
       currents_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))) {
   validate(dynamics);
+  orders_.push_back({time_, currents_});
   server_.addUnit(options.setpoints.unit);
   server_.addUnit(options.currents.unit);
   if (options.tripped) {
@@ -33,6 +36,20 @@ EmulatedAmplifier::EmulatedAmplifier(const CurrentAmplifierOptions& options,
 void EmulatedAmplifier::advance(double step) {
   const Eigen::VectorXd wanted =
       isOn(step) ? setpoints() : Eigen::VectorXd::Zero(currents_.size()).eval();
+  if (wanted != orders_.back().currents) {
+    orders_.push_back({time_ + dynamics_.delay, wanted});
+  }
+  const double end = time_ + step;
+  while (orders_.size() > 1 && orders_[1].time < end) {
+    approach(orders_.front().currents, std::max(0.0, orders_[1].time - time_));
+    time_ = std::max(time_, orders_[1].time);
+    orders_.pop_front();
+  }
+  approach(orders_.front().currents, end - time_);
+  time_ = end;
+}
+
+void EmulatedAmplifier::approach(const Eigen::VectorXd& wanted, double step) {
   const double share =
       dynamics_.time_constant > 0.0 ? -std::expm1(-step / dynamics_.time_constant) : 1.0;
   currents_ += share * (wanted - currents_);

@@ -32,6 +32,21 @@ void validate(const ManufacturingErrors& errors) {
   requireInRange("error of pole angles", errors.pole_angle, angle);
   requireInRange("error of coil angles", errors.coil_angle, angle);
   requireInRange("error of strength", errors.strength, ValueRange::closed(0.0, 0.5));
+  requireInRange("stretch of the curve", errors.curve_stretch, ValueRange::closed(-0.2, 0.2));
+}
+
+TorqueCurveDescription stretchedCurve(const TorqueCurveDescription& curve, double stretch) {
+  const double wider = 1.0 + stretch;
+  TorqueCurveDescription result = curve;
+  double power = 1.0;
+  for (double& coefficient : result.coefficients) {
+    coefficient /= power;
+    power *= wider;
+  }
+  for (double* angle : {&result.blend_start, &result.support_begin, &result.support_end}) {
+    *angle *= wider;
+  }
+  return result;
 }
 
 Actuator manufacturedActuator(const Actuator& nominal,
@@ -51,6 +66,9 @@ Actuator manufacturedActuator(const Actuator& nominal,
   }
   for (CoilAxis& coil : made.coils) {
     disturb(coil, errors.coil_angle, errors.strength, noise);
+  }
+  if (made.torque_curve && errors.curve_stretch != 0.0) {
+    made.torque_curve = stretchedCurve(*made.torque_curve, errors.curve_stretch);
   }
   return made;
 }

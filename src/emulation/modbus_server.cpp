@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <modbus/modbus.h>
 
@@ -99,6 +100,11 @@ class ModbusServer::Listener {
     return {first, first + count};
   }
 
+  void beforeRequest(std::function<void()> function) {
+    const std::lock_guard<std::mutex> lock(function_mutex_);
+    before_request_ = std::move(function);
+  }
+
  private:
   void run() {
     while (!stopped_) {
@@ -132,6 +138,7 @@ class ModbusServer::Listener {
     if (length < 0) {
       return false;
     }
+    prepare();
     const auto unit_place = static_cast<std::size_t>(modbus_get_header_length(context_.get())) - 1;
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto unit = units_.find(request.at(unit_place));
@@ -143,6 +150,14 @@ class ModbusServer::Listener {
            modbus_reply(context_.get(), request.data(), length, unit->second.get()) >= 0;
   }
 
+  /// Without the mutex of the units, which the function may want.
+  void prepare() {
+    const std::lock_guard<std::mutex> lock(function_mutex_);
+    if (before_request_) {
+      before_request_();
+    }
+  }
+
   Context context_;
   int socket_;
   int port_ = 0;
@@ -150,6 +165,8 @@ class ModbusServer::Listener {
   std::vector<int> clients_;  ///< of the thread alone
   std::mutex mutex_;          ///< of the units
   std::map<int, Mapping> units_;
+  std::mutex function_mutex_;  ///< of the function
+  std::function<void()> before_request_;
   std::thread thread_;
 };
 
@@ -178,6 +195,10 @@ std::vector<std::uint16_t> ModbusServer::words(int unit,
                                                int address,
                                                int count) const {
   return listener_->words(unit, table, address, count);
+}
+
+void ModbusServer::beforeRequest(std::function<void()> function) {
+  listener_->beforeRequest(std::move(function));
 }
 
 }  // namespace sac

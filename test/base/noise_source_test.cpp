@@ -27,6 +27,8 @@ constexpr std::array kPurposes = {
     RandomPurpose::kWrenchStream,
     RandomPurpose::kCurrentStream,
     RandomPurpose::kPoseCandidates,
+    RandomPurpose::kMotionCandidates,
+    RandomPurpose::kMotionRehearsal,
 };
 
 /// Does not compile where two purposes share a number, nor where one is missing here (-Wswitch).
@@ -47,6 +49,8 @@ constexpr bool isKnown(RandomPurpose purpose) {
     case RandomPurpose::kWrenchStream:
     case RandomPurpose::kCurrentStream:
     case RandomPurpose::kPoseCandidates:
+    case RandomPurpose::kMotionCandidates:
+    case RandomPurpose::kMotionRehearsal:
       return true;
   }
   return false;

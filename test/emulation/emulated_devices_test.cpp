@@ -85,6 +85,22 @@ TEST(ModbusServer, ServesManyAndOutlivesThoseThatGo) {
   EXPECT_EQ(first->read(1, RegisterTable::kInput, 4, 1).front(), 17);
 }
 
+TEST(ModbusServer, RegistersAreThoseOfTheTimeOfTheRequest) {
+  ModbusServer server("127.0.0.1", kAnyPort);
+  server.addUnit(1);
+  std::uint16_t requests = 0;
+  server.beforeRequest([&] { server.setWords(1, RegisterTable::kInput, 4, {++requests}); });
+  ModbusLinkOptions link;
+  link.port = server.port();
+  const std::unique_ptr<ModbusTransport> transport = makeTransport(link);
+  transport->open();
+  for (std::uint16_t n = 1; n <= 3; ++n) {
+    EXPECT_EQ(transport->read(1, RegisterTable::kInput, 4, 1).front(), n);
+  }
+  server.beforeRequest({});
+  EXPECT_EQ(transport->read(1, RegisterTable::kInput, 4, 1).front(), 3);
+}
+
 TEST(ModbusServer, NamesThePortThatIsTaken) {
   const ModbusServer server("127.0.0.1", kAnyPort);
   try {
@@ -122,6 +138,21 @@ TEST_F(EmulatedAmplifierTest, FollowsSetpointsWithItsLag) {
   EXPECT_LT((device_.currents() - pattern(1.5)).norm(), 1e-9);
   device_.show(device_.currents());
   EXPECT_LT((driver_.read() - pattern(1.5)).cwiseAbs().maxCoeff(), 0.51e-3);
+}
+
+TEST_F(EmulatedAmplifierTest, ASetpointWorksAfterItsDelay) {
+  constexpr double kLag = 2e-3;
+  EmulatedAmplifier late(options_, {kLag, 0.5, 5e-3}, kCoils, server_);
+  driver_.write(pattern(1.5), OutputStages::kOn);
+  late.advance(4e-3);
+  EXPECT_TRUE(late.currents().isZero());
+  // 1 ms after it began to work, whatever the steps.
+  late.advance(2e-3);
+  EXPECT_NEAR(late.currents()[3], 1.5 * (1.0 - std::exp(-1e-3 / kLag)), 1e-9);
+  late.advance(0.1);
+  driver_.write(pattern(-0.5), OutputStages::kOn);
+  late.advance(4e-3);
+  EXPECT_NEAR(late.currents()[3], 1.5, 1e-9);
 }
 
 TEST_F(EmulatedAmplifierTest, GivesNoCurrentWithItsOutputStagesOff) {

@@ -92,5 +92,23 @@ TEST(ManufacturingErrors, TruthMustBeOfTheSameDesign) {
   EXPECT_THROW(requireSameDesign(nominal, truth), ConfigError);
 }
 
+TEST(ManufacturingErrors, AStretchedCurveIsWiderAndNothingElse) {
+  constexpr double kStretch = 0.01;
+  const TorqueCurveDescription drawn = *scenarios::paperNominal().torque_curve;
+  const TorqueCurve curve(drawn);
+  const TorqueCurve wider(stretchedCurve(drawn, kStretch));
+  for (double psi = 0.005; psi < 0.6; psi += 0.005) {
+    EXPECT_NEAR(wider.value((1.0 + kStretch) * psi), curve.value(psi), 1e-12) << psi;
+  }
+  ManufacturingErrors errors;
+  errors.curve_stretch = kStretch;
+  const Actuator made = manufacturedActuator(scenarios::paperNominal(), errors, 3);
+  const Actuator without = manufacturedActuator(scenarios::paperNominal(), {}, 3);
+  EXPECT_NEAR(made.torque_curve->support_end, 1.01 * drawn.support_end, 1e-12);
+  EXPECT_EQ(made.poles.front().polar, without.poles.front().polar);
+  errors.curve_stretch = 0.5;
+  EXPECT_THROW(manufacturedActuator(scenarios::paperNominal(), errors, 3), ConfigError);
+}
+
 }  // namespace
 }  // namespace sac

@@ -23,6 +23,8 @@ enum class RandomPurpose : std::uint32_t {
   kWrenchStream = 402,
   kCurrentStream = 403,
   kPoseCandidates = 500,
+  kMotionCandidates = 510,
+  kMotionRehearsal = 511,
 };
 
 }  // namespace sac

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 
 #include <Eigen/Core>
 
@@ -16,6 +17,7 @@ struct AmplifierDynamics {
   /// Its own watchdog, where there is a heartbeat register: so long without a change of it the
   /// currents go to zero [s].
   double watchdog = 0.5;
+  double delay = 0.0;  ///< from a setpoint to the begin of its effect [s]
 };
 
 /// Throws ConfigError that names the option, its value and the allowed range.
@@ -31,7 +33,7 @@ class EmulatedAmplifier {
                     std::size_t coils,
                     ModbusServer& server);
 
-  /// Follows the setpoints for `step` ≥ 0 [s].
+  /// On by `step` ≥ 0 [s], throughout which its registers were as they are now.
   void advance(double step);
   /// A tripped amplifier has no current and says so.
   void setTripped(bool tripped);
@@ -41,6 +43,13 @@ class EmulatedAmplifier {
   void show(const Eigen::VectorXd& measured);
 
  private:
+  /// What the output stages are told to reach from a time on.
+  struct Order {
+    double time;  ///< [s]
+    Eigen::VectorXd currents;
+  };
+
+  void approach(const Eigen::VectorXd& wanted, double step);
   bool isOn(double step);
   Eigen::VectorXd setpoints() const;
 
@@ -49,6 +58,8 @@ class EmulatedAmplifier {
   std::size_t coils_;
   ModbusServer& server_;
   Eigen::VectorXd currents_;
+  double time_ = 0.0;         ///< since its begin [s]
+  std::deque<Order> orders_;  ///< the one in force, then those to come
   bool tripped_ = false;
   std::uint16_t heartbeat_ = 0;
   double heartbeat_age_ = 0.0;  ///< [s]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,11 @@ class ModbusServer {
                 int address,
                 const std::vector<std::uint16_t>& words);
   std::vector<std::uint16_t> words(int unit, RegisterTable table, int address, int count) const;
+
+  /// Called in the thread of the server before it looks at a request, so that registers may be
+  /// those of that time; it must not throw. An empty function takes it away: when this returns, it
+  /// is not called any more.
+  void beforeRequest(std::function<void()> function);
 
  private:
   class Listener;

@@ -18,6 +18,8 @@ constexpr std::uint32_t kQueueLength = 100;
 /// A computer that was busy must not make the fixture jump [s].
 constexpr double kLongestBeat = 0.05;
 constexpr double kWarningPeriod = 2.0;  // [s]
+/// Requests that follow each other within this time are of one reading [s].
+constexpr double kOneReading = 3e-4;
 
 ScheduledMeasurement scheduled(bool glitch) {
   ScheduledMeasurement measurement;
@@ -42,8 +44,9 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
       tracker_(options.tracker, options.registration, 0, options.seed),
       ft_sensor_(options.ft_sensor, options.registration, options.seed),
       current_sensor_(options.currents, options.seed),
-      last_beat_(steadySeconds()),
-      pose_due_(last_beat_),
+      history_(longestDelay(options.delays)),
+      now_(steadySeconds()),
+      pose_due_(now_),
       node_(node),
       private_node_(private_node) {
   if (!options_.truth.empty()) {
@@ -58,15 +61,21 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
   if (actuator_.hasTorque()) {
     wrench_publisher_ =
         node_.advertise<geometry_msgs::WrenchStamped>("ft_sensor/wrench", kQueueLength);
-    free_rotor_.emplace(
-        truth_, RigidRotor{options_.inertia, options_.load.unbalance}, options_.mechanical_stop);
+    free_rotor_.emplace(truth_,
+                        RigidRotor{options_.inertia, options_.load.unbalance},
+                        options_.mechanical_stop,
+                        options_.friction);
     services_.push_back(
         private_node_.advertiseService("release_fixture", &LabEmulatorNode::releaseFixture, this));
+    services_.push_back(private_node_.advertiseService("push", &LabEmulatorNode::push, this));
   }
   for (const RegisterContent& content : encodeJoints(options_.joint_sensor, fixture_.position())) {
     joint_server_.addUnit(content.unit);
   }
+  history_.add(now_, {position(), amplifier_.currents()});
   showJoints();
+  joint_server_.beforeRequest([this] { answerJointSensor(); });
+  amplifier_server_.beforeRequest([this] { answerAmplifier(); });
   target_subscriber_ = subscribeChecked<sensor_msgs::JointState>(
       node_,
       "fixture/target",
@@ -75,6 +84,12 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
       tellRefusal("fixture/target"));
   advertiseFaults();
   thread_ = std::make_unique<PeriodicThread>(options_.ft_sensor.stream.rate, [this] { beat(); });
+}
+
+LabEmulatorNode::~LabEmulatorNode() {
+  // The servers end later than what answers them.
+  joint_server_.beforeRequest({});
+  amplifier_server_.beforeRequest({});
 }
 
 void LabEmulatorNode::advertiseFaults() {
@@ -151,16 +166,63 @@ bool LabEmulatorNode::releaseFixture(SetBool::Request& request, SetBool::Respons
   return true;
 }
 
+bool LabEmulatorNode::push(msg::Push::Request& request, msg::Push::Response& response) {
+  constexpr double kLongestPush = 10.0;  // [s]
+  const Eigen::Vector3d torque(request.torque.x, request.torque.y, request.torque.z);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  response.success = 0;
+  if (!torque.allFinite() || !(request.duration > 0.0 && request.duration <= kLongestPush)) {
+    response.message = "A push has a finite torque, and lasts at most 10 s.";
+  } else if (!released_) {
+    response.message = "The fixture holds the rotor: release it before it can be pushed.";
+  } else {
+    push_stator_ = torque;
+    push_end_ = now_ + request.duration;
+    response.success = 1;
+    response.message = "The rotor is pushed.";
+  }
+  return true;
+}
+
+void LabEmulatorNode::answerJointSensor() {
+  const double now = steadySeconds();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (now - joints_shown_ > kOneReading) {
+    advanceTo(now);
+    showJoints();
+    joints_shown_ = now;
+  }
+}
+
+// What the amplifier is told counts from now on: until now it was told something else.
+void LabEmulatorNode::answerAmplifier() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  advanceTo(steadySeconds());
+  showCurrents();
+}
+
+void LabEmulatorNode::advanceTo(double now) {
+  const double step = std::clamp(now - now_, 0.0, kLongestBeat);
+  now_ = std::max(now, now_);
+  amplifier_.setTripped(amplifier_tripped_);
+  moveRotor(step);
+  history_.add(now_, {position(), amplifier_.currents()});
+}
+
 void LabEmulatorNode::moveRotor(double step) {
   if (!released_) {
     fixture_.advance(step);
+    amplifier_.advance(step);
     return;
   }
-  // A late beat is taken in steps that the integrator is good for.
-  constexpr double kLongestStep = 2e-3;
-  const auto steps = static_cast<int>(std::ceil(step / kLongestStep));
+  // In steps that the integrator is good for, the currents of the middle of each.
+  constexpr double kLongestStep = 5e-4;
+  const auto steps = std::max(1, static_cast<int>(std::ceil(step / kLongestStep)));
+  const Eigen::Vector3d push = now_ < push_end_ ? push_stator_ : Eigen::Vector3d::Zero().eval();
   for (int n = 0; n < steps; ++n) {
-    free_rotor_->advance(step / steps, amplifier_.currents());
+    amplifier_.advance(0.5 * step / steps);
+    free_rotor_->advance(step / steps, amplifier_.currents(), push);
+    amplifier_.advance(0.5 * step / steps);
   }
   if (free_rotor_->isAtStop()) {
     ROS_WARN_THROTTLE(kWarningPeriod, "The rotor is at its mechanical stop.");
@@ -174,21 +236,14 @@ const Eigen::Vector3d& LabEmulatorNode::position() const {
 void LabEmulatorNode::beat() {
   const double now = steadySeconds();
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double step = std::min(now - last_beat_, kLongestBeat);
-  last_beat_ = now;
-  amplifier_.setTripped(amplifier_tripped_);
-  amplifier_.advance(step);
-  moveRotor(step);
-  showJoints();
-  showCurrents();
-  const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(position());
+  advanceTo(now);
   if (actuator_.hasTorque() && !released_) {
-    publishWrench(R_stator_rotor);
+    publishWrench();
   }
   if (now >= pose_due_) {
     pose_due_ = std::max(pose_due_ + 1.0 / options_.tracker.stream.rate, now - kLongestBeat);
-    publishPose(R_stator_rotor);
-    publishTruth(R_stator_rotor);
+    publishPose();
+    publishTruth();
   }
 }
 
@@ -196,22 +251,25 @@ void LabEmulatorNode::showJoints() {
   if (sensor_frozen_) {
     return;
   }
-  const JointMeasurement reading = joints_.measure(0, position(), {});
+  const LaboratoryMoment seen = history_.at(now_ - options_.delays.joints);
+  const JointMeasurement reading = joints_.measure(0, seen.position, {});
   for (const RegisterContent& content : encodeJoints(options_.joint_sensor, reading.position)) {
     joint_server_.setWords(content.unit, content.table, content.address, content.words);
   }
 }
 
 void LabEmulatorNode::showCurrents() {
-  amplifier_.show(current_sensor_.measure(0, amplifier_.currents(), {}).current);
+  const LaboratoryMoment seen = history_.at(now_ - options_.delays.currents);
+  amplifier_.show(current_sensor_.measure(0, seen.currents, {}).current);
 }
 
-void LabEmulatorNode::publishPose(const Eigen::Matrix3d& R_stator_rotor) {
+void LabEmulatorNode::publishPose() {
   if (tracker_lost_) {
     return;
   }
-  const MarkerPoseMeasurement pose =
-      tracker_.measure(0, R_stator_rotor, std::nullopt, scheduled(outlier_pose_));
+  const LaboratoryMoment seen = history_.at(now_ - options_.delays.tracker);
+  const MarkerPoseMeasurement pose = tracker_.measure(
+      0, actuator_.orientation(seen.position), std::nullopt, scheduled(outlier_pose_));
   outlier_pose_ = false;
   pose_message_.header.stamp = ros::Time::now();
   pose_message_.pose.position = pointToRos(pose.position);
@@ -219,16 +277,18 @@ void LabEmulatorNode::publishPose(const Eigen::Matrix3d& R_stator_rotor) {
   pose_publisher_.publish(pose_message_);
 }
 
-void LabEmulatorNode::publishTruth(const Eigen::Matrix3d& R_stator_rotor) {
+void LabEmulatorNode::publishTruth() {
   true_message_.header.stamp = ros::Time::now();
-  true_message_.quaternion = quaternionToRos(Eigen::Quaterniond(R_stator_rotor));
+  true_message_.quaternion = quaternionToRos(Eigen::Quaterniond(actuator_.orientation(position())));
   true_publisher_.publish(true_message_);
 }
 
-void LabEmulatorNode::publishWrench(const Eigen::Matrix3d& R_stator_rotor) {
+void LabEmulatorNode::publishWrench() {
+  const LaboratoryMoment seen = history_.at(now_ - options_.delays.ft_sensor);
+  const Eigen::Matrix3d R_stator_rotor = actuator_.orientation(seen.position);
   const WrenchMeasurement wrench =
       ft_sensor_.measure(0,
-                         actuator_.torque(R_stator_rotor, amplifier_.currents()),
+                         actuator_.torque(R_stator_rotor, seen.currents),
                          actuator_.weight(R_stator_rotor),
                          scheduled(outlier_wrench_));
   outlier_wrench_ = false;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -18,6 +19,21 @@ constexpr double kGimbalLock = 1.5;  // [rad] short of it
 
 Eigen::Vector3d readVector(const YamlMap& map, const char* key, const char* unit) {
   return Eigen::Vector3d(map.numbers(key, ValueRange::finite(unit), 3).data());
+}
+
+/// Diagonal, or xx, yy, zz, xy, xz, yz.
+Eigen::Matrix3d readInertia(const YamlMap& map, const char* key) {
+  const std::vector<double> entries = map.numbers(key, ValueRange::finite("kg m²"));
+  if (entries.size() != 3 && entries.size() != 6) {
+    map.fail(key, "has either 3 numbers, xx, yy, zz, or 6, with xy, xz, yz after them.");
+  }
+  Eigen::Matrix3d inertia = Eigen::Vector3d(entries.data()).asDiagonal();
+  if (entries.size() == 6) {
+    inertia(0, 1) = inertia(1, 0) = entries[3];
+    inertia(0, 2) = inertia(2, 0) = entries[4];
+    inertia(1, 2) = inertia(2, 1) = entries[5];
+  }
+  return inertia;
 }
 
 /// "x y z qx qy qz qw" of a frame in another one, as static_transform_publisher takes it.
@@ -53,6 +69,7 @@ ManufacturingErrors readErrors(const YamlMap& map) {
   errors.pole_angle = map.number("pole_angle", angle);
   errors.coil_angle = map.number("coil_angle", angle);
   errors.strength = map.number("strength", ValueRange::nonNegative());
+  errors.curve_stretch = map.number("curve_stretch", ValueRange::finite(), errors.curve_stretch);
   return errors;
 }
 
@@ -76,9 +93,31 @@ WrenchSensorOptions readForceTorqueSensor(const YamlMap& map) {
   return sensor;
 }
 
+RotorFriction readFriction(const YamlMap& map) {
+  RotorFriction friction;
+  friction.viscous = map.number("viscous", ValueRange::nonNegative("N m s"), friction.viscous);
+  friction.coulomb = map.number("coulomb", ValueRange::nonNegative("N m"), friction.coulomb);
+  friction.transition =
+      map.number("transition", ValueRange::positive("rad/s"), friction.transition);
+  return friction;
+}
+
+StreamDelays readDelays(const YamlMap& map) {
+  StreamDelays delays;
+  const ValueRange range = ValueRange::nonNegative("s");
+  delays.joints = map.number("joints", range, delays.joints);
+  delays.currents = map.number("currents", range, delays.currents);
+  delays.tracker = map.number("tracker", range, delays.tracker);
+  delays.ft_sensor = map.number("ft_sensor", range, delays.ft_sensor);
+  validate(delays);
+  return delays;
+}
+
 void readAmplifier(const YamlMap& map, LabEmulatorOptions& options) {
   options.amplifier.time_constant = map.number("time_constant", ValueRange::nonNegative("s"));
   options.amplifier.watchdog = map.number("watchdog", ValueRange::positive("s"));
+  options.amplifier.delay =
+      map.number("delay", ValueRange::nonNegative("s"), options.amplifier.delay);
   options.currents.noise = map.number("noise", ValueRange::nonNegative("A"));
   options.currents.quantisation = 0.0;  // the registers'
 }
@@ -95,7 +134,13 @@ LabEmulatorOptions loadLabEmulatorOptions(const ros::NodeHandle& private_node) {
   const YamlMap load = map.map("load");
   options.load.weight = load.number("weight", ValueRange::nonNegative("N"));
   options.load.unbalance = readVector(load, "unbalance", "N m");
-  options.inertia = readVector(load, "inertia", "kg m²").asDiagonal();
+  options.inertia = readInertia(load, "inertia");
+  if (map.has("friction")) {
+    options.friction = readFriction(map.map("friction"));
+  }
+  if (map.has("delays")) {
+    options.delays = readDelays(map.map("delays"));
+  }
   const YamlMap fixture = map.map("fixture");
   options.fixture.speed = fixture.number("speed", ValueRange::positive("rad/s"));
   options.fixture.acceleration = fixture.number("acceleration", ValueRange::positive("rad/s²"));

@@ -16,13 +16,16 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include "spherical_actuator_calibration/Push.h"
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/emulation/emulated_amplifier.hpp"
 #include "spherical_actuator_calibration/emulation/emulated_sensors.hpp"
 #include "spherical_actuator_calibration/emulation/free_rotor.hpp"
+#include "spherical_actuator_calibration/emulation/laboratory_history.hpp"
 #include "spherical_actuator_calibration/emulation/modbus_server.hpp"
 #include "spherical_actuator_calibration/emulation/positioning_fixture.hpp"
 #include "spherical_actuator_calibration/emulation/true_actuator.hpp"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/emulation_node/lab_emulator_options.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 
@@ -36,7 +39,11 @@ namespace sac {
 /// private topic `true_orientation` tells what no laboratory knows. The unit in it is made from the
 /// description by the seed, as `simulate_recording --seed` makes it.
 ///
-/// Private services inject faults: lose_tracker, freeze_sensor (the joint sensors' registers stand
+/// Registers are those of the very time of a request, as far as the streams are not late
+/// (StreamDelays): laboratories are as exact at 1 kHz as their drivers' threads.
+///
+/// The private service push turns the released rotor as a hand would, for a while. Others inject
+/// faults: lose_tracker, freeze_sensor (the joint sensors' registers stand
 /// still), inject_outlier (one tracker pose and one wrench far off), trip_amplifier.
 class LabEmulatorNode {
  public:
@@ -45,6 +52,9 @@ class LabEmulatorNode {
                   const ros::NodeHandle& private_node,
                   const Actuator& nominal,
                   const LabEmulatorOptions& options);
+  ~LabEmulatorNode();
+  LabEmulatorNode(const LabEmulatorNode&) = delete;
+  LabEmulatorNode& operator=(const LabEmulatorNode&) = delete;
 
  private:
   using SetBool = std_srvs::SetBool;
@@ -55,15 +65,20 @@ class LabEmulatorNode {
   void receiveTarget(const sensor_msgs::JointState& message);
   Eigen::Vector3d targetOf(const sensor_msgs::JointState& message) const;
   bool releaseFixture(SetBool::Request& request, SetBool::Response& response);
+  bool push(msg::Push::Request& request, msg::Push::Response& response);
+  void answerJointSensor();
+  void answerAmplifier();
   void beat();
+  /// Everything on to a time [s]. Precondition of this and of all below: mutex_ is held.
+  void advanceTo(double now);
   void moveRotor(double step);
   /// What the joint sensors would read without their errors [rad].
   const Eigen::Vector3d& position() const;
   void showJoints();
   void showCurrents();
-  void publishPose(const Eigen::Matrix3d& R_stator_rotor);
-  void publishTruth(const Eigen::Matrix3d& R_stator_rotor);
-  void publishWrench(const Eigen::Matrix3d& R_stator_rotor);
+  void publishPose();
+  void publishTruth();
+  void publishWrench();
 
   const LabEmulatorOptions options_;
   const Actuator truth_;
@@ -85,8 +100,12 @@ class LabEmulatorNode {
   bool amplifier_tripped_ = false;
   bool outlier_pose_ = false;
   bool outlier_wrench_ = false;
-  double last_beat_ = 0.0;  ///< [s]
-  double pose_due_ = 0.0;   ///< [s]
+  LaboratoryHistory history_;
+  double now_ = 0.0;                                       ///< up to which it has come [s]
+  double joints_shown_ = 0.0;                              ///< when they were read last [s]
+  double pose_due_ = 0.0;                                  ///< [s]
+  Eigen::Vector3d push_stator_ = Eigen::Vector3d::Zero();  ///< [N·m]
+  double push_end_ = 0.0;                                  ///< [s]
   geometry_msgs::PoseStamped pose_message_;
   geometry_msgs::WrenchStamped wrench_message_;
   geometry_msgs::QuaternionStamped true_message_;

@@ -10,8 +10,10 @@
 #include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
 #include "spherical_actuator_calibration/emulation/emulated_amplifier.hpp"
 #include "spherical_actuator_calibration/emulation/emulated_sensors.hpp"
+#include "spherical_actuator_calibration/emulation/laboratory_history.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/emulation/positioning_fixture.hpp"
+#include "spherical_actuator_calibration/emulation/rotor_friction.hpp"
 #include "spherical_actuator_calibration/emulation/true_actuator.hpp"
 #include "spherical_actuator_calibration/measurement/registration.hpp"
 
@@ -24,6 +26,8 @@ struct LabEmulatorOptions {
   ManufacturingErrors errors;
   RotorLoad load;
   Eigen::Matrix3d inertia = RigidRotor{}.inertia;  ///< of rotor and load, rotor frame [kg·m²]
+  RotorFriction friction;                          ///< of a released rotor
+  StreamDelays delays;
   FixtureOptions fixture;
   double mechanical_stop = 0.9;  ///< of joints 1 and 2 of a released rotor [rad]
   AmplifierDynamics amplifier;
