@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -36,11 +38,21 @@ void requireRotation(const Eigen::Matrix3d& R) {
   }
 }
 
+/// The plan with limits that are the controller's as well.
+MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptions& options) {
+  MotionPlan limited = plan;
+  MotionLimits& limits = limited.limits;
+  limits.coil_current = std::min(limits.coil_current, options.allocation.current_limit);
+  limits.total_current = std::min(limits.total_current, options.total_current_limit);
+  return limited;
+}
+
 }  // namespace
 
 void validate(const OrientationControllerOptions& options) {
   validate(options.rotor);
   validate(options.gains);
+  validate(options.motion_gains);
   validate(options.reference);
   requireInRange("current_limit", options.allocation.current_limit, ValueRange::positive("A"));
   requireInRange("least_singular_value",
@@ -66,12 +78,19 @@ OrientationController::OrientationController(const Actuator& design,
   validate(options);
 }
 
+// What a motion shows belongs to one set of parameters, and a torque that jumped would be its
+// fault: new ones wait.
 void OrientationController::setParameters(const Actuator& parameters) {
   withTorqueModel(parameters);
   if (parameters.poles.size() != parameters_.poles.size() ||
       parameters.coils.size() != parameters_.coils.size()) {
     throw ConfigError("The parameters belong to an actuator with other poles or coils.");
   }
+  if (state_ == ControlState::kActive && isInMotion()) {
+    parameters_to_come_ = parameters;
+    return;
+  }
+  parameters_to_come_.reset();
   parameters_ = parameters;
   joints_ = jointGeometry(parameters.joints);
   torques_ = torqueGeometry(parameters);
@@ -89,7 +108,7 @@ void OrientationController::keepTorque() {
       torquePerAmpere(curve_, torques_, rotor.R_stator_rotor) * currents_;
   const DesiredMotion& desired = reference_.motion();
   const Eigen::Matrix3d R_desired =
-      orientationForTorque(options_.rotor, rotor, desired, torque, options_.gains);
+      orientationForTorque(options_.rotor, rotor, desired, torque, gains());
   reference_.turnReference(R_desired * desired.R_stator_rotor.transpose());
 }
 
@@ -117,6 +136,9 @@ bool OrientationController::receive(const JointMeasurement& joints) {
 
 void OrientationController::setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor) {
   requireRotation(R_stator_rotor);
+  if (isInMotion()) {
+    throw DataError("A motion plan is followed: end it before targets are given.");
+  }
   requireWay(R_stator_rotor);
   reference_.setTarget(stamp, R_stator_rotor);
 }
@@ -170,9 +192,13 @@ void OrientationController::enable(Stamp now) {
 }
 
 void OrientationController::disable() {
+  if (motion_) {
+    motion_->stop();
+  }
   state_ = ControlState::kIdle;
   stop_reason_.clear();
   currents_.setZero();
+  takeParametersToCome();
 }
 
 const Eigen::VectorXd& OrientationController::update(Stamp now) {
@@ -187,37 +213,124 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   const double step =
       last_update_ ? std::clamp(secondsBetween(*last_update_, now), 0.0, kLongestStep) : 0.0;
   last_update_ = now;
-  const DesiredMotion& desired = reference_.advance(now, step);
+  const DesiredMotion& desired = desiredMotion(now, step);
   q_ = measured_->position + secondsBetween(measured_->stamp, now) * joint_velocity_;
   const RotorState rotor = rotorAt(q_);
   tracking_error_ = rotationLog(rotor.R_stator_rotor.transpose() * desired.R_stator_rotor).norm();
-  if (tracking_error_ > options_.largest_tracking_error) {
+  const bool is_on_its_way = isInMotion() && motion_->phase() != MotionPhase::kApproach;
+  const double largest_error =
+      is_on_its_way ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
+                    : options_.largest_tracking_error;
+  if (tracking_error_ > largest_error) {
     stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_));
     return currents_;
   }
+  allocate(rotor, desired);
+  if (motion_ && motion_->phase() == MotionPhase::kDone && state_ == ControlState::kActive) {
+    disable();
+  }
+  return currents_;
+}
+
+const DesiredMotion& OrientationController::desiredMotion(Stamp now, double step) {
+  if (!isInMotion()) {
+    return reference_.advance(now, step);
+  }
+  if (motion_->phase() == MotionPhase::kApproach) {
+    const DesiredMotion& desired = reference_.advance(now, step);
+    approachMotion(step);
+    return desired;
+  }
+  motion_->advance(step);
+  motion_reference_ = motion_->desired(joints_);
+  return motion_reference_;
+}
+
+void OrientationController::approachMotion(double step) {
+  const DesiredMotion& reference = reference_.motion();
+  const double distance =
+      rotationLog(motion_->begin(joints_).transpose() * reference.R_stator_rotor).norm();
+  const std::string failure =
+      motion_->approach(step, distance, reference.angular_velocity.norm(), joint_velocity_.norm());
+  if (!failure.empty()) {
+    stop(failure);
+  }
+}
+
+void OrientationController::allocate(const RotorState& rotor, const DesiredMotion& desired) {
+  if (state_ != ControlState::kActive) {
+    return;
+  }
+  const bool is_in_motion = isInMotion();
+  AllocationOptions allocation = options_.allocation;
+  if (is_in_motion) {
+    allocation.current_limit = std::min(allocation.current_limit, motion_->bounds().coil);
+  }
+  const Eigen::Matrix3Xd torque_per_ampere =
+      torquePerAmpere(curve_, torques_, rotor.R_stator_rotor);
   const AllocatedCurrents allocated =
-      allocateCurrents(torquePerAmpere(curve_, torques_, rotor.R_stator_rotor),
-                       computedTorque(options_.rotor, rotor, desired, options_.gains),
-                       options_.allocation);
+      allocateCurrents(torque_per_ampere,
+                       computedTorque(options_.rotor, rotor, desired, gains()),
+                       allocation);
   if (allocated.outcome == Allocation::kSingular) {
     stop(format("the coils make no torque in some direction here (%.2g N.m/A)",
                 allocated.smallest_singular_value));
-    return currents_;
+    return;
   }
   share_ = allocated.share;
   currents_ = allocated.currents;
   limitTotal();
-  return currents_;
+  if (is_in_motion) {
+    motion_->noteTorqueShare(share_);
+    if (motion_->phase() != MotionPhase::kApproach) {
+      currents_ += motion_->excitation(torque_per_ampere, currents_, rotor, desired);
+    }
+  }
+}
+
+void OrientationController::follow(const MotionPlan& plan) {
+  sac::validate(plan, parameters_);
+  if (state_ != ControlState::kActive) {
+    throw DataError("The control is not enabled: enable it before a motion.");
+  }
+  if (isInMotion()) {
+    throw DataError("A motion plan is followed already.");
+  }
+  MotionRun run(withinLimits(plan, options_));
+  const Eigen::Matrix3d begin = run.begin(joints_);
+  requireWay(begin);
+  reference_.setTarget(last_update_.value_or(measured_->stamp), begin);
+  motion_ = std::move(run);
+  // Its gains are others.
+  keepTorque();
+}
+
+void OrientationController::endMotion() {
+  if (isInMotion()) {
+    motion_->end();
+  }
+}
+
+MotionProgress OrientationController::motionProgress() {
+  if (!motion_) {
+    return {};
+  }
+  const MotionProgress progress = motion_->progress();
+  motion_->resetShares();
+  return progress;
 }
 
 // As the driver would: all currents alike, so that the torque keeps its direction.
 void OrientationController::limitTotal() {
-  const double total = currents_.cwiseAbs().sum();
-  if (total > options_.total_current_limit) {
-    const double share = options_.total_current_limit / total;
-    currents_ *= share;
-    share_ *= share;
+  CurrentBounds bounds{options_.allocation.current_limit,
+                       options_.total_current_limit,
+                       std::numeric_limits<double>::infinity()};
+  if (isInMotion()) {
+    bounds = motion_->bounds();
   }
+  const double share = shareWithinSums(currents_, bounds);
+  currents_ *= share;
+  share_ *= share;
 }
 
 RotorState OrientationController::rotorAt(const Eigen::Vector3d& q) const {
@@ -254,9 +367,19 @@ void OrientationController::stop(const std::string& reason) {
   if (state_ != ControlState::kActive) {
     return;
   }
+  if (motion_) {
+    motion_->stop();
+  }
   state_ = ControlState::kStopped;
   stop_reason_ = reason;
   currents_.setZero();
+  takeParametersToCome();
+}
+
+void OrientationController::takeParametersToCome() {
+  if (parameters_to_come_) {
+    setParameters(Actuator(*parameters_to_come_));
+  }
 }
 
 }  // namespace sac

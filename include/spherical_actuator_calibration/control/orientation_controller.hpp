@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/control/computed_torque_control.hpp"
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
+#include "spherical_actuator_calibration/control/motion_run.hpp"
 #include "spherical_actuator_calibration/control/orientation_reference.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 
@@ -20,6 +21,8 @@ namespace sac {
 struct OrientationControllerOptions {
   RigidRotor rotor;
   ControlGains gains;
+  /// During a motion plan, whose excitation disturbs the more the less the parameters are known.
+  ControlGains motion_gains = {/*proportional=*/400.0, /*derivative=*/40.0};
   AllocationOptions allocation;
   OrientationReferenceOptions reference;
   double largest_age = 0.1;        ///< of the joint angles [s]; older ones stop the control
@@ -43,7 +46,8 @@ enum class ControlState {
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
 /// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
 /// currents zero, when joint angles are too old, outside the workspace, where the coils make no
-/// torque in some direction, or when the rotor does not follow. Not thread-safe.
+/// torque in some direction, or when the rotor does not follow. A motion plan is followed in the
+/// place of targets, under the same guards and its own limits. Not thread-safe.
 class OrientationController {
  public:
   /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
@@ -52,13 +56,14 @@ class OrientationController {
 
   /// Parameters in force from now on; as many poles and coils as the design. While active, the
   /// torque on the rotor goes on without a jump, and the desired motion returns to the target
-  /// within a second. Throws ConfigError when they are not valid.
+  /// within a second; during a motion plan, those before stay in force until it has ended. Throws
+  /// ConfigError when they are not valid.
   void setParameters(const Actuator& parameters);
   /// A reading of the joint sensors; false when it is not newer than the last, and changes nothing.
   /// After a jump of the clock it begins anew. Throws DataError when it cannot be an angle.
   bool receive(const JointMeasurement& joints);
   /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
-  /// outside the workspace, or cannot be reached straight within it.
+  /// outside the workspace, or cannot be reached straight within it, and during a motion plan.
   void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
 
   /// Takes hold of the rotor where it is. Throws DataError with the reason why that cannot be.
@@ -66,6 +71,15 @@ class OrientationController {
   void disable();
   /// A safe stop: no current until it is enabled again. Changes nothing unless active.
   void stop(const std::string& reason);
+
+  /// Turns the rotor to where the plan begins, then along it, to its end: at rest, with all
+  /// currents zero, not enabled. Throws DataError with the reason when it is not active, follows a
+  /// plan already, or cannot reach its begin, ConfigError when the plan does not fit the actuator.
+  void follow(const MotionPlan& plan);
+  /// The motion slows down to rest within its ramp, and ends there as if it were over.
+  void endMotion();
+  /// How far the motion is; its least shares begin anew.
+  MotionProgress motionProgress();
 
   /// One cycle: the currents to command [A], zero unless active.
   const Eigen::VectorXd& update(Stamp now);
@@ -84,7 +98,15 @@ class OrientationController {
   std::string defectAt(Stamp now) const;
   bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
   void keepTorque();
+  const ControlGains& gains() const {
+    return isInMotion() ? options_.motion_gains : options_.gains;
+  }
+  bool isInMotion() const { return motion_ && motion_->isRunning(); }
+  const DesiredMotion& desiredMotion(Stamp now, double step);
+  void approachMotion(double step);
+  void allocate(const RotorState& rotor, const DesiredMotion& desired);
   void limitTotal();
+  void takeParametersToCome();
   Eigen::Matrix3d present() const;
   void requireWay(const Eigen::Matrix3d& R_stator_rotor) const;
 
@@ -104,6 +126,9 @@ class OrientationController {
   Eigen::VectorXd currents_;
   double share_ = 1.0;
   double tracking_error_ = 0.0;
+  std::optional<MotionRun> motion_;
+  DesiredMotion motion_reference_;
+  std::optional<Actuator> parameters_to_come_;  ///< after the motion
 };
 
 }  // namespace sac

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/measurement/motion_plan_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -22,6 +23,26 @@ namespace {
 constexpr double kWarningPeriod = 2.0;  // [s]
 constexpr std::uint32_t kQueueLength = 100;
 constexpr double kMicro = 1e6;
+constexpr double kStatusPeriod = 0.1;  // [s]
+
+const char* inWords(MotionPhase phase) {
+  switch (phase) {
+    case MotionPhase::kNone:
+      return "No motion was begun.";
+    case MotionPhase::kApproach:
+      return "The rotor turns to where the motion begins.";
+    case MotionPhase::kMotion:
+      return "The rotor follows the motion.";
+    case MotionPhase::kEnding:
+    case MotionPhase::kSettling:
+      return "The motion slows down to rest.";
+    case MotionPhase::kDone:
+      return "The motion is over, the currents are zero.";
+    case MotionPhase::kStopped:
+      return "The motion has stopped, the currents are zero";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -90,7 +111,15 @@ OrientationControllerNode::OrientationControllerNode(
       },
       tellRefusal("orientation_target"),
       at_once));
-  service_ = private_handle.advertiseService("enable", &OrientationControllerNode::enable, this);
+  motion_publisher_ = private_handle.advertise<msg::MotionStatus>("motion_status", 10, true);
+  services_ = {
+      private_handle.advertiseService("enable", &OrientationControllerNode::enable, this),
+      private_handle.advertiseService(
+          "follow_motion", &OrientationControllerNode::followMotion, this),
+      private_handle.advertiseService("end_motion", &OrientationControllerNode::endMotion, this)};
+  motion_timer_ = private_handle.createWallTimer(
+      ros::WallDuration(kStatusPeriod),
+      [this](const ros::WallTimerEvent& /*event*/) { tellMotion(); });
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
 }
@@ -177,6 +206,63 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
   return true;
 }
 
+bool OrientationControllerNode::followMotion(msg::FollowMotion::Request& request,
+                                             msg::FollowMotion::Response& response) {
+  constexpr std::size_t kLongestPlan = 1U << 20U;  // [byte]
+  try {
+    if (request.plan.size() > kLongestPlan) {
+      throw DataError("The motion plan is longer than 1 MB.");
+    }
+    // Read without the mutex: the control goes on.
+    const MotionPlan plan = parseMotionPlan(request.plan, "plan").plan;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    controller_.follow(plan);
+    response.success = 1;
+    response.message = "The rotor turns to where the motion begins, and follows it.";
+  } catch (const Error& error) {
+    response.success = 0;
+    response.message = "The motion is refused: " + printable(error.what());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_refusal_ = "follow_motion: " + printable(error.what());
+  }
+  return true;
+}
+
+bool OrientationControllerNode::endMotion(std_srvs::Trigger::Request& /*request*/,
+                                          std_srvs::Trigger::Response& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  controller_.endMotion();
+  response.success = 1;
+  response.message = "No motion goes on, or it slows down to its end.";
+  return true;
+}
+
+void OrientationControllerNode::tellMotion() {
+  msg::MotionStatus message;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const MotionProgress progress = controller_.motionProgress();
+    if (progress.phase == told_phase_ && !isRunning(progress.phase)) {
+      return;
+    }
+    told_phase_ = progress.phase;
+    message.phase = motionPhaseName(progress.phase);
+    message.message = inWords(progress.phase);
+    if (progress.phase == MotionPhase::kStopped) {
+      message.message +=
+          ": " + (controller_.stopReason().empty() ? "disabled" : controller_.stopReason());
+    }
+    message.elapsed = progress.elapsed;
+    message.duration = progress.duration;
+    message.tracking_error = controller_.trackingError();
+    message.largest_tracking_error = progress.largest_tracking_error;
+    message.excitation_share = progress.least_excitation_share;
+    message.torque_share = progress.least_torque_share;
+  }
+  message.header.stamp = ros::Time::now();
+  motion_publisher_.publish(message);
+}
+
 void OrientationControllerNode::beat() {
   const std::lock_guard<std::mutex> lock(mutex_);
   try {
@@ -237,6 +323,7 @@ void OrientationControllerNode::diagnose(DiagnosticStatus& status) {
       break;
   }
   statistics_.report(status);
+  status.add("motion", motionPhaseName(told_phase_));
   status.add("tracking error [mrad]", 1e3 * controller_.trackingError());
   addTextOrNone(status, "last refusal", last_refusal_);
 }

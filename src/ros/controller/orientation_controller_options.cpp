@@ -55,6 +55,11 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
     positive(gains, "proportional", "1/s2", controller.gains.proportional);
     positive(gains, "derivative", "1/s", controller.gains.derivative);
   }
+  if (map.has("motion_gains")) {
+    const YamlMap gains = map.map("motion_gains");
+    positive(gains, "proportional", "1/s2", controller.motion_gains.proportional);
+    positive(gains, "derivative", "1/s", controller.motion_gains.derivative);
+  }
   positive(map, "current_limit", "A", controller.allocation.current_limit);
   positive(map, "least_singular_value", "N m/A", controller.allocation.least_singular_value);
   positive(map, "largest_age", "s", controller.largest_age);

@@ -10,10 +10,14 @@
 #include <ros/publisher.h>
 #include <ros/service_server.h>
 #include <ros/subscriber.h>
+#include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include "spherical_actuator_calibration/CoilCurrents.h"
+#include "spherical_actuator_calibration/FollowMotion.h"
+#include "spherical_actuator_calibration/MotionStatus.h"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -50,6 +54,10 @@ class CycleStatistics {
 /// latched `parameters` in, `coil_command` out. No command goes out before the private service
 /// `enable` is called with true, nor after a safe stop (OrientationController tells when) until it
 /// is called again; the coil driver's watchdog guards against the death of this node.
+///
+/// Enabled, it follows a motion plan instead: the private service `follow_motion` begins it,
+/// `end_motion` slows it down to its end before its time, and the private topic `motion_status`
+/// tells how far it is. At the end of a motion it is not enabled any more.
 class OrientationControllerNode {
  public:
   /// Throws ConfigError when the description has no torque model or an option is not valid.
@@ -66,6 +74,9 @@ class OrientationControllerNode {
   void receiveJoints(const sensor_msgs::JointState& message);
   void receiveTarget(const geometry_msgs::QuaternionStamped& message);
   bool enable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool followMotion(msg::FollowMotion::Request& request, msg::FollowMotion::Response& response);
+  bool endMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void tellMotion();
   void beat();
   /// One cycle of control. Precondition: mutex_ is held.
   void cycle();
@@ -82,12 +93,15 @@ class OrientationControllerNode {
   CycleStatistics statistics_;
   std::string last_refusal_;
   bool was_active_ = false;
+  MotionPhase told_phase_ = MotionPhase::kNone;
   double last_reading_ =
       0.0;  ///< when joint angles were last accepted, by a clock that never jumps
 
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
-  ros::ServiceServer service_;
+  ros::Publisher motion_publisher_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer motion_timer_;
   NodeDiagnostics diagnostics_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
 };
