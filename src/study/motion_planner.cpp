@@ -1,0 +1,241 @@
+#include "spherical_actuator_calibration/study/motion_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/base/version.hpp"
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+
+namespace sac {
+namespace {
+
+constexpr int kTilts = 3;  // sines of joints 1 and 2
+constexpr int kTones = 6;  // of each coil
+// Lower ones cost more motion where the model is wrong, and tell no more.
+constexpr double kLowestTone = 1.0;   // [Hz]
+constexpr double kHighestTone = 4.0;  // [Hz]
+constexpr double kSpin = 1.1 * kPi;   // of the slow sine of joint 3 [rad]
+constexpr double kTotalShare = 0.7;   // of the limit, that the excitation takes in the mean
+constexpr int kAttempts = 10;         // to find an excitation
+constexpr double kWeaker = 0.75;      // from one attempt to the next
+constexpr double kLeastMeanShare = 2.0 / 3.0;  // of the excitation, that rehearsals must leave
+
+class MotionSource {
+ public:
+  MotionSource(const Actuator& actuator, const MotionPlannerOptions& options)
+      : actuator_(actuator),
+        options_(options),
+        noise_(options.seed, RandomPurpose::kMotionCandidates) {}
+
+  MotionPlan next(double excitation) {
+    MotionPlan plan;
+    plan.actuator = actuator_.name;
+    plan.serial = actuator_.serial;
+    plan.duration = options_.duration;
+    plan.ramp = options_.ramp;
+    plan.limits = options_.limits;
+    plan.joints[0].sines = tilt();
+    plan.joints[1].sines = tilt();
+    plan.joints[2].sines = spin();
+    for (JointMotion& joint : plan.joints) {
+      slowDown(joint.sines);
+    }
+    for (std::size_t coil = 0; coil < actuator_.coils.size(); ++coil) {
+      plan.coils.push_back(tones(excitation));
+    }
+    return plan;
+  }
+
+ private:
+  double between(double low, double high) { return low + (high - low) * noise_.share(); }
+  double phase() { return noise_.uniform(kPi); }
+
+  std::vector<Sine> tilt() {
+    std::vector<Sine> sines;
+    for (int n = 0; n < kTilts; ++n) {
+      sines.push_back({between(0.1, 0.5), between(0.5, 1.5), phase()});
+    }
+    const double scale = options_.limits.tilt / largestValueOf(sines);
+    for (Sine& sine : sines) {
+      sine.amplitude *= scale;
+    }
+    return sines;
+  }
+
+  /// Once around and back at least, and something quicker.
+  std::vector<Sine> spin() {
+    const double slow = std::max(1.0 / options_.duration, between(0.05, 0.1));
+    return {{slow, kSpin, phase()},
+            {between(0.2, 0.5), between(0.1, 0.3), phase()},
+            {between(0.2, 0.5), between(0.1, 0.3), phase()}};
+  }
+
+  /// Within the limit of the rate, at lower frequencies.
+  void slowDown(std::vector<Sine>& sines) const {
+    const double share = options_.limits.rate / largestRateOf(sines);
+    for (Sine& sine : sines) {
+      sine.frequency *= std::min(1.0, share);
+    }
+  }
+
+  std::vector<Sine> tones(double excitation) {
+    std::vector<Sine> sines;
+    const double amplitude =
+        std::min(excitation * std::sqrt(2.0 / kTones), options_.limits.coil_current / kTones);
+    for (int n = 0; n < kTones; ++n) {
+      sines.push_back({between(kLowestTone, kHighestTone), amplitude, phase()});
+    }
+    return sines;
+  }
+
+  const Actuator& actuator_;
+  const MotionPlannerOptions& options_;
+  NoiseSource noise_;
+};
+
+/// Of normally distributed currents of this root mean square in each coil, Σ|I| has this mean.
+double excitationFor(double mean_total, std::size_t coils) {
+  return mean_total / static_cast<double>(coils) * std::sqrt(kPi / 2.0);
+}
+
+double startExcitation(const Actuator& actuator, const MotionPlannerOptions& options) {
+  if (options.excitation > 0.0) {
+    return options.excitation;
+  }
+  const auto coils = static_cast<double>(actuator.coils.size());
+  return std::min(excitationFor(kTotalShare * options.limits.total_current, actuator.coils.size()),
+                  std::sqrt(kTotalShare * options.limits.square_current / coils));
+}
+
+void scaleExcitation(MotionPlan& plan, double factor) {
+  for (std::vector<Sine>& sines : plan.coils) {
+    for (Sine& sine : sines) {
+      sine.amplitude *= factor;
+    }
+  }
+}
+
+Rehearsal rehearseWithWrongModel(const MotionPlan& plan,
+                                 const Actuator& actuator,
+                                 const MotionPlannerOptions& options,
+                                 std::uint64_t number) {
+  const double error = options.model_error;
+  const Actuator truth =
+      manufacturedActuator(actuator, {error, error, error, error}, options.seed + number);
+  RehearsalOptions rehearsal = options.rehearsal;
+  rehearsal.seed = options.seed + number;
+  return rehearse(plan, actuator, truth, rehearsal);
+}
+
+bool isGood(const Rehearsal& rehearsal) {
+  return rehearsal.completed && rehearsal.mean_excitation_share >= kLeastMeanShare;
+}
+
+/// Weakens the excitation until all rehearsals are good.
+void rehearseAndWeaken(PlannedMotionResult& result,
+                       const Actuator& actuator,
+                       const MotionPlannerOptions& options,
+                       const std::function<void(const std::string&)>& progress) {
+  MotionPlan& plan = result.record.plan;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    result.rehearsals.clear();
+    bool are_good = true;
+    for (std::size_t n = 0; n < options.rehearsals && are_good; ++n) {
+      result.rehearsals.push_back(rehearseWithWrongModel(plan, actuator, options, n));
+      are_good = isGood(result.rehearsals.back());
+    }
+    if (are_good) {
+      return;
+    }
+    const Rehearsal& worst = result.rehearsals.back();
+    if (progress) {
+      progress(
+          format("%.3f A of excitation: %s; %.0f %% of it were left, the rotor was %.0f mrad "
+                 "off at most.",
+                 result.excitation,
+                 worst.completed ? "too much is faded" : worst.reason.c_str(),
+                 100.0 * worst.mean_excitation_share,
+                 1e3 * worst.largest_tracking_error));
+    }
+    scaleExcitation(plan, kWeaker);
+    result.excitation *= kWeaker;
+  }
+  throw DataError("No excitation is weak enough for a model that is wrong by " +
+                  shortNumber(options.model_error) +
+                  " rad: give slower motions, larger gains, or a smaller error of the model.");
+}
+
+}  // namespace
+
+void validate(const MotionPlannerOptions& options) {
+  requireInRange("duration", options.duration, ValueRange::closed(5.0, 3600.0, "s"));
+  requireInRange("ramp", options.ramp, ValueRange::closed(0.1, 0.5 * options.duration, "s"));
+  requireInRange("excitation", options.excitation, ValueRange::nonNegative("A"));
+  requireInRange(
+      "candidates", static_cast<double>(options.candidates), ValueRange::closed(1.0, 1000.0));
+  requireInRange(
+      "rehearsals", static_cast<double>(options.rehearsals), ValueRange::closed(0.0, 1000.0));
+  requireInRange("model-error", options.model_error, ValueRange::closed(0.0, 0.5, "rad"));
+  validate(options.sensors);
+  validate(options.rehearsal.controller);
+}
+
+MotionPlan chooseMotion(const Actuator& actuator,
+                        const MotionPlannerOptions& options,
+                        const MotionScore& score) {
+  validate(options);
+  const double excitation = startExcitation(actuator, options);
+  MotionSource source(actuator, options);
+  MotionPlan best;
+  double best_score = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < options.candidates; ++n) {
+    const MotionPlan plan = source.next(excitation);
+    validate(plan, actuator);
+    const double value = score(plan);
+    if (n == 0 || value < best_score) {
+      best = plan;
+      best_score = value;
+    }
+  }
+  return best;
+}
+
+PlannedMotionResult planMotion(const Actuator& actuator,
+                               const MotionPlannerOptions& options,
+                               const std::function<void(const std::string&)>& progress) {
+  constexpr int kFewWindows = 8;  // one of so many tells which candidate is better
+  const CalibrationModel model{ParameterSpace(actuator)};
+  const RigidRotor& rotor = options.rehearsal.controller.rotor;
+  std::size_t seen = 0;
+  PlannedMotionResult result;
+  result.record.software = packageVersion();
+  result.record.plan = chooseMotion(actuator, options, [&](const MotionPlan& plan) {
+    const double worst =
+        expectedStddevs(model, rotor, plan, options.sensors, kFewWindows).maxCoeff();
+    if (progress) {
+      progress(
+          format("Candidate %zu: worst standard deviation about %.4f mrad.", ++seen, 1e3 * worst));
+    }
+    return worst;
+  });
+  result.excitation = startExcitation(actuator, options);
+  rehearseAndWeaken(result, actuator, options, progress);
+  const Eigen::VectorXd stddevs =
+      expectedStddevs(model, rotor, result.record.plan, options.sensors, 2);
+  for (Eigen::Index p = 0; p < stddevs.size(); ++p) {
+    result.record.expected.push_back({model.space().name(p), stddevs[p]});
+    if (stddevs[p] > result.worst_stddev) {
+      result.worst_stddev = stddevs[p];
+      result.worst_parameter = model.space().name(p);
+    }
+  }
+  return result;
+}
+
+}  // namespace sac

@@ -1,0 +1,123 @@
+#include "spherical_actuator_calibration/study/motion_planner.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kError = 0.03;  // of every parameter [rad]
+
+MotionPlannerOptions quickOptions() {
+  MotionPlannerOptions options;
+  options.duration = 8.0;
+  options.ramp = 1.0;
+  options.candidates = 2;
+  options.rehearsals = 1;
+  options.rehearsal.rotor.unbalance = Eigen::Vector3d(0.003, -0.004, 0.002);
+  return options;
+}
+
+TEST(MotionPlanner, RehearsalsWithWrongModelsStayWithinAllLimits) {
+  MotionPlannerOptions options = quickOptions();
+  options.rehearsals = 2;
+  const Actuator actuator = scenarios::paperNominal();
+  const PlannedMotionResult result = planMotion(actuator, options);
+  validate(result.record.plan, actuator);
+  ASSERT_EQ(result.rehearsals.size(), 2U);
+  for (const Rehearsal& rehearsal : result.rehearsals) {
+    EXPECT_TRUE(rehearsal.completed) << rehearsal.reason;
+    EXPECT_LT(rehearsal.largest_tilt, actuator.workspace.tilt_limit);
+    EXPECT_LT(rehearsal.largest_tracking_error, options.limits.error);
+    EXPECT_LE(rehearsal.largest_coil_current, options.limits.coil_current * (1.0 + 1e-9));
+    EXPECT_LE(rehearsal.largest_total_current, options.limits.total_current * (1.0 + 1e-9));
+    EXPECT_LE(rehearsal.largest_square_current, options.limits.square_current * (1.0 + 1e-9));
+    EXPECT_GT(rehearsal.mean_total_current, 0.5);
+    EXPECT_GT(rehearsal.mean_excitation_share, 0.6);
+  }
+  ASSERT_EQ(result.record.expected.size(), 73U);
+  // Eight seconds tell of everything.
+  EXPECT_LT(result.worst_stddev, 1e-3);
+}
+
+// Whatever is asked: what the guards leave of it stays in the workspace.
+TEST(MotionPlanner, NoExcitationBringsTheRotorOutOfTheWorkspace) {
+  const Actuator actuator = scenarios::paperNominal();
+  MotionPlannerOptions options = quickOptions();
+  options.excitation = 0.5;
+  options.limits.total_current = 20.0;
+  options.limits.square_current = 50.0;
+  const MotionPlan plan =
+      chooseMotion(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; });
+  RehearsalOptions rehearsal = options.rehearsal;
+  rehearsal.controller.total_current_limit = 20.0;
+  double largest_error = 0.0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const Actuator truth = manufacturedActuator(actuator, {kError, kError, kError, kError}, seed);
+    const Rehearsal result = rehearse(plan, actuator, truth, rehearsal);
+    EXPECT_LT(result.largest_tilt, actuator.workspace.tilt_limit) << result.reason;
+    largest_error = std::max(largest_error, result.largest_tracking_error);
+  }
+  EXPECT_GT(largest_error, 0.3 * options.limits.error);
+}
+
+TEST(MotionPlanner, TheSeedDecidesAndTheScoreChooses) {
+  const Actuator actuator = scenarios::paperNominal();
+  MotionPlannerOptions options = quickOptions();
+  options.candidates = 5;
+  int seen = 0;
+  const auto third = [&seen](const MotionPlan& /*plan*/) { return ++seen == 3 ? 0.0 : 1.0; };
+  const MotionPlan plan = chooseMotion(actuator, options, third);
+  EXPECT_EQ(seen, 5);
+  seen = 0;
+  const MotionPlan again = chooseMotion(actuator, options, third);
+  EXPECT_EQ(renderMotionPlan({"", plan, {}}), renderMotionPlan({"", again, {}}));
+  options.candidates = 1;
+  seen = 0;
+  EXPECT_NE(renderMotionPlan({"", chooseMotion(actuator, options, third), {}}),
+            renderMotionPlan({"", plan, {}}));
+}
+
+TEST(MotionInformation, GrowsWithTimeAndCurrentAndFallsWithNoise) {
+  const Actuator actuator = scenarios::paperNominal();
+  const CalibrationModel model{ParameterSpace(actuator)};
+  MotionPlannerOptions options = quickOptions();
+  const auto worst = [&](const MotionSensors& sensors) {
+    const MotionPlan plan =
+        chooseMotion(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; });
+    return expectedStddevs(model, {}, plan, sensors, 2).maxCoeff();
+  };
+  options.excitation = 0.05;
+  const double base = worst({});
+  EXPECT_LT(base, 2e-3);
+  options.excitation = 0.1;
+  EXPECT_LT(worst({}), 0.8 * base);
+  options.excitation = 0.05;
+  MotionSensors noisy;
+  noisy.joint_stddev *= 2.0;
+  noisy.current_stddev *= 2.0;
+  noisy.tracker_stddev *= 2.0;
+  EXPECT_NEAR(worst(noisy) / base, 2.0, 0.1);
+  options.duration = 24.0;
+  EXPECT_LT(worst({}), 0.8 * base);
+}
+
+TEST(MotionPlanner, NamesTheOptionThatIsWrong) {
+  MotionPlannerOptions options = quickOptions();
+  options.ramp = 5.0;
+  EXPECT_THROW(planMotion(scenarios::paperNominal(), options), ConfigError);
+  options = quickOptions();
+  options.sensors.joint_stddev = 0.0;
+  EXPECT_THROW(planMotion(scenarios::paperNominal(), options), ConfigError);
+  options = quickOptions();
+  options.limits.tilt = 0.59;
+  EXPECT_THROW(planMotion(scenarios::paperNominal(), options), ConfigError);
+}
+
+}  // namespace
+}  // namespace sac
