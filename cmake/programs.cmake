@@ -6,11 +6,13 @@ install(PROGRAMS scripts/record_session
 )
 catkin_install_python(
   PROGRAMS
+    scripts/calibrate_by_motion
     scripts/guided_session
     scripts/level_1_by_coils
     scripts/plot_study
     scripts/plot_tracking
     scripts/render_report
+    scripts/run_motion
     scripts/track_orientation
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION}
 )

@@ -226,8 +226,14 @@ PlannedMotionResult planMotion(const Actuator& actuator,
   });
   result.excitation = startExcitation(actuator, options);
   rehearseAndWeaken(result, actuator, options, progress);
-  const Eigen::VectorXd stddevs =
-      expectedStddevs(model, rotor, result.record.plan, options.sensors, 2);
+  // What rehearsals had to fade does not tell.
+  MotionPlan faded = result.record.plan;
+  double share = 1.0;
+  for (const Rehearsal& rehearsal : result.rehearsals) {
+    share = std::min(share, rehearsal.mean_excitation_share);
+  }
+  scaleExcitation(faded, share);
+  const Eigen::VectorXd stddevs = expectedStddevs(model, rotor, faded, options.sensors, 2);
   for (Eigen::Index p = 0; p < stddevs.size(); ++p) {
     result.record.expected.push_back({model.space().name(p), stddevs[p]});
     if (stddevs[p] > result.worst_stddev) {

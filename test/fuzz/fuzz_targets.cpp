@@ -15,6 +15,7 @@ const std::vector<Target>& targets() {
       {"configuration", readConfigurationFile},
       {"registers", readRegisters},
       {"words", readRegisterWords},
+      {"motion", readMotionFile},
       {"plan", readPlanFile},
       {"samples", readSamplesFile},
       {"messages", readMessages},

@@ -36,6 +36,7 @@ void readDimensionsFile(const std::uint8_t* data, std::size_t size);
 void readConfigurationFile(const std::uint8_t* data, std::size_t size);
 void readRegisterWords(const std::uint8_t* data, std::size_t size);
 void readRegisters(const std::uint8_t* data, std::size_t size);
+void readMotionFile(const std::uint8_t* data, std::size_t size);
 void readPlanFile(const std::uint8_t* data, std::size_t size);
 void readSamplesFile(const std::uint8_t* data, std::size_t size);
 void readMessages(const std::uint8_t* data, std::size_t size);

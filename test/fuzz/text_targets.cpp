@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 #include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
 #include "spherical_actuator_calibration/drivers/register_codec.hpp"
+#include "spherical_actuator_calibration/measurement/motion_plan_file.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
 
@@ -106,6 +107,19 @@ void readRegisterWords(const std::uint8_t* data, std::size_t size) {
       const std::vector<std::uint16_t> again = encodeRegisters(value, type, order);
       require(decodeRegisters(again.data(), type, order) == value);
     }
+  }
+}
+
+void readMotionFile(const std::uint8_t* data, std::size_t size) {
+  const auto record = accepted([&] { return parseMotionPlan(textOf(data, size), "f.yaml"); });
+  if (record) {
+    const std::string text = renderMotionPlan(*record);
+    require(renderMotionPlan(parseMotionPlan(text, "g.yaml")) == text);
+    // It is for no actuator at all.
+    accepted([&] {
+      validate(record->plan, Actuator{});
+      return true;
+    });
   }
 }
 
