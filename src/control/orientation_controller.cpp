@@ -213,6 +213,7 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   const double step =
       last_update_ ? std::clamp(secondsBetween(*last_update_, now), 0.0, kLongestStep) : 0.0;
   last_update_ = now;
+  const bool was_in_motion = isInMotion();
   const DesiredMotion& desired = desiredMotion(now, step);
   q_ = measured_->position + secondsBetween(measured_->stamp, now) * joint_velocity_;
   const RotorState rotor = rotorAt(q_);
@@ -226,7 +227,7 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
     return currents_;
   }
   allocate(rotor, desired);
-  if (motion_ && motion_->phase() == MotionPhase::kDone && state_ == ControlState::kActive) {
+  if (was_in_motion && motion_->phase() == MotionPhase::kDone) {
     disable();
   }
   return currents_;
@@ -306,8 +307,13 @@ void OrientationController::follow(const MotionPlan& plan) {
 }
 
 void OrientationController::endMotion() {
-  if (isInMotion()) {
-    motion_->end();
+  if (!isInMotion()) {
+    return;
+  }
+  motion_->end();
+  // On the approach there is nothing to slow down.
+  if (!isInMotion()) {
+    disable();
   }
 }
 

@@ -187,6 +187,10 @@ TEST_F(MotionFollowingTest, EndsEarlyWhenItIsWanted) {
   EXPECT_EQ(phase(), MotionPhase::kDone);
   EXPECT_EQ(controller_->state(), ControlState::kIdle);
   EXPECT_LT(rotor_->state().angular_velocity.norm(), 0.1);
+  // What is over does not end what comes after it.
+  controller_->enable(now_);
+  runFor(0.1);
+  EXPECT_EQ(controller_->state(), ControlState::kActive);
 }
 
 TEST_F(MotionFollowingTest, StopsOnOldJointAngles) {

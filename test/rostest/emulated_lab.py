@@ -51,8 +51,9 @@ class EmulatedLab:
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
+        self.config = configuration_with_free_ports(folder)
         self._arguments = {
-            "config": configuration_with_free_ports(folder),
+            "config": self.config,
             "directory": self.directory,
             "truth": self.truth,
             **arguments,

@@ -22,7 +22,7 @@ struct OrientationControllerOptions {
   RigidRotor rotor;
   ControlGains gains;
   /// During a motion plan, whose excitation disturbs the more the less the parameters are known.
-  ControlGains motion_gains = {/*proportional=*/400.0, /*derivative=*/40.0};
+  ControlGains motion_gains = {/*proportional=*/225.0, /*derivative=*/30.0};
   AllocationOptions allocation;
   OrientationReferenceOptions reference;
   double largest_age = 0.1;        ///< of the joint angles [s]; older ones stop the control

@@ -217,6 +217,8 @@ bool OrientationControllerNode::followMotion(msg::FollowMotion::Request& request
     const MotionPlan plan = parseMotionPlan(request.plan, "plan").plan;
     const std::lock_guard<std::mutex> lock(mutex_);
     controller_.follow(plan);
+    // So that an end before the next report is told as well.
+    told_phase_ = MotionPhase::kNone;
     response.success = 1;
     response.message = "The rotor turns to where the motion begins, and follows it.";
   } catch (const Error& error) {
