@@ -39,6 +39,18 @@ void validateAxis(const std::string& key, const PoleOrCoil& axis) {
   requireInRange(key + ".gain", axis.gain, ValueRange::positive());
 }
 
+void validateCorrection(const std::string& key, const ReadingCorrection& correction) {
+  constexpr double kLargestLinear = 0.5;
+  constexpr double kLargestHarmonic = 0.5;  // [rad]
+  for (const double value : correction.linear) {
+    requireInRange(key + ".linear", value, ValueRange::closed(-kLargestLinear, kLargestLinear));
+  }
+  for (const double value : correction.harmonics) {
+    requireInRange(
+        key + ".harmonics", value, ValueRange::closed(-kLargestHarmonic, kLargestHarmonic, "rad"));
+  }
+}
+
 }  // namespace
 
 std::size_t modelledCoils(const Actuator& actuator) {
@@ -61,6 +73,12 @@ void validate(const Actuator& actuator) {
   }
   for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
     validateAxis(entryKey("coils", j), actuator.coils[j]);
+  }
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    validateCorrection(entryKey("joints", k), actuator.joints[k].correction);
+  }
+  if (!actuator.unbalance.allFinite()) {
+    throw ConfigError("rotor_unbalance: it is not finite.");
   }
   if (actuator.torque_curve) {
     validate(*actuator.torque_curve);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "description_parts.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -44,7 +45,9 @@ JointStddev readJointStddev(const YamlMap& joint) {
   const ValueRange range = ValueRange::nonNegative("rad");
   return {optionalNumber(map, "offset", range),
           optionalNumber(map, "axis_u", range),
-          optionalNumber(map, "axis_v", range)};
+          optionalNumber(map, "axis_v", range),
+          readLinear(map),
+          readHarmonics(map)};
 }
 
 AxisStddev readAxisStddev(const YamlMap& pole_or_coil) {
@@ -74,6 +77,8 @@ void readJoints(const YamlMap& map, CalibratedDescription& description) {
       item.fail("name", "\"" + name + "\" is another joint's name; each joint needs its own.");
     }
     joints[k] = {name, readUnitAxis(item), item.number("offset", ValueRange::finite("rad"))};
+    joints[k].correction = {readLinear(item).value_or(ReadingCorrection{}.linear),
+                            readHarmonics(item).value_or(ReadingCorrection{}.harmonics)};
     description.stddevs.joints[k] = readJointStddev(item);
   }
 }
@@ -121,25 +126,6 @@ void readCoils(const YamlMap& map, CalibratedDescription& description) {
   }
 }
 
-TorqueCurveDescription readTorqueCurve(const YamlMap& actuator) {
-  const YamlMap map = actuator.map("torque_curve");
-  TorqueCurveDescription curve;
-  const bool in_degrees = map.choice("angle_unit", {"deg", "rad"}) == "deg";
-  curve.angle_unit = in_degrees ? AngleUnit::kDegree : AngleUnit::kRadian;
-  curve.coefficients = map.numbers("coefficients", ValueRange::finite());
-  const ValueRange angles = ValueRange::open(0.0, in_degrees ? 180.0 : kPi, map.text("angle_unit"));
-  curve.blend_start = map.number("blend_start", angles);
-  const std::vector<double> support = map.numbers("support", angles, 2);
-  curve.support_begin = support[0];
-  curve.support_end = support[1];
-  try {
-    validate(curve);
-  } catch (const ConfigError& error) {
-    actuator.fail("torque_curve", error.what());
-  }
-  return curve;
-}
-
 Workspace readWorkspace(const YamlMap& actuator) {
   const YamlMap map = actuator.map("workspace");
   return {map.number("tilt_limit", ValueRange::open(0.0, kPi / 2.0, "rad"))};
@@ -184,6 +170,13 @@ ValidationRecord readValidation(const YamlMap& map) {
           optionalNumber(map, "torque_rms", ValueRange::nonNegative("N*m"))};
 }
 
+MapRecord readMapRecord(const YamlMap& map) {
+  return {readCount(map, "regions"),
+          map.number("axes_rms", ValueRange::nonNegative("rad")),
+          map.number("map_rms", ValueRange::nonNegative("rad")),
+          map.number("inside", ValueRange::closed(0.0, 1.0))};
+}
+
 CalibrationRecord readCalibration(const YamlMap& map) {
   CalibrationRecord record;
   record.date = readDate(map);
@@ -210,6 +203,12 @@ CalibrationRecord readCalibration(const YamlMap& map) {
       optionalNumber(map, "orientation_uncertainty", ValueRange::nonNegative("rad"));
   record.torque_uncertainty =
       optionalNumber(map, "torque_uncertainty", ValueRange::nonNegative("N*m/A"));
+  if (map.has("covariance")) {
+    record.covariance = readCovariance(map);
+  }
+  if (map.has("orientation_map")) {
+    record.orientation_map = readMapRecord(map.map("orientation_map"));
+  }
   return record;
 }
 
@@ -232,6 +231,17 @@ CalibratedDescription readDescription(const YamlMap& file) {
     actuator.torque_curve = readTorqueCurve(map);
   }
   actuator.workspace = readWorkspace(map);
+  if (map.has("rotor_unbalance")) {
+    const std::vector<double> c =
+        map.numbers("rotor_unbalance", ValueRange::finite("N*m"), kJoints);
+    actuator.unbalance << c[0], c[1], c[2];
+  }
+  actuator.orientation_map = readOrientationMap(map);
+  try {
+    validate(actuator);
+  } catch (const ConfigError& error) {
+    file.fail("actuator", error.what());
+  }
   if (map.has("calibration")) {
     description.calibration = readCalibration(map.map("calibration"));
   }

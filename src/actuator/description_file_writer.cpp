@@ -1,5 +1,6 @@
-#include <array>
+#include <algorithm>
 
+#include "description_parts.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -20,15 +21,32 @@ void addStddev(YamlLine& line, const YamlLine& stddev) {
   }
 }
 
+template <typename Values>
+bool hasValue(const Values& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; });
+}
+
 std::string jointLine(const JointAxis& joint, const JointStddev& stddev) {
   YamlLine line;
   line.add("name", yamlText(joint.name));
   line.add("axis", yamlNumbers(joint.axis));
   line.add("offset", yamlNumber(joint.offset));
+  if (hasValue(joint.correction.linear)) {
+    line.add("linear", yamlNumbers(joint.correction.linear));
+  }
+  if (hasValue(joint.correction.harmonics)) {
+    line.add("harmonics", yamlNumbers(joint.correction.harmonics));
+  }
   YamlLine values;
   addOptional(values, "offset", stddev.offset);
   addOptional(values, "axis_u", stddev.axis_u);
   addOptional(values, "axis_v", stddev.axis_v);
+  if (stddev.linear) {
+    values.add("linear", yamlNumbers(*stddev.linear));
+  }
+  if (stddev.harmonics) {
+    values.add("harmonics", yamlNumbers(*stddev.harmonics));
+  }
   addStddev(line, values);
   return line.text();
 }
@@ -63,15 +81,6 @@ std::string coilLine(const CoilAxis& coil, const AxisStddev& stddev) {
   return line.text();
 }
 
-std::string curveLine(const TorqueCurveDescription& curve) {
-  YamlLine line;
-  line.add("angle_unit", curve.angle_unit == AngleUnit::kDegree ? "deg" : "rad");
-  line.add("coefficients", yamlNumbers(curve.coefficients));
-  line.add("blend_start", yamlNumber(curve.blend_start));
-  line.add("support", yamlNumbers(std::array{curve.support_begin, curve.support_end}));
-  return line.text();
-}
-
 std::string cycleLine(const CycleRecord& record) {
   YamlLine line;
   line.add("cycle", yamlText(record.cycle));
@@ -90,6 +99,15 @@ std::string validationLine(const ValidationRecord& record) {
   line.add("samples", std::to_string(record.samples));
   addOptional(line, "orientation_rms", record.orientation_rms);
   addOptional(line, "torque_rms", record.torque_rms);
+  return line.text();
+}
+
+std::string mapLine(const MapRecord& record) {
+  YamlLine line;
+  line.add("regions", std::to_string(record.regions));
+  line.add("axes_rms", yamlNumber(record.axes_rms));
+  line.add("map_rms", yamlNumber(record.map_rms));
+  line.add("inside", yamlNumber(record.inside));
   return line.text();
 }
 
@@ -153,6 +171,12 @@ void writeCalibration(YamlWriter& writer, const CalibrationRecord& record) {
   }
   writer.optional(2, "orientation_uncertainty", record.orientation_uncertainty);
   writer.optional(2, "torque_uncertainty", record.torque_uncertainty);
+  if (record.orientation_map) {
+    writer.entry(2, "orientation_map", mapLine(*record.orientation_map));
+  }
+  if (record.covariance) {
+    writeCovariance(writer, *record.covariance);
+  }
 }
 
 }  // namespace
@@ -173,11 +197,17 @@ std::string renderDescription(const CalibratedDescription& description, const st
   writeAxes(writer, "poles", actuator.poles, description.stddevs.poles, poleLine);
   writeAxes(writer, "coils", actuator.coils, description.stddevs.coils, coilLine);
   if (actuator.torque_curve) {
-    writer.entry(1, "torque_curve", curveLine(*actuator.torque_curve));
+    writer.entry(1, "torque_curve", torqueCurveLine(*actuator.torque_curve));
   }
   YamlLine workspace;
   workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));
   writer.entry(1, "workspace", workspace.text());
+  if (!actuator.unbalance.isZero(0.0)) {
+    writer.entry(1, "rotor_unbalance", yamlNumbers(actuator.unbalance));
+  }
+  if (actuator.orientation_map) {
+    writeOrientationMap(writer, *actuator.orientation_map);
+  }
   if (description.calibration) {
     writeCalibration(writer, *description.calibration);
   }

@@ -197,6 +197,20 @@ bool YamlMap::has(const std::string& key) const {
   return find(key) != nullptr;
 }
 
+bool YamlMap::hasMap(const std::string& key) const {
+  const Entry* entry = find(key);
+  return entry != nullptr && entry->node.IsMap();
+}
+
+bool YamlMap::hasList(const std::string& key) const {
+  const Entry* entry = find(key);
+  return entry != nullptr && entry->node.IsSequence();
+}
+
+const std::string& YamlMap::file() const {
+  return state_->file;
+}
+
 double YamlMap::number(const std::string& key, const ValueRange& range) const {
   const Entry& entry = require(key);
   double value = 0.0;

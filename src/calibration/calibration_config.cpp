@@ -1,12 +1,15 @@
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
@@ -15,6 +18,23 @@ namespace sac {
 namespace {
 
 constexpr std::int64_t kLargestCount = 1'000'000;
+constexpr char kHarmonics[] = "encoder_harmonics";  // of all joints, or a list of joints
+
+std::string wordOf(MapUse use) {
+  switch (use) {
+    case MapUse::kAuto:
+      return "auto";
+    case MapUse::kAlways:
+      return "always";
+    case MapUse::kNever:
+      break;
+  }
+  return "never";
+}
+
+MapUse mapUseOf(const std::string& word) {
+  return word == "auto" ? MapUse::kAuto : word == "always" ? MapUse::kAlways : MapUse::kNever;
+}
 
 /// Meets every option of a configuration under its section and key, in the order of the file.
 /// `Visitor` has section(name), and option(key, value, …) for each type of value. Reading and
@@ -107,8 +127,14 @@ void visitOptions(Config& c, Visitor& visit) {
   visitEstimation(c, visit);
   visit.section("effects");
   for (const std::string& effect : effectNames()) {
-    visit.option(effect, c.effects[effect]);
+    if (effect == kHarmonics) {
+      visit.harmonics(effect, c.effects);
+    } else {
+      visit.option(effect, c.effects[effect]);
+    }
   }
+  visit.section("orientation_map");
+  visit.option("use", c.orientation_map);
   const ValueRange registration = ValueRange::closed(0.0, 0.5, "rad");
   visit.section("registration");
   visit.option("stator_tracker", c.registration.stator_tracker, registration);
@@ -165,6 +191,27 @@ class OptionReader {
       value = none ? BiasRemoval::kNone : BiasRemoval::kZeroCurrent;
     }
   }
+  void option(const std::string& key, MapUse& value) const {
+    if (has_section_ && section_.has(key)) {
+      value = mapUseOf(section_.choice(key, {"auto", "always", "never"}));
+    }
+  }
+  /// true, false, or a list of joints, from 1.
+  void harmonics(const std::string& key, EffectSelection& effects) const {
+    if (!has_section_ || !section_.hasList(key)) {
+      option(key, effects[key]);
+      return;
+    }
+    std::set<std::size_t> joints;
+    for (const double number : section_.numbers(key, ValueRange::closed(1.0, kJoints))) {
+      const std::optional<std::size_t> joint = indexOf(static_cast<std::uint32_t>(number));
+      if (number != std::floor(number) || !joints.insert(*joint).second) {
+        section_.fail(key, "it lists joints, each by its number and once.");
+      }
+    }
+    effects[key] = !joints.empty();
+    effects.setHarmonicJoints({joints.begin(), joints.end()});
+  }
 
  private:
   YamlMap file_;
@@ -199,6 +246,15 @@ class OptionWriter {
   void option(const std::string& key, bool value) { add(key, yamlBoolean(value)); }
   void option(const std::string& key, BiasRemoval value) {
     add(key, value == BiasRemoval::kNone ? "none" : "zero_current");
+  }
+  void option(const std::string& key, MapUse value) { add(key, wordOf(value)); }
+  void harmonics(const std::string& key, const EffectSelection& effects) {
+    std::vector<std::string> joints;
+    for (const std::size_t joint : effects.harmonicJoints()) {
+      joints.push_back(std::to_string(numberOf(joint)));
+    }
+    const bool is_all = joints.size() == kJoints;
+    add(key, effects[key] && !is_all ? yamlList(joints) : yamlBoolean(effects[key]));
   }
   std::string text() const { return writer_.text(); }
   /// Name, as section.key, and value of every option.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 
 namespace sac {
@@ -166,12 +167,14 @@ void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport>
   }
   state_ = std::move(state);
   reports_ = std::move(reports);
+  map_choice_.reset();
 }
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
   CycleOutcome outcome = runCycle(model_, samples_, state_, request, config_.estimation);
   state_ = std::move(outcome.state);
   reports_.push_back(std::move(outcome.report));
+  map_choice_.reset();
   return reports_.back();
 }
 
@@ -227,14 +230,48 @@ std::vector<ParameterEstimate> CalibrationSession::parameters() const {
   return parameters;
 }
 
+const OrientationMapChoice& CalibrationSession::orientationMap() const {
+  if (map_choice_) {
+    return *map_choice_;
+  }
+  map_choice_.emplace();
+  std::optional<Cycle> last;
+  for (const CycleReport& report : reports_) {
+    if (report.success && (report.cycle == Cycle::kJoint || report.cycle == Cycle::kRefine)) {
+      last = report.cycle;
+    }
+  }
+  if (last) {
+    *map_choice_ = chooseOrientationMap(
+        model_, samples_, state_, {*last}, config_.estimation, config_.orientation_map);
+  }
+  return *map_choice_;
+}
+
+/// The model with the orientation map that is in force.
+CalibrationModel CalibrationSession::mappedModel() const {
+  Actuator mapped = model_.space().nominal();
+  mapped.orientation_map = orientationMap().map;
+  return CalibrationModel(ParameterSpace(mapped, config_.effects));
+}
+
+Actuator CalibrationSession::actuator() const {
+  Actuator actuator = model_.space().actuatorAt(state_.belief.x);
+  if (orientationMap().map) {
+    actuator.orientation_map = orientationMap().map;
+  }
+  return actuator;
+}
+
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
-  const HeldOutValidation result = validateHeldOut(model_, samples_, state_, config_.estimation);
+  const HeldOutValidation result = validateHeldOut(
+      orientationMap().map ? mappedModel() : model_, samples_, state_, config_.estimation);
   return result.samples == 0 ? std::nullopt : std::optional(result);
 }
 
 CalibratedDescription CalibrationSession::description(const CalibrationOrigin& origin) const {
   const ParameterSpace& space = model_.space();
-  const Actuator calibrated = space.actuatorAt(state_.belief.x);
+  const Actuator calibrated = actuator();
   const std::vector<ParameterEstimate> values = parameters();
   const ParameterStddevs identified = identifiedStddevs(space, state_);
   const auto moved = [this](Eigen::Index first, Eigen::Index count) {
@@ -254,7 +291,11 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
     if (moved(at + 1, 2)) {
       result.actuator.joints[k].axis = calibrated.joints[k].axis;
     }
-    result.stddevs.joints[k] = {stddev(at), stddev(at + 1), stddev(at + 2)};
+    result.actuator.joints[k].correction = calibrated.joints[k].correction;
+    result.stddevs.joints[k] = identified.joints[k];
+    result.stddevs.joints[k].offset = stddev(at);
+    result.stddevs.joints[k].axis_u = stddev(at + 1);
+    result.stddevs.joints[k].axis_v = stddev(at + 2);
   }
   result.stddevs.poles.resize(space.poles());
   for (std::size_t i = 0; i < space.poles(); ++i) {
@@ -275,6 +316,8 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
     result.stddevs.coils[j] = {stddev(at), stddev(at + 1), identified.coils[j].gain};
   }
   result.actuator.torque_curve = calibrated.torque_curve;
+  result.actuator.unbalance = calibrated.unbalance;
+  result.actuator.orientation_map = calibrated.orientation_map;
   result.calibration = record(origin);
   return result;
 }
@@ -308,6 +351,13 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
       const ParameterEstimate& effect = estimates[static_cast<std::size_t>(p)];
       record.effects.push_back({effect.name, effect.value, effect.stddev});
     }
+  }
+  if (std::find(state_.identified.begin(), state_.identified.end(), true) !=
+      state_.identified.end()) {
+    record.covariance = covarianceRecord(space, state_.belief);
+  }
+  if (orientationMap().map) {
+    record.orientation_map = orientationMap().record;
   }
   if (const auto validation = this->validation()) {
     record.validation = validationRecord(*validation);

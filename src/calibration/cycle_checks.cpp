@@ -45,7 +45,7 @@ std::vector<bool> pullingPoles(const CalibrationModel& model,
   const Actuator& nominal = model.space().nominal();
   const TorqueGeometry geometry = torqueGeometry(nominal);
   const Eigen::Matrix3d R_rotor_stator =
-      rotorOrientation(jointGeometry(nominal.joints), sample.joint_position).transpose();
+      rotorOrientation(jointGeometry(nominal), sample.joint_position).transpose();
   std::vector<bool> pulling(nominal.poles.size(), false);
   for (const Excitation& excitation : excitations) {
     const Eigen::Vector3d coil =

@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,6 +44,36 @@ GainGradients gainGradients(const ParameterSpace& space, const Eigen::VectorXd& 
   return gradients;
 }
 
+/// Standard deviations of the corrections of readings: each entry has one coordinate, and is linear
+/// in it.
+void enterCorrections(const ParameterSpace& space,
+                      const CalibrationState& state,
+                      std::array<JointStddev, kJoints>& stddevs) {
+  const Actuator at = space.actuatorAt(state.belief.x);
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    if (!state.identified[static_cast<std::size_t>(p)]) {
+      continue;
+    }
+    const Actuator moved =
+        space.actuatorAt(state.belief.x + Eigen::VectorXd::Unit(space.size(), p));
+    const double stddev = std::sqrt(std::max(0.0, state.belief.covariance(p, p)));
+    const auto enter = [&](const auto& before, const auto& after, auto& entries) {
+      for (std::size_t n = 0; n < before.size(); ++n) {
+        if (after[n] != before[n]) {
+          entries = entries ? entries : std::decay_t<decltype(before)>{};
+          (*entries)[n] = std::abs(after[n] - before[n]) * stddev;
+        }
+      }
+    };
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      const ReadingCorrection& before = at.joints[k].correction;
+      const ReadingCorrection& after = moved.joints[k].correction;
+      enter(before.linear, after.linear, stddevs[k].linear);
+      enter(before.harmonics, after.harmonics, stddevs[k].harmonics);
+    }
+  }
+}
+
 std::optional<double> gainStddev(const CalibrationState& state, const Gradient& gradient) {
   const bool is_identified =
       !gradient.empty() && std::all_of(gradient.begin(), gradient.end(), [&](const auto& term) {
@@ -73,6 +105,7 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
     const Eigen::Index joint = space.joint(k);
     result.joints[k] = {at(joint), at(joint + 1), at(joint + 2)};
   }
+  enterCorrections(space, state, result.joints);
   for (std::size_t i = 0; i < space.poles(); ++i) {
     const Eigen::Index pole = space.pole(i);
     result.poles.push_back({at(pole), at(pole + 1), gainStddev(state, gains.poles[i])});

@@ -67,7 +67,7 @@ std::optional<Eigen::Vector3d> bestPose(const CalibrationModel& model,
   constexpr int kSpinSteps = 120;
   const Actuator actuator = model.space().actuatorAt(x);
   const TorqueGeometry geometry = torqueGeometry(actuator);
-  const JointGeometry joints = jointGeometry(actuator.joints);
+  const JointGeometry joints = jointGeometry(actuator);
   const double tilt = actuator.workspace.tilt_limit;
   for (const double part_of_limit : {0.0, 0.5, 1.0}) {
     double best_information = 0.0;

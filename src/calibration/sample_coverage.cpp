@@ -14,7 +14,7 @@ class Counter {
   Counter(const CalibrationModel& model, const Eigen::VectorXd& x, double threshold)
       : model_(model), threshold_(threshold) {
     const Actuator actuator = model.space().actuatorAt(x);
-    joints_ = jointGeometry(actuator.joints);
+    joints_ = jointGeometry(actuator);
     geometry_ = torqueGeometry(actuator);
     coverage_.poles.resize(model.space().poles(), 0);
     coverage_.coils.resize(model.space().coils(), 0);

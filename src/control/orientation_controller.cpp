@@ -70,8 +70,9 @@ OrientationController::OrientationController(const Actuator& design,
                                              const OrientationControllerOptions& options)
     : parameters_(withTorqueModel(design)),
       options_(options),
+      configured_unbalance_(options.rotor.unbalance),
       curve_(*design.torque_curve),
-      joints_(jointGeometry(design.joints)),
+      joints_(jointGeometry(design)),
       torques_(torqueGeometry(design)),
       reference_(options.reference),
       currents_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(design.coils.size()))) {
@@ -92,7 +93,11 @@ void OrientationController::setParameters(const Actuator& parameters) {
   }
   parameters_to_come_.reset();
   parameters_ = parameters;
-  joints_ = jointGeometry(parameters.joints);
+  curve_ = TorqueCurve(*parameters.torque_curve);
+  joints_ = jointGeometry(parameters);
+  // What was identified stands for what was configured.
+  options_.rotor.unbalance =
+      parameters.unbalance.isZero(0.0) ? configured_unbalance_ : parameters.unbalance;
   torques_ = torqueGeometry(parameters);
   has_parameters_ = true;
   if (state_ == ControlState::kActive) {

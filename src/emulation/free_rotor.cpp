@@ -21,7 +21,7 @@ FreeRotor::FreeRotor(const Actuator& truth,
                      const RigidRotor& rotor,
                      double stop_tilt,
                      const RotorFriction& friction)
-    : joints_(jointGeometry(withTorqueModel(truth).joints)),
+    : joints_(jointGeometry(withTorqueModel(truth))),
       torques_(torqueGeometry(truth)),
       curve_(*truth.torque_curve),
       rotor_(rotor),

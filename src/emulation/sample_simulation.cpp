@@ -16,9 +16,7 @@ namespace {
 class SampleSource {
  public:
   SampleSource(const Actuator& truth, const SampleNoise& noise, std::uint64_t seed)
-      : joints_(jointGeometry(truth.joints)),
-        noise_(noise),
-        random_(seed, RandomPurpose::kSampleNoise) {
+      : joints_(jointGeometry(truth)), noise_(noise), random_(seed, RandomPurpose::kSampleNoise) {
     if (truth.hasTorqueModel()) {
       curve_.emplace(*truth.torque_curve);
       geometry_ = torqueGeometry(truth);

@@ -7,7 +7,7 @@
 namespace sac {
 
 TrueActuator::TrueActuator(const Actuator& truth, const RotorLoad& load)
-    : joints_(jointGeometry(truth.joints)), torques_(torqueGeometry(truth)), load_(load) {
+    : joints_(jointGeometry(truth)), torques_(torqueGeometry(truth)), load_(load) {
   validate(truth);
   if (truth.hasTorqueModel()) {
     curve_.emplace(*truth.torque_curve);

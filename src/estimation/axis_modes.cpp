@@ -114,7 +114,7 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
     const Eigen::Index at = space_.coil(j);
     coils_stator_.emplace_back(space_.coilChart(j).axis(x[at], x[at + 1]));
   }
-  const JointGeometry joints = jointGeometry(space_.actuatorAt(x).joints);
+  const JointGeometry joints = jointGeometry(space_.actuatorAt(x));
   const std::vector<Eigen::Vector3d> residuals = observations.residuals(x);
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     if (problem.observations[n].quantity != Quantity::kTorque) {

@@ -14,7 +14,8 @@
 namespace sac {
 namespace {
 
-/// Joint axes and offsets at the coordinates, with ∂axis/∂(u, v) of each.
+/// Joint axes and offsets at the coordinates, with ∂axis/∂(u, v) of each. Corrections of readings
+/// and the orientation map act apart from them, on what the sensors read.
 struct JointPoint {
   JointGeometry geometry;
   std::array<Eigen::Matrix<double, 3, 2>, kJoints> d_axis;
@@ -31,6 +32,12 @@ JointPoint jointPoint(const ParameterSpace& space, const Eigen::VectorXd& x) {
     point.geometry.offsets[column] = space.nominal().joints[k].offset + x[at];
   }
   return point;
+}
+
+/// What turns the rotor beside the joints of the nominal actuator.
+Eigen::Matrix3d nominalTurn(const Actuator& nominal, const Eigen::Vector3d& reading) {
+  return nominal.orientation_map ? rotationExp(nominal.orientation_map->mean(reading))
+                                 : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
 }
 
 /// left · ∂ξ/∂(offset, u, v of each joint) into the columns of the joints.
@@ -165,7 +172,8 @@ std::vector<Excitation> excitedCoils(const Sample& sample, double threshold) {
   return excitations;
 }
 
-CalibrationModel::CalibrationModel(ParameterSpace space) : space_(std::move(space)) {
+CalibrationModel::CalibrationModel(ParameterSpace space)
+    : space_(std::move(space)), nominal_joints_(jointGeometry(space_.nominal())) {
   if (space_.nominal().hasTorqueModel()) {
     curve_.emplace(*space_.nominal().torque_curve);
   }
@@ -181,17 +189,19 @@ Eigen::Vector3d CalibrationModel::orientationResidual(const Sample& sample,
   const Eigen::Matrix3Xd d_marker = effects.markerColumns();
   const Eigen::Vector3d tracker = d_tracker * effects.values();
   const Eigen::Vector3d marker = d_marker * effects.values();
-  const Eigen::Matrix3d R_tracker = rotationExp(tracker);
+  const Eigen::Matrix3d R_left =
+      rotationExp(tracker) * nominalTurn(space_.nominal(), sample.joint_position);
   const JointLinearization linear = linearizeRotorOrientation(
-      point.geometry, sample.joint_position + d_reading * effects.values());
-  const Eigen::Matrix3d R_predicted = R_tracker * linear.R_stator_rotor * rotationExp(marker);
+      point.geometry,
+      correctedReading(nominal_joints_, sample.joint_position) + d_reading * effects.values());
+  const Eigen::Matrix3d R_predicted = R_left * linear.R_stator_rotor * rotationExp(marker);
   Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * R_predicted.transpose());
   if (jacobian == nullptr) {
     return y;
   }
   // R → e^{ξ̂}R turns e^{ŷ} into e^{ŷ}e^{−ξ̂}, and J_r(y) = J_l(−y).
   const Eigen::Matrix3d d_stator = -leftJacobianInverse(-y);
-  const Eigen::Matrix3d d_rotation = d_stator * R_tracker;
+  const Eigen::Matrix3d d_rotation = d_stator * R_left;
   jacobian->setZero(3, space_.size());
   writeJointJacobian(point, linear, d_rotation, *jacobian);
   if (!effects.empty()) {
@@ -210,18 +220,21 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
   const JointPoint point = jointPoint(space_, x);
   const EffectsAt effects(space_, x);
   const Eigen::Matrix3Xd d_reading = effects.readingColumns(sample.joint_position);
-  const Eigen::Vector3d q = sample.joint_position + d_reading * effects.values();
+  const Eigen::Vector3d q =
+      correctedReading(nominal_joints_, sample.joint_position) + d_reading * effects.values();
+  const Eigen::Matrix3d R_turn = nominalTurn(space_.nominal(), sample.joint_position);
   const std::optional<TorqueCurve> changed_curve = effects.changedCurve();
   const TorqueCurve& curve = changed_curve ? *changed_curve : *curve_;
   if (jacobian == nullptr) {
-    const Eigen::Matrix3d R_rotor_stator = rotorOrientation(point.geometry, q).transpose();
+    const Eigen::Matrix3d R_rotor_stator =
+        (R_turn * rotorOrientation(point.geometry, q)).transpose();
     const CoilTerms terms = coilTerms(space_, excitations, x, R_rotor_stator);
     return torqueInRotor(sample.torque, effects, nullptr) -
            pairTorques(space_, curve, x, effects, terms) -
            effects.loadColumns(R_rotor_stator) * effects.values();
   }
   const JointLinearization linear = linearizeRotorOrientation(point.geometry, q);
-  const Eigen::Matrix3d R_rotor_stator = linear.R_stator_rotor.transpose();
+  const Eigen::Matrix3d R_rotor_stator = (R_turn * linear.R_stator_rotor).transpose();
   CoilTerms terms = coilTerms(space_, excitations, x, R_rotor_stator);
   const Eigen::Matrix3Xd d_load = effects.loadColumns(R_rotor_stator);
   Eigen::Matrix3Xd d_effects = -d_load;
@@ -237,6 +250,7 @@ Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
     d_rotation += d_stator * skew(term.coil_stator);
     jacobian->middleCols<2>(space_.coil(term.coil)) = d_stator * term.d_axis;
   }
+  d_rotation = (d_rotation * R_turn).eval();
   writeJointJacobian(point, linear, d_rotation, *jacobian);
   if (!effects.empty()) {
     effects.write(d_effects + offsetColumns(linear, d_rotation) * d_reading, *jacobian);

@@ -5,6 +5,7 @@
 
 #include "effects/registered_effects.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -31,6 +32,12 @@ EffectKind kindOf() {
 template <typename... Effects>
 std::vector<EffectKind> kindsOf(const std::tuple<Effects...>* /*list*/) {
   return {kindOf<Effects>()...};
+}
+
+/// Whether the description states an uncertainty of what the effect changes.
+bool isStatedBy(const Actuator& nominal, const EffectKind& kind) {
+  return std::string(kind.name) == effects::TorqueCurveChange::kName && nominal.torque_curve &&
+         relativeTableStddev(nominal.torque_curve->table) > 0.0;
 }
 
 const std::vector<EffectKind>& kinds() {
@@ -65,6 +72,11 @@ std::string describe(const EffectSelection& selection) {
   std::string names;
   for (const std::string& name : modelledEffects(selection)) {
     names += (names.empty() ? "" : ", ") + name;
+    if (name == effects::EncoderHarmonics::kName && selection.harmonicJoints().size() < kJoints) {
+      for (const std::size_t joint : selection.harmonicJoints()) {
+        names += " joint_" + std::to_string(numberOf(joint));
+      }
+    }
   }
   return names.empty() ? "none" : names;
 }
@@ -82,7 +94,7 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
     require(entry.first);
   }
   for (const EffectKind& kind : kinds()) {
-    if (!selection.has(kind.name)) {
+    if (!selection.has(kind.name) && !isStatedBy(nominal, kind)) {
       continue;
     }
     if (kind.acts_on == LaboratoryEffect::ActsOn::kTorques && !nominal.hasTorqueModel()) {
@@ -92,12 +104,14 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
       throw ConfigError(std::string("effects.") + kind.name +
                         ": the description has no poles, coils or torque curve.");
     }
+    const std::shared_ptr<const LaboratoryEffect> effect = kind.make(nominal, selection);
+    const double stated = selection.stddev(kind.name);
     effects_.push_back({kind.name,
                         kind.unit,
                         kind.acts_on,
                         size_,
-                        kind.make(nominal, selection),
-                        selection.stddev(kind.name)});
+                        effect,
+                        stated > 0.0 ? stated : effect->priorStddev()});
     size_ += effects_.back().size();
   }
 }

@@ -33,7 +33,7 @@ Eigen::Matrix<double, 3, 9> rotationJacobian(const ParameterSpace& space,
 Eigen::Matrix<double, 9, 3> jointRotations(const ParameterSpace& space, const Eigen::VectorXd& x) {
   constexpr double kAngle = 0.7;  // [rad]
   constexpr Eigen::Index kCorners = 8;
-  const JointGeometry joints = jointGeometry(space.actuatorAt(x).joints);
+  const JointGeometry joints = jointGeometry(space.actuatorAt(x));
   // Not of fixed size: the compiler would unroll the decomposition for half a minute.
   Eigen::MatrixXd jacobian(3 * kCorners, 9);
   Eigen::MatrixXd rotation(3 * kCorners, 3);

@@ -194,7 +194,7 @@ WorkspaceUncertainty workspaceUncertainty(const CalibrationModel& model,
                                           int poses) {
   const ParameterSpace& space = model.space();
   const double tilt = space.nominal().workspace.tilt_limit;
-  const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x).joints);
+  const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x));
   PoseUncertainty uncertainty(model, belief);
   std::vector<double> orientation_errors;
   std::vector<double> torque_errors;
@@ -216,7 +216,7 @@ WorkspaceMap workspaceMap(const CalibrationModel& model,
                           int spins) {
   const ParameterSpace& space = model.space();
   const double limit = space.nominal().workspace.tilt_limit;
-  const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x).joints);
+  const JointGeometry joints = jointGeometry(space.actuatorAt(belief.x));
   PoseUncertainty uncertainty(model, belief);
   WorkspaceMap map;
   map.tilt = Eigen::VectorXd::LinSpaced(tilts, -limit, limit);

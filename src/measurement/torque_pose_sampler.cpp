@@ -34,7 +34,7 @@ Eigen::Vector3d randomPose(double tilt, NoiseSource& noise) {
 TorquePoseSampler::TorquePoseSampler(const Actuator& actuator, double tilt)
     : curve_(*actuator.torque_curve),
       geometry_(torqueGeometry(actuator)),
-      joints_(jointGeometry(actuator.joints)),
+      joints_(jointGeometry(actuator)),
       tilt_(tilt) {}
 
 Eigen::Vector3d TorquePoseSampler::draw(std::size_t coil,

@@ -81,7 +81,7 @@ std::vector<PoseCandidate> drawPoses(const PlanningProblem& problem,
                                      const PosePlanOptions& options) {
   const Actuator actuator = problem.model->space().actuatorAt(problem.state.belief.x);
   const double tilt = options.tilt_limit.value_or(actuator.workspace.tilt_limit);
-  const JointGeometry joints = jointGeometry(actuator.joints);
+  const JointGeometry joints = jointGeometry(actuator);
   const std::vector<std::size_t> coils = usableCoils(problem);
   std::optional<TorquePoseSampler> sampler;
   if (!coils.empty()) {

@@ -58,7 +58,7 @@ LiveSession::LiveSession(const CalibratedDescription& start,
                          ParameterSpace(start.actuator, config.effects))) {}
 
 Actuator LiveSession::actuator() const {
-  return session_.model().space().actuatorAt(session_.state().belief.x);
+  return session_.actuator();
 }
 
 Sample LiveSession::addSample(const Sample& sample, const std::string& date) {

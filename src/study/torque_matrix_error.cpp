@@ -16,7 +16,7 @@ namespace {
 class TorqueMatrix {
  public:
   explicit TorqueMatrix(const Actuator& actuator)
-      : joints_(jointGeometry(actuator.joints)),
+      : joints_(jointGeometry(actuator)),
         torques_(torqueGeometry(actuator)),
         curve_(*actuator.torque_curve) {}
 

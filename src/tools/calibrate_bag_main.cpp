@@ -205,6 +205,10 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
     std::cout << line << "\n";
   }
   std::cout << openParagraph(session);
+  const std::string& map = session.orientationMap().sentence;
+  if (!map.empty()) {
+    std::cout << map << "\n";
+  }
 }
 
 /// The last word.

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +140,120 @@ TEST(TorqueCurve, RefusesAnglesOutOfOrder) {
   description = paperCurve();
   description.coefficients[2] = std::nan("");
   EXPECT_THROW(TorqueCurve{description}, ConfigError);
+}
+
+/// So many points of the paper's polynomial, in degrees, to the end of its support.
+TorqueCurveDescription tableOfThePaper(int points) {
+  TorqueCurveDescription curve;
+  for (int n = 0; n < points; ++n) {
+    const double degrees = 0.5 + 29.0 * n / (points - 1);
+    curve.table.angles.push_back(degrees);
+    curve.table.torques.push_back(paperPolynomial(degrees));
+  }
+  curve.blend_start = paperCurve().blend_start;
+  curve.support_begin = paperCurve().support_begin;
+  curve.support_end = paperCurve().support_end;
+  return curve;
+}
+
+/// A spline meets a curve within its points, and nearly so at their ends.
+void expectSameCurve(const TorqueCurve& table, const TorqueCurve& curve) {
+  for (double degrees = 0.0; degrees <= 33.0; degrees += 0.1) {
+    const double psi = degrees * kDegree;
+    EXPECT_NEAR(table.value(psi), curve.value(psi), 1e-4) << degrees;
+    if (degrees > 4.0 && degrees < 26.0) {
+      EXPECT_NEAR(table.value(psi), curve.value(psi), 1e-5) << degrees;
+      EXPECT_NEAR(table.derivative(psi), curve.derivative(psi), 1e-3) << degrees;
+    }
+  }
+}
+
+TEST(TorqueTable, OfFortyPointsIsThePolynomialThatItWasMadeFrom) {
+  expectSameCurve(TorqueCurve(tableOfThePaper(40)), TorqueCurve(paperCurve()));
+}
+
+// Points beyond the blends lie on another curve, which bends where it begins.
+TEST(TorqueTable, OfTheBlendedCurveIsThatCurve) {
+  TorqueCurveDescription table = tableOfThePaper(40);
+  const TorqueCurve blended(paperCurve());
+  for (std::size_t n = 0; n < table.table.angles.size(); ++n) {
+    table.table.angles[n] = 32.0 * static_cast<double>(n) / 39.0;
+    table.table.torques[n] = blended.value(table.table.angles[n] * kDegree);
+  }
+  expectSameCurve(TorqueCurve(table), blended);
+}
+
+TEST(TorqueTable, GoesThroughItsPointsWithTwoContinuousDerivatives) {
+  TorqueCurveDescription description;
+  description.table.angles = {0.0, 3.0, 7.0, 10.0, 16.0, 22.0, 30.0};
+  description.table.torques = {0.0, 0.13, 0.26, 0.28, 0.25, 0.16, 0.0};
+  completeFromTable(description);
+  EXPECT_EQ(description.blend_start, 3.0);
+  EXPECT_EQ(description.support_begin, 22.0);
+  EXPECT_EQ(description.support_end, 30.0);
+  const TorqueCurve curve(description);
+  constexpr double kStep = 1e-6;
+  for (std::size_t n = 0; n + 1 < description.table.angles.size(); ++n) {
+    const double psi = description.table.angles[n] * kDegree;
+    EXPECT_NEAR(curve.value(psi), description.table.torques[n], 1e-14);
+  }
+  for (const double degrees : {3.0, 7.0, 10.0, 16.0}) {
+    const double psi = degrees * kDegree;
+    const double below = (curve.derivative(psi) - curve.derivative(psi - kStep)) / kStep;
+    const double above = (curve.derivative(psi + kStep) - curve.derivative(psi)) / kStep;
+    EXPECT_NEAR(below, above, 1e-3) << degrees;  // the third derivative jumps
+  }
+  EXPECT_NEAR(curve.derivative(30.0 * kDegree - 1e-9), 0.0, 1e-6);
+}
+
+TEST(TorqueTable, HasTheSafeFormOfItsDerivative) {
+  const TorqueCurve curve(tableOfThePaper(12));
+  for (const double degrees : {0.01, 1.0, 5.0, 13.7, 29.0}) {
+    const double psi = degrees * kDegree;
+    EXPECT_NEAR(curve.safe(std::cos(psi), std::sin(psi)).h, curve.value(psi) / std::sin(psi), 1e-9);
+    const double step = 1e-4 * psi;
+    const auto h = [&](double at) { return curve.safe(std::cos(at), std::sin(at)).h; };
+    const double numeric =
+        (h(psi + step) - h(psi - step)) / (std::cos(psi + step) - std::cos(psi - step));
+    const double dh = curve.safe(std::cos(psi), std::sin(psi)).dh;
+    EXPECT_NEAR(dh, numeric, 1e-4 * std::abs(dh) + 1e-5) << degrees;
+  }
+}
+
+TEST(TorqueTable, EndsBeyondItsLastPointWhereThatIsNotZero) {
+  TorqueCurveDescription description;
+  description.table.angles = {0.0, 7.0, 14.0, 21.0, 28.0};
+  description.table.torques = {0.0, 0.25, 0.26, 0.17, 0.06};
+  completeFromTable(description);
+  EXPECT_EQ(description.support_begin, 28.0);
+  EXPECT_NEAR(description.support_end, 32.0, 1e-12);
+}
+
+TEST(TorqueTable, StatesItsUncertaintyOverItsPeak) {
+  TorqueTable table{{1.0, 2.0}, {0.2, -0.1}, {0.003, 0.004}};
+  EXPECT_NEAR(relativeTableStddev(table), std::sqrt(12.5) * 1e-3 / 0.2, 1e-15);
+  table.stddevs.clear();
+  EXPECT_EQ(relativeTableStddev(table), 0.0);
+}
+
+TEST(TorqueTable, RefusesWhatIsNoTable) {
+  const auto refused = [](const std::function<void(TorqueCurveDescription&)>& spoil) {
+    TorqueCurveDescription curve = tableOfThePaper(10);
+    validate(curve);
+    spoil(curve);
+    EXPECT_THROW(validate(curve), ConfigError);
+  };
+  refused([](auto& curve) { curve.table.torques.pop_back(); });
+  refused([](auto& curve) { curve.table.stddevs = {1.0}; });
+  refused([](auto& curve) { curve.table.angles[4] = curve.table.angles[3]; });
+  refused([](auto& curve) { curve.table.torques[4] = std::nan(""); });
+  refused([](auto& curve) { curve.table.stddevs.assign(10, -1.0); });
+  refused([](auto& curve) { curve.blend_start = 0.4; });
+  refused([](auto& curve) { curve.support_begin = 29.6; });
+  refused([](auto& curve) {
+    curve.table.angles.resize(3);
+    curve.table.torques.resize(3);
+  });
 }
 
 }  // namespace

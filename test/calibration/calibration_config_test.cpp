@@ -82,6 +82,7 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
   for (const std::string& effect : effectNames()) {
     config.effects[effect] = true;
   }
+  config.orientation_map = MapUse::kNever;
   config.hold_out_every = 5;
   config.wanted = {1e-3, 2e-3};
 
@@ -95,6 +96,36 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
     const bool is_section = line.front() != ' ';
     EXPECT_EQ(line == other, is_section) << line;
   }
+}
+
+TEST(CalibrationConfig, ChoosesTheJointsWhoseEncodersHaveHarmonics) {
+  const auto harmonics = [](const std::string& value) {
+    return parseCalibrationConfig("effects: {encoder_harmonics: " + value + "}", "c.yaml").effects;
+  };
+  using Joints = std::vector<std::size_t>;
+  EXPECT_EQ(harmonics("true").harmonicJoints(), (Joints{0, 1, 2}));
+  EXPECT_FALSE(harmonics("false")["encoder_harmonics"]);
+  EXPECT_FALSE(harmonics("[]")["encoder_harmonics"]);
+  const CalibrationConfig config =
+      parseCalibrationConfig("effects: {encoder_harmonics: [3, 1]}", "c.yaml");
+  EXPECT_TRUE(config.effects["encoder_harmonics"]);
+  EXPECT_EQ(config.effects.harmonicJoints(), (Joints{0, 2}));
+  EXPECT_EQ(describe(config.effects), "encoder_harmonics joint_1 joint_3");
+  const CalibrationConfig back = parseCalibrationConfig(renderCalibrationConfig(config), "r.yaml");
+  EXPECT_EQ(back.effects.harmonicJoints(), (Joints{0, 2}));
+  for (const char* wrong : {"[0]", "[4]", "[1, 1]", "[1.5]", "[joint_1]"}) {
+    EXPECT_THROW(harmonics(wrong), ConfigError) << wrong;
+  }
+}
+
+TEST(CalibrationConfig, UsesOrientationMapsAsToldAndOfItselfWhereTheyPredict) {
+  const auto use = [](const std::string& text) {
+    return parseCalibrationConfig(text, "c.yaml").orientation_map;
+  };
+  EXPECT_EQ(CalibrationConfig{}.orientation_map, MapUse::kAuto);
+  EXPECT_EQ(use("orientation_map: {use: always}"), MapUse::kAlways);
+  EXPECT_EQ(use("orientation_map: {use: never}"), MapUse::kNever);
+  EXPECT_THROW(use("orientation_map: {use: perhaps}"), ConfigError);
 }
 
 TEST(CalibrationConfig, WhatIsNotStatedOfRegistrationsStaysUnstated) {

@@ -102,6 +102,30 @@ TEST_F(OrientationControllerTest, HoldsTheRotorWhereItWasEnabled) {
   EXPECT_LT(errorTo(held), 1e-4);
 }
 
+TEST_F(OrientationControllerTest, UsesEverythingThatWasIdentified) {
+  options_.rotor.unbalance.setZero();
+  restart();
+  Actuator identified = truth_;
+  identified.unbalance = loadedRotor().unbalance;
+  start(identified);
+  const Eigen::Matrix3d target = rotationExp({0.3, -0.2, 0.8});
+  controller_->setTarget(now_, target);
+  run(4.0);
+  EXPECT_LT(errorTo(target), 1e-4);  // 0.01 and more without the weight of the rotor
+
+  // The emulated rotor has no map: told of one, the controller turns it away.
+  OrientationMapDescription map;
+  map.amplitude = {1e-2, 1e-2, 1e-2};
+  map.noise = {1e-5, 1e-5, 1e-5};
+  map.readings = {rotor_.position()};
+  map.rotations = {{0.01, 0.0, 0.0}};
+  identified.orientation_map = std::make_shared<OrientationMap>(map);
+  controller_->setParameters(identified);
+  controller_->setTarget(now_, target);
+  run(4.0);
+  EXPECT_GT(errorTo(target), 5e-3);
+}
+
 TEST_F(OrientationControllerTest, NewParametersMakeNoJump) {
   start(scenarios::paperNominal());
   const Eigen::Matrix3d target = rotationExp({0.2, 0.2, 0.5});

@@ -155,8 +155,10 @@ TEST(LaboratoryEffects, StrengthScaleOfWarmMagnets) {
 }
 
 TEST(LaboratoryEffects, EncoderHarmonics) {
+  EffectSelection of_the_spin = only({"encoder_harmonics"});
+  of_the_spin.setHarmonicJoints({2});
   expectModelledAtTheBound(
-      only({"encoder_harmonics"}),
+      of_the_spin,
       [](const Actuator& geometry, scenarios::Generator& generator, std::vector<double>& values) {
         Laboratory laboratory;
         laboratory.harmonics = {0.8e-3, -0.6e-3, 0.3e-3, 0.2e-3};

@@ -152,7 +152,12 @@ TEST(LaboratoryEffects, NeedATorqueModelWhereTheyActOnTorque) {
   const std::string message =
       errorMessage<ConfigError>([&] { EffectLayout(joint_only, only({"torque_bias"})); });
   EXPECT_NE(message.find("effects.torque_bias"), std::string::npos) << message;
-  EXPECT_EQ(EffectLayout(joint_only, only({"encoder_harmonics"})).size(), 4);
+  EXPECT_EQ(EffectLayout(joint_only, only({"encoder_harmonics"})).size(), 12);
+  EffectSelection chosen = only({"encoder_harmonics"});
+  chosen.setHarmonicJoints({0, 2});
+  const EffectLayout layout(joint_only, chosen);
+  EXPECT_EQ(layout.size(), 8);
+  EXPECT_EQ(layout.name(4), "joint_3/cos_1");
 }
 
 TEST(LaboratoryEffects, OneThatIsUnknownIsRefusedByName) {

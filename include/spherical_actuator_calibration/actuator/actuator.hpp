@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/orientation_map.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 
 namespace sac {
@@ -15,11 +17,19 @@ namespace sac {
 /// Number of joints of the spherical joint.
 inline constexpr std::size_t kJoints = 3;
 
+/// What the angle of one joint has beside its reading: linear·(q₁, q₂, q₃) + a₁ cos q + b₁ sin q +
+/// a₂ cos 2q + b₂ sin 2q, all readings raw, q its own. Zero unless identified.
+struct ReadingCorrection {
+  std::array<double, kJoints> linear = {};  ///< scale and cross-axis: a row of the matrix [1]
+  std::array<double, 4> harmonics = {};     ///< a₁, b₁, a₂, b₂ [rad]
+};
+
 /// One joint of the product of exponentials (paper (1)).
 struct JointAxis {
   std::string name;                                 ///< joint name in joint_states and URDF
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit axis ω_k
   double offset = 0.0;                              ///< joint offset δq_k [rad]
+  ReadingCorrection correction = {};
 };
 
 /// Axis of one magnet pole in the rotor frame (paper (19)).
@@ -52,6 +62,10 @@ struct Actuator {
   std::vector<CoilAxis> coils;
   std::optional<TorqueCurveDescription> torque_curve;
   Workspace workspace;
+  /// What turns the rotor beside axes, offsets and corrections; null unless identified.
+  std::shared_ptr<const OrientationMap> orientation_map = nullptr;
+  /// Weight of the rotor times its centre of gravity, rotor frame [N·m]; zero unless identified.
+  Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
 
   /// True when poles, coils and torque curve are all present, so that torque can be modelled.
   bool hasTorqueModel() const {

@@ -15,6 +15,10 @@ struct JointStddev {
   std::optional<double> offset;
   std::optional<double> axis_u;  ///< along e_u of AxisChart::aroundAxis(nominal axis)
   std::optional<double> axis_v;  ///< along e_v
+  /// Of the reading's correction, entry by entry [1], [rad]; zero for entries that are not
+  /// modelled.
+  std::optional<std::array<double, kJoints>> linear = std::nullopt;
+  std::optional<std::array<double, 4>> harmonics = std::nullopt;
 };
 
 /// Standard deviations of one pole or coil; absent where not identified.
@@ -57,6 +61,24 @@ struct EffectRecord {
   double stddev = 0.0;  ///< the same
 };
 
+/// What is known of all parameters together, also of those that are not identified: what they leave
+/// uncertain is common to all samples, and in the others.
+struct CovarianceRecord {
+  std::vector<std::string> effects;  ///< laboratory effects that were modelled
+  std::vector<std::string> names;    ///< of parameters, see ParameterEstimate
+  /// Lower triangle, row by row: entry (a, b) in the unit of a times that of b. Azimuths count as
+  /// arcs: times cos(polar).
+  std::vector<double> lower;
+};
+
+/// How an orientation map was chosen: what it is worth where it has not seen the poses.
+struct MapRecord {
+  std::uint32_t regions = 0;  ///< of the workspace, each predicted from the others
+  double axes_rms = 0.0;      ///< of the rotation error without the map, held out [rad]
+  double map_rms = 0.0;       ///< with it [rad]
+  double inside = 0.0;        ///< share of the components within their 95 % intervals
+};
+
 /// Residuals of the samples that were held out.
 struct ValidationRecord {
   std::uint32_t samples = 0;
@@ -76,6 +98,8 @@ struct CalibrationRecord {
   std::optional<ValidationRecord> validation;
   std::optional<double> orientation_uncertainty;  ///< see workspace_uncertainty.hpp [rad]
   std::optional<double> torque_uncertainty;       ///< [N·m/A]
+  std::optional<CovarianceRecord> covariance = std::nullopt;
+  std::optional<MapRecord> orientation_map = std::nullopt;
 };
 
 }  // namespace sac

@@ -33,6 +33,13 @@ class YamlMap {
                        LineNumbers line_numbers = LineNumbers::kTold);
 
   bool has(const std::string& key) const;
+  /// Whether a key is there and holds a map.
+  bool hasMap(const std::string& key) const;
+  /// Whether a key is there and holds a list.
+  bool hasList(const std::string& key) const;
+
+  /// The file, or what stands for it in messages.
+  const std::string& file() const;
 
   /// A finite number within the range. Quoted numbers are strings, hence wrong.
   double number(const std::string& key, const ValueRange& range) const;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/calibration/map_use.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
@@ -43,6 +44,8 @@ struct CalibrationConfig {
   /// `registration` states (stateRegistration()).
   EffectSelection effects;
   RegistrationUncertainty registration;
+  /// Of what axes and corrections leave of the orientations (chooseOrientationMap()).
+  MapUse orientation_map = MapUse::kAuto;
   /// Every so manieth sample is held out for validation; 0: none but those recorded so.
   int hold_out_every = 0;
   WantedAccuracy wanted;

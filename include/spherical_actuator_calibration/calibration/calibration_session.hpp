@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
@@ -81,6 +82,14 @@ class CalibrationSession {
   /// is the nominal value.
   std::vector<ParameterEstimate> parameters() const;
 
+  /// The map of what the last joint or refine cycle left of the orientations, or why there is none
+  /// (CalibrationConfig::orientation_map). Found when it is first asked for, from the samples then
+  /// held, and kept until the parameters change.
+  const OrientationMapChoice& orientationMap() const;
+
+  /// Everything in force: geometry, corrections, torque law and orientation map.
+  Actuator actuator() const;
+
   /// Judges the samples that were held out; nothing when there are none.
   std::optional<HeldOutValidation> validation() const;
 
@@ -89,6 +98,7 @@ class CalibrationSession {
   CalibratedDescription description(const CalibrationOrigin& origin) const;
 
  private:
+  CalibrationModel mappedModel() const;
   CalibrationRecord record(const CalibrationOrigin& origin) const;
 
   CalibratedDescription start_;
@@ -97,6 +107,7 @@ class CalibrationSession {
   CalibrationModel model_;
   CalibrationState state_;
   std::vector<CycleReport> reports_;
+  mutable std::optional<OrientationMapChoice> map_choice_;  ///< nothing: not asked for yet
 };
 
 /// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.

@@ -113,6 +113,7 @@ class OrientationController {
   Actuator parameters_;
   bool has_parameters_ = false;
   OrientationControllerOptions options_;
+  Eigen::Vector3d configured_unbalance_;  ///< of the rotor [N·m]
   TorqueCurve curve_;
   JointGeometry joints_;
   TorqueGeometry torques_;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
@@ -47,6 +48,7 @@ class CalibrationModel {
 
  private:
   ParameterSpace space_;
+  JointGeometry nominal_joints_;
   std::optional<TorqueCurve> curve_;
 };
 

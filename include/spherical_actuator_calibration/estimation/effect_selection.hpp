@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace sac {
 
@@ -20,12 +23,17 @@ class EffectSelection {
   double stddev(const std::string& effect) const;
   void setStddev(const std::string& effect, double stddev) { stddevs_[effect] = stddev; }
 
+  /// Joints whose encoders have harmonics, ascending from 0, where encoder_harmonics is modelled.
+  const std::vector<std::size_t>& harmonicJoints() const { return harmonic_joints_; }
+  void setHarmonicJoints(std::vector<std::size_t> joints) { harmonic_joints_ = std::move(joints); }
+
   const std::map<std::string, bool>& all() const { return modelled_; }
   const std::map<std::string, double>& stddevs() const { return stddevs_; }
 
  private:
   std::map<std::string, bool> modelled_;
   std::map<std::string, double> stddevs_;
+  std::vector<std::size_t> harmonic_joints_ = {0, 1, 2};
 };
 
 }  // namespace sac

@@ -31,6 +31,10 @@ class LaboratoryEffect {
   /// rad: 0.03 is a usual, 0.05 a hardly tolerable size.
   double scale() const { return scale_; }
 
+  /// Standard deviation of each value around zero that is known of every machine; 0: none is. Such
+  /// an effect is estimated as far as the observations tell it, and stays at zero beyond.
+  virtual double priorStddev() const { return 0.0; }
+
   /// Whether observations with these coils excited tell coordinate `n`.
   virtual bool isToldBy(Eigen::Index n, const std::vector<bool>& excited) const;
 
@@ -69,7 +73,8 @@ class LaboratoryEffect {
                               Columns columns) const;
   /// Whether applyTo() changes the torque curve.
   virtual bool changesCurve() const;
-  /// Puts what an actuator description can hold into one: gains and torque curve.
+  /// Puts what belongs to the machine into its description: corrections of readings, unbalance,
+  /// gains, torque curve. What belongs to the laboratory stays out.
   virtual void applyTo(Actuator& actuator, const Values& values) const;
 
  protected:

@@ -24,6 +24,9 @@ class RotorUnbalance final : public LaboratoryEffect {
     // T = ĉ Rᵀ g⁰, and e^{−ξ̂} g⁰ ≈ g⁰ + ĝ⁰ ξ.
     return skew(Eigen::Vector3d(values)) * R_rotor_stator * skew(down());
   }
+  void applyTo(Actuator& actuator, const Values& values) const override {
+    actuator.unbalance += values;
+  }
 
  private:
   /// Direction of gravity, stator frame.

@@ -20,6 +20,12 @@ class TiltCrossAxis final : public LaboratoryEffect {
     columns.row(0).head<2>() = reading.head<2>();
     columns.row(1).tail<2>() = reading.head<2>();
   }
+  void applyTo(Actuator& actuator, const Values& values) const override {
+    for (Eigen::Index n = 0; n < values.size(); ++n) {
+      const auto joint = static_cast<std::size_t>(n / 2);
+      actuator.joints[joint].correction.linear[static_cast<std::size_t>(n % 2)] += values[n];
+    }
+  }
 };
 
 }  // namespace sac::effects

@@ -8,15 +8,22 @@
 namespace sac::effects {
 namespace {
 
+/// As many as the curve has coefficients; a table takes as many as the paper's curve has.
+std::size_t shapeCount(const TorqueCurveDescription& curve) {
+  constexpr std::size_t kOfTable = 7;
+  return curve.table.empty() ? curve.coefficients.size()
+                             : std::max(kOfTable, curve.coefficients.size());
+}
+
 std::vector<std::string> shapeNames(const Actuator& nominal) {
   std::vector<std::string> names;
-  for (std::size_t n = 0; n < nominal.torque_curve->coefficients.size(); ++n) {
+  for (std::size_t n = 0; n < shapeCount(*nominal.torque_curve); ++n) {
     names.push_back("torque_curve/t" + std::to_string(n));
   }
   return names;
 }
 
-/// Largest torque of the polynomial part [N·m/A].
+/// Largest torque below the edge of the support [N·m/A].
 double peakOf(const TorqueCurve& curve) {
   constexpr int kSteps = 200;
   double peak = 0.0;
@@ -28,7 +35,7 @@ double peakOf(const TorqueCurve& curve) {
 
 /// T_{n+1} = 2 t T_n − T_{n−1} with t = 2ψ/ψ_end − 1.
 Eigen::MatrixXd chebyshevShapes(const TorqueCurveDescription& curve) {
-  const auto count = static_cast<Eigen::Index>(curve.coefficients.size());
+  const auto count = static_cast<Eigen::Index>(shapeCount(curve));
   const double slope = 2.0 / curve.support_begin;
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(count, count);
   const auto times_t = [&](Eigen::Index n) {
@@ -49,11 +56,16 @@ Eigen::MatrixXd chebyshevShapes(const TorqueCurveDescription& curve) {
 }  // namespace
 
 TorqueCurveChange::TorqueCurveChange(const Actuator& nominal, const EffectSelection& /*selection*/)
-    : LaboratoryEffect(shapeNames(nominal), 1.0), shapes_(chebyshevShapes(*nominal.torque_curve)) {
+    : LaboratoryEffect(shapeNames(nominal), 1.0),
+      shapes_(chebyshevShapes(*nominal.torque_curve)),
+      // Each shape has a mean square of one half over the range.
+      prior_stddev_(relativeTableStddev(nominal.torque_curve->table) *
+                    std::sqrt(2.0 / static_cast<double>(shapes_.cols()))) {
   for (Eigen::Index n = 0; n < shapes_.cols(); ++n) {
     TorqueCurveDescription single = *nominal.torque_curve;
     const Eigen::VectorXd shape = shapes_.col(n);
     single.coefficients.assign(shape.data(), shape.data() + shape.size());
+    single.table = {};
     basis_.emplace_back(single);
   }
 }
@@ -68,6 +80,7 @@ void TorqueCurveChange::addPairColumns(const Eigen::Vector3d& pole_rotor,
 
 void TorqueCurveChange::applyTo(Actuator& actuator, const Values& values) const {
   std::vector<double>& coefficients = actuator.torque_curve->coefficients;
+  coefficients.resize(static_cast<std::size_t>(shapes_.rows()), 0.0);
   Eigen::Map<Eigen::VectorXd>(coefficients.data(), shapes_.rows()) += shapes_ * values;
 }
 

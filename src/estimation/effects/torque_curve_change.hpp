@@ -17,6 +17,7 @@ class TorqueCurveChange final : public LaboratoryEffect {
 
   TorqueCurveChange(const Actuator& nominal, const EffectSelection& selection);
 
+  double priorStddev() const override { return prior_stddev_; }
   void addPairColumns(const Eigen::Vector3d& pole_rotor,
                       const Eigen::Vector3d& coil_rotor,
                       Columns columns) const override;
@@ -25,6 +26,7 @@ class TorqueCurveChange final : public LaboratoryEffect {
 
  private:
   Eigen::MatrixXd shapes_;          ///< coefficients of a change, a column each, as described
+  double prior_stddev_;             ///< of each shape, by the stated uncertainty of a table
   std::vector<TorqueCurve> basis_;  ///< the same as curves: the torque curve is linear in them
 };
 

@@ -133,8 +133,9 @@ OrientationControllerNode::~OrientationControllerNode() {
 }
 
 void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters& message) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  // Before the control loop has to wait: a large map takes its time.
   const std::optional<Actuator> parameters = actuatorFromRos(message, design_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   if (!parameters) {
     ROS_ERROR_STREAM("The parameters of " << printable(message.actuator)
                                           << " do not fit the description of " << design_.name

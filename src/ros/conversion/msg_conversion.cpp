@@ -35,17 +35,6 @@ msg::SampleResidual residualToRos(const SampleResidual& residual) {
   return message;
 }
 
-/// Angles and strength of a pole or coil.
-template <typename Axis, typename Message>
-void fillAxis(const Axis& axis, const AxisStddev& stddev, Message& message) {
-  message.polar = axis.polar;
-  message.polar_stddev = stddev.polar.value_or(kUnknown);
-  message.azimuth = axis.azimuth;
-  message.azimuth_stddev = stddev.azimuth.value_or(kUnknown);
-  message.gain = axis.gain;
-  message.gain_stddev = stddev.gain.value_or(kUnknown);
-}
-
 void fillGrade(const GradedCalibration& graded, msg::CalibrationReport& message) {
   message.grade = gradeName(graded.grade);
   message.grade_reason = graded.reason;
@@ -190,53 +179,6 @@ msg::CalibrationSample sampleToRos(const Sample& sample) {
   std::copy_n(sample.joint_shared_stddev.data(), kJoints, message.joint_shared_stddev.begin());
   message.torque_shared_stddev = sample.torque_shared_stddev;
   return message;
-}
-
-msg::ActuatorParameters parametersToRos(const Actuator& actuator, const ParameterStddevs& stddevs) {
-  msg::ActuatorParameters message;
-  message.actuator = actuator.name;
-  message.serial = actuator.serial;
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const JointStddev& stddev = stddevs.joints[k];
-    message.joints[k].axis = vectorToRos(actuator.joints[k].axis);
-    message.joints[k].axis_stddev = {stddev.axis_u.value_or(kUnknown),
-                                     stddev.axis_v.value_or(kUnknown)};
-    message.joints[k].offset = actuator.joints[k].offset;
-    message.joints[k].offset_stddev = stddev.offset.value_or(kUnknown);
-  }
-  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
-    msg::PoleAxis& item = message.poles.emplace_back();
-    item.polarity = static_cast<std::int8_t>(actuator.poles[i].polarity);
-    fillAxis(actuator.poles[i], stddevs.poles.empty() ? AxisStddev{} : stddevs.poles.at(i), item);
-  }
-  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
-    msg::CoilAxis& item = message.coils.emplace_back();
-    fillAxis(actuator.coils[j], stddevs.coils.empty() ? AxisStddev{} : stddevs.coils.at(j), item);
-  }
-  return message;
-}
-
-std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
-                                        const Actuator& design) {
-  if (message.poles.size() != design.poles.size() || message.coils.size() != design.coils.size()) {
-    return std::nullopt;
-  }
-  Actuator actuator = design;
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
-    actuator.joints[k].offset = message.joints[k].offset;
-  }
-  for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
-    actuator.poles[i].polar = message.poles[i].polar;
-    actuator.poles[i].azimuth = message.poles[i].azimuth;
-    actuator.poles[i].gain = message.poles[i].gain;
-  }
-  for (std::size_t j = 0; j < actuator.coils.size(); ++j) {
-    actuator.coils[j].polar = message.coils[j].polar;
-    actuator.coils[j].azimuth = message.coils[j].azimuth;
-    actuator.coils[j].gain = message.coils[j].gain;
-  }
-  return actuator;
 }
 
 msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibration& graded) {

@@ -90,7 +90,7 @@ SampledDirection LiveScene::directionOf(const msg::CalibrationSample& sample) co
   } else {
     const Eigen::Vector3d q(sample.joint_position.data());
     direction.direction_stator =
-        rotorOrientation(jointGeometry(joints()), q) * Eigen::Vector3d::UnitZ();
+        rotorOrientation(jointGeometry(scene_.identified), q) * Eigen::Vector3d::UnitZ();
   }
   const auto residual = residuals_.find(sample.id);
   if (residual != residuals_.end()) {

@@ -129,21 +129,24 @@ void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
 }
 
 void VisualizationNode::broadcast(const ros::Time& stamp, const Eigen::Vector3d& q) {
-  const auto& joints = scene_.joints();
-  const auto turned = [&](std::size_t k) {
-    return rotationExp(joints[k].axis.normalized() *
-                       (q[static_cast<Eigen::Index>(k)] + joints[k].offset));
-  };
+  const JointGeometry joints = jointGeometry(scene_.identified());
+  const Eigen::Vector3d angles = correctedReading(joints, q) + joints.offsets;
+  const Eigen::Matrix3d R_stator_joint_1 = rotationExp(joints.axes.col(0).normalized() * angles[0]);
+  const Eigen::Matrix3d R_joint_1_joint_2 =
+      rotationExp(joints.axes.col(1).normalized() * angles[1]);
+  // The last one takes up what the orientation map adds.
+  const Eigen::Matrix3d R_joint_2_rotor =
+      (R_stator_joint_1 * R_joint_1_joint_2).transpose() * rotorOrientation(joints, q);
   const std::string joint_1 = options_.frame_prefix + "joint_1";
   const std::string joint_2 = options_.frame_prefix + "joint_2";
   broadcaster_.sendTransform(std::vector<geometry_msgs::TransformStamped>{
-      rotationTransform(stamp, frames_.stator, joint_1, turned(0)),
-      rotationTransform(stamp, joint_1, joint_2, turned(1)),
-      rotationTransform(stamp, joint_2, frames_.rotor, turned(2)),
+      rotationTransform(stamp, frames_.stator, joint_1, R_stator_joint_1),
+      rotationTransform(stamp, joint_1, joint_2, R_joint_1_joint_2),
+      rotationTransform(stamp, joint_2, frames_.rotor, R_joint_2_rotor),
       rotationTransform(stamp,
                         frames_.stator,
                         frames_.nominal_rotor,
-                        rotorOrientation(jointGeometry(nominal_.joints), q))});
+                        rotorOrientation(jointGeometry(nominal_), q))});
 }
 
 void VisualizationNode::publishMarkers() {

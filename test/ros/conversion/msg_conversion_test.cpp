@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -176,6 +178,68 @@ TEST(MsgConversion, ParametersTellHowWellEachIsIdentified) {
   EXPECT_EQ(message.poles[3].gain_stddev, 5e-4);
   EXPECT_EQ(message.coils[9].azimuth_stddev, 6e-4);
   EXPECT_TRUE(std::isinf(message.coils[9].polar_stddev));
+}
+
+/// The paper's unit with everything that can be identified of one.
+Actuator identifiedActuator() {
+  Actuator actuator = scenarios::paperTruth();
+  actuator.joints[0].correction = {{1e-3, -2e-3, 0.0}, {1e-3, 2e-3, -1e-3, 5e-4}};
+  actuator.joints[2].correction.harmonics[1] = 3e-3;
+  actuator.poles[1].gain = 1.05;
+  actuator.unbalance << 1e-3, -2e-3, 3e-3;
+  actuator.torque_curve->coefficients[1] *= 1.02;
+  OrientationMapDescription map;
+  map.length = {0.3, 0.5, 0.8};
+  map.amplitude = {1e-3, 2e-3, 5e-4};
+  map.noise = {1e-4, 3e-4, 2e-4};
+  for (int n = 0; n < 9; ++n) {
+    map.readings.emplace_back(0.1 * n, -0.05 * n, 0.4 * n);
+    map.rotations.emplace_back(1e-3 * std::cos(n), 2e-3 * std::sin(n), 5e-4);
+  }
+  actuator.orientation_map = std::make_shared<OrientationMap>(map);
+  return actuator;
+}
+
+TEST(MsgConversion, ParametersTellAllThatIsIdentified) {
+  const Actuator actuator = identifiedActuator();
+  const auto back = actuatorFromRos(parametersToRos(actuator), scenarios::paperNominal());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->unbalance, actuator.unbalance);
+  const Eigen::Vector3d q(0.2, -0.1, 1.0);
+  const Eigen::Matrix3d R = rotorOrientation(jointGeometry(actuator), q);
+  EXPECT_LT((rotorOrientation(jointGeometry(*back), q) - R).norm(), 1e-14);
+  EXPECT_GT((rotorOrientation(jointGeometry(scenarios::paperTruth()), q) - R).norm(), 1e-3);
+  const auto torques = [&](const Actuator& from) {
+    return torquePerAmpere(TorqueCurve(*from.torque_curve), torqueGeometry(from), R);
+  };
+  EXPECT_LT((torques(*back) - torques(actuator)).norm(), 1e-14);
+}
+
+TEST(MsgConversion, ParametersTellATableAsItIs) {
+  Actuator actuator = scenarios::paperNominal();
+  TorqueCurveDescription& curve = *actuator.torque_curve;
+  curve.coefficients = {1e-3};
+  curve.table.angles = {0.0, 5.0, 10.0, 20.0, 30.0};
+  curve.table.torques = {0.0, 0.2, 0.28, 0.2, 0.0};
+  const auto back = actuatorFromRos(parametersToRos(actuator), scenarios::paperNominal());
+  ASSERT_TRUE(back);
+  for (double psi = 0.0; psi < 0.6; psi += 0.01) {
+    EXPECT_EQ(TorqueCurve(*back->torque_curve).value(psi), TorqueCurve(curve).value(psi));
+  }
+}
+
+TEST(MsgConversion, ParametersThatAreNoneAreRefused) {
+  const msg::ActuatorParameters sound = parametersToRos(identifiedActuator());
+  ASSERT_TRUE(actuatorFromRos(sound, scenarios::paperNominal()));
+  msg::ActuatorParameters message = sound;
+  message.orientation_map.noise[1] = 0.0;
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.orientation_map.rotations.pop_back();
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.torque_curve.support[1] = 1.0;
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
 }
 
 TEST(MsgConversion, NothingLooksIdentifiedThatIsNot) {

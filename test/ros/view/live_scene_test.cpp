@@ -51,7 +51,7 @@ TEST(LiveScene, TakesTheParametersInForce) {
   LiveScene scene = paperScene();
   const Actuator truth = scenarios::paperTruth();
   scene.receive(parametersOf(truth, "identified"));
-  EXPECT_EQ(scene.joints()[1].offset, truth.joints[1].offset);
+  EXPECT_EQ(scene.identified().joints[1].offset, truth.joints[1].offset);
   EXPECT_EQ(scene.scene().identified.poles[3].azimuth, truth.poles[3].azimuth);
   EXPECT_EQ(scene.scene().nominal.poles[3].azimuth, scenarios::paperNominal().poles[3].azimuth);
 }
@@ -61,7 +61,7 @@ TEST(LiveScene, AnotherDesignChangesNothing) {
   Actuator other = scenarios::paperTruth();
   other.coils.pop_back();
   scene.receive(parametersOf(other, "identified"));
-  EXPECT_EQ(scene.joints()[1].offset, 0.0);
+  EXPECT_EQ(scene.identified().joints[1].offset, 0.0);
   msg::CoilCurrents currents;
   currents.current.assign(23, 1.0);
   scene.receive(currents);

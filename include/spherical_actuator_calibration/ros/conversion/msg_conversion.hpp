@@ -76,13 +76,14 @@ Sample sampleFromRos(const msg::CalibrationSample& message);
 /// frame_id stays empty.
 msg::CalibrationSample sampleToRos(const Sample& sample);
 
-/// Name, serial number and geometry of an actuator; header, revision and source stay empty. What
-/// has no standard deviation has an infinite one, as everything has by default.
+/// Name, serial number and all parameters of an actuator; header, revision and source stay empty.
+/// What has no standard deviation has an infinite one, as everything has by default.
 msg::ActuatorParameters parametersToRos(const Actuator& actuator,
                                         const ParameterStddevs& stddevs = {});
 
-/// `design` with the identified geometry and gains of a message; nothing when the message has other
-/// numbers of poles or coils.
+/// `design` with everything identified that a message holds: geometry, gains, corrections, torque
+/// law, orientation map. Nothing when the message has other numbers of poles or coils, or its law
+/// or map is none.
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design);
 

@@ -38,8 +38,8 @@ class LiveScene {
   /// True when the scene has changed since the last call.
   bool takeChange();
 
-  /// Joints by the parameters in force.
-  const std::array<JointAxis, kJoints>& joints() const { return scene_.identified.joints; }
+  /// The actuator by the parameters in force.
+  const Actuator& identified() const { return scene_.identified; }
   CalibrationScene scene() const;
 
  private:

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+
+namespace sac {
+
+/// What a description says of the rotor at joint readings and coil currents, and how certain it is.
+class Predictor {
+ public:
+  struct Orientation {
+    Eigen::Matrix3d R_stator_rotor;
+    /// Of a component of the rotation error (1 σ) [rad]: from the parameters' covariance and, with
+    /// an orientation map, its uncertainty and the scatter that no map tells.
+    double stddev = 0.0;
+    /// False where there is an orientation map, but none of its points is near: axes and
+    /// corrections alone tell the orientation there.
+    bool is_supported = true;
+  };
+
+  struct Torque {
+    Eigen::Vector3d torque;  ///< of the coils on the rotor, rotor frame [N·m]
+    double stddev = 0.0;     ///< of a component (1 σ) [N·m]
+  };
+
+  /// Throws ConfigError when the description is not valid, or its covariance is not of its
+  /// parameters.
+  explicit Predictor(const CalibratedDescription& description);
+
+  bool hasTorqueModel() const { return model_.hasTorqueModel(); }
+  std::size_t coils() const { return model_.space().coils(); }
+  /// Whether the description states any uncertainty: a nominal one does not.
+  bool hasUncertainty() const { return !covariance_.isZero(0.0); }
+
+  /// At raw sensor angles [rad].
+  Orientation orientation(const Eigen::Vector3d& reading) const;
+  /// Also at coil currents [A]. Precondition: hasTorqueModel() and one current per coil.
+  Torque torque(const Eigen::Vector3d& reading, const Eigen::VectorXd& current) const;
+
+ private:
+  /// Sum of the variances of three components that follow from the parameters.
+  double parameterVariance(const ResidualJacobian& jacobian) const;
+
+  CalibrationModel model_;
+  Eigen::VectorXd x_;           ///< zero: the description is the nominal one of its model
+  Eigen::MatrixXd covariance_;  ///< of the coordinates; zero for those of the laboratory
+};
+
+}  // namespace sac

@@ -1,0 +1,107 @@
+#include "spherical_actuator_calibration/calibration/prediction.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
+#include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kComponents = 3.0;
+
+/// What the laboratory adds to measurements, and the weight of the rotor: no part of what coils and
+/// joints do.
+bool isOfLaboratory(const std::string& effect) {
+  static constexpr std::array<const char*, 5> kOfLaboratory = {"torque_bias",
+                                                               "rotor_unbalance",
+                                                               "marker_registration",
+                                                               "tracker_registration",
+                                                               "torque_registration"};
+  return std::any_of(
+      kOfLaboratory.begin(), kOfLaboratory.end(), [&](const char* name) { return effect == name; });
+}
+
+CalibrationModel modelOf(const CalibratedDescription& description) {
+  return CalibrationModel(ParameterSpace(description.actuator, effectsOf(description.calibration)));
+}
+
+Eigen::MatrixXd covarianceOf(const ParameterSpace& space,
+                             const CalibratedDescription& description) {
+  Eigen::MatrixXd covariance = coordinateCovariance(space, description);
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    if (isOfLaboratory(placed.name)) {
+      const Eigen::Index first = space.effect() + placed.first;
+      covariance.middleRows(first, placed.size()).setZero();
+      covariance.middleCols(first, placed.size()).setZero();
+    }
+  }
+  return covariance;
+}
+
+}  // namespace
+
+Predictor::Predictor(const CalibratedDescription& description)
+    : model_(modelOf(description)),
+      x_(Eigen::VectorXd::Zero(model_.space().size())),
+      covariance_(covarianceOf(model_.space(), description)) {}
+
+double Predictor::parameterVariance(const ResidualJacobian& jacobian) const {
+  return std::max(0.0, (jacobian * covariance_ * jacobian.transpose()).trace());
+}
+
+Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) const {
+  Sample sample;
+  sample.joint_position = reading;
+  sample.has_orientation = true;
+  predictMeasurements(model_, x_, sample);
+  ResidualJacobian jacobian;
+  model_.orientationResidual(sample, x_, &jacobian);
+  double variance = parameterVariance(jacobian);
+  Orientation result;
+  result.R_stator_rotor = sample.R_stator_rotor;
+  const Actuator& actuator = model_.space().nominal();
+  if (actuator.orientation_map) {
+    const OrientationMap::Uncertainty map = actuator.orientation_map->uncertainty(reading);
+    variance += map.variance.sum() + map.noise.sum();
+    result.is_supported = map.support >= kLeastMapSupport;
+  }
+  result.stddev = std::sqrt(variance / kComponents);
+  return result;
+}
+
+Predictor::Torque Predictor::torque(const Eigen::Vector3d& reading,
+                                    const Eigen::VectorXd& current) const {
+  Sample sample;
+  sample.joint_position = reading;
+  sample.current = current;
+  const std::vector<Excitation> excitations = excitedCoils(sample, 0.0);
+  ResidualJacobian jacobian;
+  Torque result;
+  result.torque = -model_.torqueResidual(sample, excitations, x_, &jacobian);
+  double variance = parameterVariance(jacobian);
+  const Actuator& actuator = model_.space().nominal();
+  if (actuator.orientation_map) {
+    // A rotation error ξ acts on the torque as offsets do: ∂T/∂ξ = (∂T/∂offsets)(∂ξ/∂offsets)⁻¹.
+    const OrientationMap::Uncertainty map = actuator.orientation_map->uncertainty(reading);
+    const JointLinearization joints = linearizeRotorOrientation(jointGeometry(actuator), reading);
+    Eigen::Matrix3d d_offset;
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      d_offset.col(static_cast<Eigen::Index>(k)) = jacobian.col(model_.space().joint(k));
+    }
+    const Eigen::Matrix3d d_rotation =
+        joints.d_offset.transpose().fullPivLu().solve(d_offset.transpose()).transpose();
+    const Eigen::Vector3d rotation = map.variance + map.noise;
+    variance += (d_rotation * rotation.asDiagonal() * d_rotation.transpose()).trace();
+  }
+  result.stddev = std::sqrt(std::max(0.0, variance) / kComponents);
+  return result;
+}
+
+}  // namespace sac
