@@ -184,13 +184,13 @@ class Judge {
   }
 
   void addModelChoice(std::vector<std::string>& steps) const {
-    const auto best =
-        std::min_element(fits_.begin(), fits_.end(), [](const ModelFit& a, const ModelFit& b) {
-          return a.bic < b.bic;
-        });
-    if (best != fits_.end() && best->converged && best->effects != "all") {
+    if (fits_.empty()) {
+      return;
+    }
+    const ModelFit& best = bestOf(fits_);
+    if (best.converged && best.effects != "all") {
       steps.push_back("The samples are explained best by other laboratory effects: \"" +
-                      best->effects + "\" instead of all that are modelled.");
+                      best.effects + "\" instead of all that are modelled.");
     }
   }
 

@@ -6,8 +6,10 @@
 #include <Eigen/Cholesky>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 
 namespace sac {
@@ -30,11 +32,52 @@ void sumUp(const CalibrationSession& session, ModelFit& fit) {
   }
 }
 
+/// Whether an effect makes a difference to orientations.
+bool concernsOrientations(const EffectSelection& effects, const Actuator& nominal) {
+  const EffectLayout layout(nominal, effects);
+  return std::any_of(
+      layout.effects().begin(), layout.effects().end(), [](const PlacedEffect& placed) {
+        return placed.acts_on != LaboratoryEffect::ActsOn::kTorques;
+      });
+}
+
+/// Error of the orientations of regions that take no part in the refinement.
+std::optional<double> heldOutError(const CalibrationSession& session) {
+  constexpr int kDepth = 3;
+  constexpr std::size_t kFewest = 30;
+  std::vector<Eigen::Vector3d> readings;
+  for (const Sample& sample : session.samples()) {
+    readings.push_back(sample.joint_position);
+  }
+  const std::vector<std::size_t> regions = regionsOf(readings, kDepth);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t region = 0; region < (std::size_t{1} << static_cast<unsigned>(kDepth));
+       ++region) {
+    std::vector<Sample> others = session.samples();
+    for (std::size_t n = 0; n < others.size(); ++n) {
+      others[n].validation = others[n].validation || regions[n] == region;
+    }
+    const CycleOutcome outcome = runCycle(
+        session.model(), others, session.state(), {Cycle::kRefine}, session.config().estimation);
+    for (std::size_t n = 0; outcome.report.success && n < others.size(); ++n) {
+      const Sample& sample = session.samples()[n];
+      if (regions[n] == region && sample.has_orientation && !sample.validation) {
+        sum += session.model().orientationResidual(sample, outcome.state.belief.x).squaredNorm();
+        ++count;
+      }
+    }
+  }
+  return count < kFewest ? std::nullopt
+                         : std::optional(std::sqrt(sum / static_cast<double>(count)));
+}
+
 ModelFit fitWith(const std::string& name,
                  const CalibratedDescription& start,
                  const std::vector<Sample>& samples,
                  CalibrationConfig config,
                  const EffectSelection& effects) {
+  const bool is_predicted = concernsOrientations(config.effects, start.actuator);
   config.effects = effects;
   // A model that lacks an effect must neither be refused for its misfit, nor be spared the samples
   // that show it.
@@ -59,6 +102,9 @@ ModelFit fitWith(const std::string& name,
   const auto parameters = static_cast<double>(fit.parameters);
   fit.reduced_chi_square = values > parameters ? fit.chi_square / (values - parameters) : 0.0;
   fit.bic = fit.chi_square + parameters * std::log(std::max(values, 1.0));
+  if (is_predicted && refined.success) {
+    fit.held_out = heldOutError(session);
+  }
   return fit;
 }
 
@@ -84,19 +130,30 @@ std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
   return fits;
 }
 
+const ModelFit& bestOf(const std::vector<ModelFit>& fits) {
+  const bool is_predicted = std::all_of(
+      fits.begin(), fits.end(), [](const ModelFit& fit) { return fit.held_out.has_value(); });
+  return *std::min_element(
+      fits.begin(), fits.end(), [is_predicted](const ModelFit& a, const ModelFit& b) {
+        return is_predicted ? *a.held_out < *b.held_out : a.bic < b.bic;
+      });
+}
+
 std::vector<std::string> describe(const std::vector<ModelFit>& fits) {
-  const auto best = std::min_element(
-      fits.begin(), fits.end(), [](const ModelFit& a, const ModelFit& b) { return a.bic < b.bic; });
+  constexpr double kMilli = 1e3;
   std::vector<std::string> lines;
-  for (auto fit = fits.begin(); fit != fits.end(); ++fit) {
+  for (const ModelFit& fit : fits) {
+    const std::string predicted =
+        fit.held_out ? format(", regions held out %.3f mrad", kMilli * *fit.held_out) : "";
     lines.push_back(
-        format("effects: %-30s %4zu parameters, reduced chi-square %10.3f, BIC %12.1f%s%s",
-               fit->effects.c_str(),
-               fit->parameters,
-               fit->reduced_chi_square,
-               fit->bic,
-               fit == best ? "  <- best" : "",
-               fit->converged ? "" : "  (not converged)"));
+        format("effects: %-30s %4zu parameters, reduced chi-square %10.3f, BIC %12.1f%s%s%s",
+               fit.effects.c_str(),
+               fit.parameters,
+               fit.reduced_chi_square,
+               fit.bic,
+               predicted.c_str(),
+               &fit == &bestOf(fits) ? "  <- best" : "",
+               fit.converged ? "" : "  (not converged)"));
   }
   return lines;
 }

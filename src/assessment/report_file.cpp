@@ -241,10 +241,25 @@ void writeModelChoice(YamlWriter& writer, const std::vector<ModelFit>& fits) {
     line.add("chi_square", yamlNumber(fit.chi_square));
     line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
     line.add("bic", yamlNumber(fit.bic));
+    if (fit.held_out) {
+      line.add("held_out", yamlNumber(*fit.held_out));
+    }
     lines.push_back(line.text());
   }
   if (!lines.empty()) {
     writer.list(1, "model_choice", lines);
+  }
+}
+
+void writeOrientationMap(YamlWriter& writer, const OrientationMapChoice& choice) {
+  if (choice.record) {
+    YamlLine line;
+    line.add("chosen", yamlBoolean(choice.map != nullptr));
+    line.add("regions", std::to_string(choice.record->regions));
+    line.add("axes_rms", yamlNumber(choice.record->axes_rms));
+    line.add("map_rms", yamlNumber(choice.record->map_rms));
+    line.add("inside", yamlNumber(choice.record->inside));
+    writer.entry(1, "orientation_map", line.text());
   }
 }
 
@@ -296,6 +311,7 @@ std::string renderReport(const CalibrationSession& session,
   writeCoverage(writer, session);
   writeWorkspace(writer, session);
   writeInfluences(writer, influences);
+  writeOrientationMap(writer, session.orientationMap());
   writeModelChoice(writer, fits);
   return writer.text();
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -58,6 +60,39 @@ TEST(ModelChoice, LeavesEachEffectOutInTurn) {
   EXPECT_EQ(fits[3].effects, "without strength_scale");
   EXPECT_LT(fits[3].bic, fits[1].bic);
   EXPECT_GT(fits[2].bic, fits[1].bic + 10.0);
+}
+
+// A joint that reads wrong by twice its harmonics; a tilt sensor that is sound.
+TEST(ModelChoice, PredictsRegionsThatItHasNotSeen) {
+  Actuator truth = scenarios::paperTruth();
+  truth.joints[2].correction.harmonics = {2e-3, -1e-3, 0.0, 0.0};
+  scenarios::Generator generator(8);
+  std::vector<Sample> samples = scenarios::orientationSamples(
+      truth, scenarios::randomPoses(60, 0.4, generator), 2e-4, 1.2e-4, generator);
+  for (Sample& sample : samples) {
+    sample.R_stator_rotor = rotationExp(scenarios::uniformNoise(2e-4, generator)) *
+                            rotorOrientation(jointGeometry(truth), sample.joint_position);
+  }
+  const std::vector<ModelFit> fits =
+      compareEffects({scenarios::paperNominal()}, samples, modelling({"encoder_harmonics"}));
+  ASSERT_EQ(fits.size(), 2U);
+  ASSERT_TRUE(fits[0].held_out);
+  ASSERT_TRUE(fits[1].held_out);
+  EXPECT_GT(*fits[0].held_out, 1e-3);
+  EXPECT_LT(*fits[1].held_out, 4e-4);
+  EXPECT_EQ(&bestOf(fits), &fits[1]);
+  EXPECT_NE(describe(fits)[1].find("regions held out 0."), std::string::npos);
+}
+
+TEST(ModelChoice, PrefersWhatPredictsOverWhatFits) {
+  std::vector<ModelFit> fits(2);
+  fits[0].bic = 100.0;
+  fits[1].bic = 80.0;
+  EXPECT_EQ(&bestOf(fits), &fits[1]);
+  fits[0].held_out = 1e-3;
+  EXPECT_EQ(&bestOf(fits), &fits[1]) << "only one of them was tried";
+  fits[1].held_out = 2e-3;
+  EXPECT_EQ(&bestOf(fits), &fits[0]);
 }
 
 TEST(ModelChoice, HasNothingToCompareWithoutEffects) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct ModelFit {
   /// Bayesian information criterion χ² + k ln n, the smaller the better: a difference of ten is
   /// decisive.
   double bic = 0.0;
+  /// Rotation error of orientations, root mean square, each region of the workspace (regionsOf())
+  /// predicted from the samples of all others [rad]; nothing where no effect acts on orientations
+  /// or there are few.
+  std::optional<double> held_out;
 };
 
 /// Refines with none of the effects that the configuration models, with all, and with each one left
@@ -29,6 +34,9 @@ struct ModelFit {
 std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
                                      const std::vector<Sample>& samples,
                                      const CalibrationConfig& config);
+
+/// The best fit: by the regions that it predicts, or by the criterion where none was predicted.
+const ModelFit& bestOf(const std::vector<ModelFit>& fits);
 
 /// One line per fit for people, the best one marked.
 std::vector<std::string> describe(const std::vector<ModelFit>& fits);
