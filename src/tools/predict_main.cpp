@@ -1,0 +1,152 @@
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "command_line.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/atomic_file.hpp"
+#include "spherical_actuator_calibration/base/csv_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/calibration/prediction.hpp"
+#include "tool_main.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kMostLines = 10'000'000;
+constexpr char kIntroduction[] =
+    "Usage: predict --actuator CALIBRATED.yaml --joints q.csv --output r.csv [--currents i.csv]\n\n"
+    "Tells by a description where the rotor is at joint sensor angles, with everything that was\n"
+    "identified: for each line q1,q2,q3 [rad] a line qx,qy,qz,qw,stddev, the unit quaternion that\n"
+    "rotates rotor coordinates into stator coordinates and the standard deviation of each "
+    "component\n"
+    "of its rotation error [rad]. With --currents, a line of as many currents [A] as coils for "
+    "each\n"
+    "pose, also the torque of the coils on the rotor in the rotor's frame [N.m] and the standard\n"
+    "deviation of each component: tx,ty,tz,torque_stddev. A first line of names in --joints gets\n"
+    "one in the output. A machine of two joints has 0 for the third.\n"
+    "Exit status: 0 done; 2 bad usage or unreadable input.\n\n";
+
+struct Options {
+  std::string actuator_path;
+  std::string joints_path;
+  std::string output_path;
+  std::optional<std::string> currents_path;
+  OverwritePolicy overwrite = OverwritePolicy::kRefuse;
+};
+
+std::optional<Options> parseOptions(int argc, char** argv) {
+  Options options;
+  CommandLine line(kIntroduction);
+  line.addRequired(
+      "actuator", options.actuator_path, "YAML", "description, usually a calibrated one");
+  line.addRequired(
+      "joints", options.joints_path, "CSV", "joint sensor angles [rad], a pose a line");
+  line.addRequired("output", options.output_path, "CSV", "orientations (and torques) to write");
+  line.add("currents", options.currents_path, "CSV", "coil currents [A], a line for each pose");
+  line.addForce(options.overwrite);
+  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
+}
+
+/// Currents of each pose; none where none are asked for.
+std::optional<CsvFile> readCurrents(const Options& options,
+                                    const Predictor& predictor,
+                                    std::size_t poses) {
+  if (!options.currents_path) {
+    return std::nullopt;
+  }
+  if (!predictor.hasTorqueModel()) {
+    throw ConfigError(options.actuator_path +
+                      ": without poles, coils and torque curve no torque can be predicted; leave "
+                      "--currents out.");
+  }
+  CsvFile currents = loadCsv(*options.currents_path, kMostLines);
+  for (const CsvRow& row : currents.rows) {
+    row.requireColumns(predictor.coils());
+  }
+  if (currents.rows.size() != poses) {
+    throw ConfigError(*options.currents_path + ": " + std::to_string(currents.rows.size()) +
+                      " lines of currents for " + std::to_string(poses) + " poses of " +
+                      options.joints_path + "; each pose needs one.");
+  }
+  return currents;
+}
+
+template <typename Values>
+void append(const Values& values, std::string& text) {
+  for (const double value : values) {
+    text += shortestText(value) + ",";
+  }
+}
+
+/// Tells which lines no map supports.
+void tellUnsupported(const std::vector<std::string>& places, std::size_t poses) {
+  if (!places.empty()) {
+    std::printf(
+        "%zu of %zu poses lie away from the points of the orientation map; joint axes and "
+        "corrections alone tell the orientation there, from %s to %s.\n",
+        places.size(),
+        poses,
+        places.front().c_str(),
+        places.back().c_str());
+  }
+}
+
+void predict(const Options& options) {
+  const Predictor predictor(loadDescription(options.actuator_path));
+  const CsvFile joints = loadCsv(options.joints_path, kMostLines);
+  const std::optional<CsvFile> currents = readCurrents(options, predictor, joints.rows.size());
+  requireNewFile(options.output_path, options.overwrite);
+  std::string text;
+  if (joints.has_heading) {
+    text = std::string("qx,qy,qz,qw,stddev") + (currents ? ",tx,ty,tz,torque_stddev\n" : "\n");
+  }
+  std::vector<std::string> unsupported;
+  for (std::size_t n = 0; n < joints.rows.size(); ++n) {
+    const CsvRow& row = joints.rows[n];
+    row.requireColumns(kJoints);
+    const Eigen::Vector3d reading(row.values.data());
+    const Predictor::Orientation pose = predictor.orientation(reading);
+    append(Eigen::Quaterniond(pose.R_stator_rotor).normalized().coeffs(), text);
+    text += shortestText(pose.stddev);
+    if (!pose.is_supported) {
+      unsupported.push_back(row.place);
+    }
+    if (currents) {
+      const std::vector<double>& values = currents->rows[n].values;
+      const Predictor::Torque torque =
+          predictor.torque(reading,
+                           Eigen::Map<const Eigen::VectorXd>(
+                               values.data(), static_cast<Eigen::Index>(values.size())));
+      text += ",";
+      append(torque.torque, text);
+      text += shortestText(torque.stddev);
+    }
+    text += "\n";
+  }
+  writeFileAtomically(options.output_path, text, options.overwrite);
+  if (!predictor.hasUncertainty()) {
+    std::printf("%s states no uncertainty of its parameters: their part of stddev is 0.\n",
+                options.actuator_path.c_str());
+  }
+  tellUnsupported(unsupported, joints.rows.size());
+  std::printf("%s: %zu poses\n", options.output_path.c_str(), joints.rows.size());
+}
+
+}  // namespace
+}  // namespace sac
+
+int main(int argc, char** argv) {
+  return sac::runTool("predict", [&] {
+    const auto options = sac::parseOptions(argc, argv);
+    if (options) {
+      sac::predict(*options);
+    }
+    return sac::kToolSuccess;
+  });
+}

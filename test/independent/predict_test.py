@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""calibrate_bag, then predict: a real machine at poses that the calibration has not seen, and the same numbers as an
+independent model."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+import yaml
+from described_rotor import DescribedRotor, matrix_of, rotation_vector
+
+PROGRAMS = os.environ["PROGRAMS"]
+POSITIONER = os.path.join(os.environ["SOURCE"], "config", "examples", "two_axis_positioner")
+ACTUATOR = os.path.join(POSITIONER, "actuator.yaml")
+FOLDS = 4
+
+
+def run(name, *arguments):
+    result = subprocess.run([os.path.join(PROGRAMS, name), *arguments], capture_output=True, text=True, check=False)
+    if result.returncode == 2:
+        raise RuntimeError(result.stderr)
+    return result.stdout
+
+
+def real_samples():
+    with open(os.path.join(POSITIONER, "samples.yaml"), encoding="utf-8") as file:
+        return yaml.safe_load(file)
+
+
+class Calibration:
+    """Of some of the real samples."""
+
+    def __init__(self, folder, samples, *options):
+        self.folder = folder
+        self.description = os.path.join(folder, "calibrated.yaml")
+        recording, listed = os.path.join(folder, "s.bag"), os.path.join(folder, "s.yaml")
+        with open(listed, "w", encoding="utf-8") as file:
+            yaml.safe_dump({"orientation_stddev": 5.0e-4, "samples": samples}, file)
+        run("samples_to_bag", "--actuator", ACTUATOR, "--samples", listed, "--output", recording, "--force")
+        self.said = run(
+            "calibrate_bag", "--actuator", ACTUATOR, "--output", self.description, "--force", *options, recording
+        )
+
+    def loaded(self):
+        with open(self.description, encoding="utf-8") as file:
+            return yaml.safe_load(file)
+
+    def predict(self, joints):
+        """Quaternions and standard deviations."""
+        asked, answered = os.path.join(self.folder, "q.csv"), os.path.join(self.folder, "r.csv")
+        np.savetxt(asked, joints, delimiter=",", fmt="%.17g")
+        self.told = run(
+            "predict", "--actuator", self.description, "--joints", asked, "--output", answered, "--force"
+        )
+        rows = np.loadtxt(answered, delimiter=",", ndmin=2)
+        return rows[:, :4], rows[:, 4]
+
+
+def errors_of(calibration, samples):
+    """Rotation errors, a row each, and their stated standard deviations."""
+    quaternions, stddevs = calibration.predict([sample["joint_position"] for sample in samples])
+    errors = [
+        rotation_vector(matrix_of(sample["orientation_xyzw"]) @ matrix_of(quaternion).T)
+        for sample, quaternion in zip(samples, quaternions)
+    ]
+    return np.array(errors), stddevs
+
+
+class RealPositioner(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.samples = real_samples()["samples"]
+
+    def cross_validated(self, *options):
+        errors, stddevs = [], []
+        for fold in range(FOLDS):
+            known = [sample for n, sample in enumerate(self.samples) if n % FOLDS != fold]
+            unseen = [sample for n, sample in enumerate(self.samples) if n % FOLDS == fold]
+            e, s = errors_of(Calibration(self.folder.name, known, *options), unseen)
+            errors.append(e)
+            stddevs.append(s)
+        return np.concatenate(errors), np.concatenate(stddevs)
+
+    def expect_good(self, *options):
+        errors, stddevs = self.cross_validated(*options)
+        rms = np.sqrt(np.mean(np.sum(errors**2, axis=1)))
+        inside = np.mean(np.abs(errors) < 1.96 * stddevs[:, None])
+        print(f"{options}: {1e3 * rms:.3f} mrad rms, {100.0 * inside:.1f} % inside")
+        self.assertLess(rms, 0.55e-3)
+        self.assertGreater(inside, 0.91)
+        self.assertLess(inside, 0.98)
+
+    def test_is_predicted_where_it_was_not_seen(self):
+        self.expect_good()
+
+    def test_is_predicted_with_its_own_configuration(self):
+        self.expect_good("--config", os.path.join(POSITIONER, "calibration.yaml"))
+
+    def test_axes_alone_predict_it_worse(self):
+        path = os.path.join(self.folder.name, "axes.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("orientation_map: {use: never}\n")
+        errors, _ = self.cross_validated("--config", path)
+        self.assertGreater(np.sqrt(np.mean(np.sum(errors**2, axis=1))), 0.8e-3)
+
+    def test_far_from_what_was_seen_the_axes_tell_and_it_is_said(self):
+        known = [sample for sample in self.samples if sample["joint_position"][1] < 3.5]
+        calibration = Calibration(self.folder.name, known)
+        loaded = calibration.loaded()
+        self.assertIn("orientation_map", loaded["actuator"], calibration.said)
+        far = [[0.0, 4.9, 0.0]]
+        quaternions, stddevs = calibration.predict(far)
+        self.assertIn("1 of 1 poses lie away", calibration.told)
+        del loaded["actuator"]["orientation_map"]
+        axes = DescribedRotor(loaded).orientation(np.array(far[0]))
+        self.assertLess(np.linalg.norm(rotation_vector(matrix_of(quaternions[0]) @ axes.T)), 0.3e-3)
+        near = calibration.predict([known[0]["joint_position"]])[1]
+        self.assertGreater(stddevs[0], 1.5 * near[0])
+
+
+class SameNumbers(unittest.TestCase):
+    def expect_same(self, *options):
+        with tempfile.TemporaryDirectory() as folder:
+            calibration = Calibration(folder, real_samples()["samples"], *options)
+            loaded = calibration.loaded()
+            rotor = DescribedRotor(loaded)
+            joints = np.random.default_rng(1).uniform([-0.5, 0.0, -0.02], [0.5, 6.0, 0.02], (20, 3))
+            for q, quaternion, stddev in zip(joints, *calibration.predict(joints)):
+                apart = rotation_vector(matrix_of(quaternion) @ rotor.orientation(q).T)
+                self.assertLess(np.linalg.norm(apart), 1e-10)
+                expected = rotor.stddev(q, loaded["actuator"]["calibration"]["covariance"])
+                self.assertLess(abs(stddev / expected - 1.0), 1e-3)
+            return loaded["actuator"]
+
+    def test_with_a_map(self):
+        self.assertIn("orientation_map", self.expect_same())
+
+    def test_with_every_correction_of_readings(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "all.yaml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("effects: {tilt_cross_axis: true, encoder_harmonics: [1, 2]}\n")
+            joints = self.expect_same("--config", path)["joints"]
+        self.assertTrue(any(joints[0]["linear"]))
+        self.assertTrue(all(joints[0]["harmonics"]))
+        self.assertTrue(all(joints[1]["harmonics"]))
+        self.assertNotIn("harmonics", joints[2])
+
+
+if __name__ == "__main__":
+    unittest.main()
