@@ -274,10 +274,8 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
   }
   const Eigen::Matrix3Xd torque_per_ampere =
       torquePerAmpere(curve_, torques_, rotor.R_stator_rotor);
-  const AllocatedCurrents allocated =
-      allocateCurrents(torque_per_ampere,
-                       computedTorque(options_.rotor, rotor, desired, gains()),
-                       allocation);
+  const AllocatedCurrents allocated = allocateCurrents(
+      torque_per_ampere, computedTorque(options_.rotor, rotor, desired, gains()), allocation);
   if (allocated.outcome == Allocation::kSingular) {
     stop(format("the coils make no torque in some direction here (%.2g N.m/A)",
                 allocated.smallest_singular_value));

@@ -58,6 +58,7 @@ class MotionSource {
 
   std::vector<Sine> tilt() {
     std::vector<Sine> sines;
+    sines.reserve(kTilts);
     for (int n = 0; n < kTilts; ++n) {
       sines.push_back({between(0.1, 0.5), between(0.5, 1.5), phase()});
     }
@@ -88,6 +89,7 @@ class MotionSource {
     std::vector<Sine> sines;
     const double amplitude =
         std::min(excitation * std::sqrt(2.0 / kTones), options_.limits.coil_current / kTones);
+    sines.reserve(kTones);
     for (int n = 0; n < kTones; ++n) {
       sines.push_back({between(kLowestTone, kHighestTone), amplitude, phase()});
     }

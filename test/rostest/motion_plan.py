@@ -32,7 +32,7 @@ def plan(duration):
         return {"frequencies": frequencies, "amplitudes": amplitudes, "phases": phases}
 
     tilt = {"centre": 0.0, **sines([0.31, 0.47], [0.04, 0.04])}
-    spin = {"centre": 0.0, **sines([0.11], [0.3])}
+    spin = {"centre": 0.0, **sines([0.05], [0.8])}
     limits = {"tilt": 0.2, "rate": 2.0, "error": 0.35}
     limits.update(coil_current=COIL_LIMIT, total_current=4.0, square_current=4.0)
     content = {
