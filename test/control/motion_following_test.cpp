@@ -244,15 +244,15 @@ TEST_F(MotionFollowingTest, NewParametersWaitForTheEnd) {
   runWhile(MotionPhase::kEnding);
   runWhile(MotionPhase::kSettling);
   // By the true parameters the same motion is followed far better.
-  const auto largestError = [this] {
+  const auto largest_error = [this] {
     controller_->enable(now_);
     runIntoMotion(examplePlan(0.1));
     return controller_->motionProgress().largest_tracking_error;
   };
-  const double calibrated = largestError();
+  const double calibrated = largest_error();
   start(truth);
   controller_->disable();
-  EXPECT_LT(calibrated, 0.7 * largestError());
+  EXPECT_LT(calibrated, 0.7 * largest_error());
 }
 
 TEST_F(MotionFollowingTest, RefusesWhatItMustNotDo) {

@@ -49,7 +49,7 @@ TEST(RotorFriction, IsTheTorqueOfItsEquation) {
 }
 
 TEST(RotorFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
-  const auto speedAfterASecond = [](const RotorFriction& friction) {
+  const auto speed_after_a_second = [](const RotorFriction& friction) {
     FreeRotor rotor(scenarios::paperNominal(), {}, 0.9, friction);
     rotor.release(Eigen::Vector3d::Zero());
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(24);
@@ -60,8 +60,8 @@ TEST(RotorFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
     return rotor.state().angular_velocity.z();
   };
   // An impulse of 2 mN·m·s on 1.3 g·m².
-  EXPECT_NEAR(speedAfterASecond({}), 2e-3 / 1.3e-3, 1e-6);
-  const double slowed = speedAfterASecond({1e-3, 0.0, 0.05});
+  EXPECT_NEAR(speed_after_a_second({}), 2e-3 / 1.3e-3, 1e-6);
+  const double slowed = speed_after_a_second({1e-3, 0.0, 0.05});
   // The equation's own solution.
   const double rate = 1e-3 / 1.3e-3;
   EXPECT_NEAR(slowed, 0.02 / 1e-3 * (1.0 - std::exp(-0.1 * rate)) * std::exp(-0.9 * rate), 1e-5);

@@ -99,19 +99,20 @@ TEST(MotionPlan, TheFileGivesBackEverything) {
 
 TEST(MotionPlan, TheFileNamesWhatIsWrongInIt) {
   const std::string text = renderMotionPlan({"1.2.3", examplePlan(), {}});
-  const auto messageFor = [&](const std::string& from, const std::string& to) {
+  const auto message_for = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     const std::size_t place = changed.find(from);
     EXPECT_NE(place, std::string::npos) << from;
     changed.replace(place, from.size(), to);
     return errorMessage<ConfigError>([&] { parseMotionPlan(changed, "plan.yaml"); });
   };
-  EXPECT_NE(messageFor("duration", "dauer").find("duration"), std::string::npos);
-  EXPECT_NE(messageFor("  ramp: 2.0", "  ramp: 2.0\n  speed: 1").find("speed"), std::string::npos);
-  EXPECT_NE(messageFor("centre: 0.05", "centre: .nan").find("joints[0].centre"), std::string::npos);
-  EXPECT_NE(messageFor("frequencies: [0.31, 0.73]", "frequencies: [0.31]").find("amplitudes"),
+  EXPECT_NE(message_for("duration", "dauer").find("duration"), std::string::npos);
+  EXPECT_NE(message_for("  ramp: 2.0", "  ramp: 2.0\n  speed: 1").find("speed"), std::string::npos);
+  EXPECT_NE(message_for("centre: 0.05", "centre: .nan").find("joints[0].centre"),
             std::string::npos);
-  EXPECT_NE(messageFor("frequencies: [0.31,", "frequencies: [-0.31,").find("frequencies"),
+  EXPECT_NE(message_for("frequencies: [0.31, 0.73]", "frequencies: [0.31]").find("amplitudes"),
+            std::string::npos);
+  EXPECT_NE(message_for("frequencies: [0.31,", "frequencies: [-0.31,").find("frequencies"),
             std::string::npos);
 }
 
