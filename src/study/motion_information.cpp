@@ -46,9 +46,9 @@ struct Moment {
 /// A test function and its first two derivatives by s in [−1, 1]: φ″ is the Legendre polynomial
 /// P_k, φ and φ′ vanish at both ends.
 struct TestValue {
-  double value;
-  double slope;
-  double curvature;
+  double value = 0.0;
+  double slope = 0.0;
+  double curvature = 0.0;
 };
 
 TestValue testFunction(int k, double s) {

@@ -106,7 +106,7 @@ class MotionFollowingTest : public ::testing::Test {
 };
 
 TEST_F(MotionFollowingTest, EndsAtRestWithoutCurrentAndStaysInTheWorkspaceHoweverWrongTheModel) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     start(wrongBy30mrad(seed));
     controller_->follow(examplePlan(0.1));
     runWhile(MotionPhase::kApproach);

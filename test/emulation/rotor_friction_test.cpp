@@ -11,18 +11,20 @@
 namespace sac {
 namespace {
 
-const Eigen::Vector3d kMoments(0.7e-3, 0.8e-3, 1.3e-3);
+Eigen::Vector3d moments() {
+  return {0.7e-3, 0.8e-3, 1.3e-3};
+}
 
 TEST(RotorFriction, ViscousFrictionSlowsExponentially) {
   const RotorFriction friction{2e-3, 0.0, 0.05};
-  const Eigen::Matrix3d inertia = kMoments.asDiagonal();
+  const Eigen::Matrix3d inertia = moments().asDiagonal();
   const Eigen::Vector3d begin(1.0, -2.0, 0.5);
   Eigen::Vector3d w = begin;
   for (int n = 0; n < 500; ++n) {
     w = slowedBy(friction, inertia, w, 1e-3);
   }
   for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(w[k], begin[k] * std::exp(-0.5 * 2e-3 / kMoments[k]), 1e-5);
+    EXPECT_NEAR(w[k], begin[k] * std::exp(-0.5 * 2e-3 / moments()[k]), 1e-5);
   }
 }
 
@@ -40,6 +42,9 @@ TEST(RotorFriction, DryFrictionBringsToRestAndNoFurther) {
     ASSERT_GE(w.z(), 0.0);
   }
   EXPECT_LT(w.z(), 1e-3);
+  // A step that is far too long is none beyond rest either.
+  const Eigen::Vector3d begin(0.0, 0.0, 1.0);
+  EXPECT_GE(slowedBy({0.1, 0.0, 0.05}, inertia, begin, 0.1).z(), 0.0);
 }
 
 TEST(RotorFriction, IsTheTorqueOfItsEquation) {

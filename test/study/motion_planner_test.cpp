@@ -57,7 +57,7 @@ TEST(MotionPlanner, NoExcitationBringsTheRotorOutOfTheWorkspace) {
   RehearsalOptions rehearsal = options.rehearsal;
   rehearsal.controller.total_current_limit = 20.0;
   double largest_error = 0.0;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const Actuator truth = manufacturedActuator(actuator, {kError, kError, kError, kError}, seed);
     const Rehearsal result = rehearse(plan, actuator, truth, rehearsal);
     EXPECT_LT(result.largest_tilt, actuator.workspace.tilt_limit) << result.reason;

@@ -45,7 +45,7 @@ class EmulatedAmplifier {
  private:
   /// What the output stages are told to reach from a time on.
   struct Order {
-    double time;  ///< [s]
+    double time = 0.0;  ///< [s]
     Eigen::VectorXd currents;
   };
 

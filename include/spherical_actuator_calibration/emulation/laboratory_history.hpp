@@ -41,7 +41,7 @@ class LaboratoryHistory {
 
  private:
   struct Entry {
-    double time;
+    double time = 0.0;
     LaboratoryMoment moment;
   };
 
