@@ -219,6 +219,30 @@ TEST(OrientationMapChoice, TakesNoneWhereOnlyNoiseIsLeft) {
   }
 }
 
+// Groups of poses that share an error: likely a map, but of no use where no group is.
+TEST(OrientationMapChoice, TakesNoneThatTellsNeighboursOnly) {
+  scenarios::Generator generator(4);
+  const Actuator truth = scenarios::paperTruth();
+  std::vector<Sample> samples;
+  for (const Eigen::Vector3d& centre : scenarios::randomPoses(40, 0.4, generator)) {
+    const Eigen::Vector3d shared = scenarios::uniformNoise(1e-3, generator);
+    std::vector<Eigen::Vector3d> poses;
+    for (int n = 0; n < 3; ++n) {
+      poses.emplace_back(centre + scenarios::uniformNoise(5e-3, generator));
+    }
+    for (Sample& sample : scenarios::orientationSamples(truth, poses, 1e-4, 5e-4, generator)) {
+      sample.R_stator_rotor = rotationExp(shared) * sample.R_stator_rotor;
+      samples.push_back(sample);
+    }
+  }
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  const OrientationMapChoice& choice = session.orientationMap();
+  EXPECT_FALSE(choice.map) << choice.sentence;
+  ASSERT_TRUE(choice.record) << "it was to be judged by regions: " << choice.sentence;
+  EXPECT_NE(choice.sentence.find("not taken"), std::string::npos) << choice.sentence;
+}
+
 TEST(OrientationMapChoice, FollowsTheConfiguration) {
   const std::vector<Sample> samples = loadSamples(kSamples, 0);
   CalibrationSession never({loadActuator(kActuator)}, samples, modelling({}, MapUse::kNever));
@@ -298,7 +322,7 @@ TEST(TorqueTable, ItsStatedUncertaintyIsInThatOfTheParameters) {
     stddevs.push_back(
         session.parameters()[static_cast<std::size_t>(session.model().space().pole(3))].stddev);
   }
-  EXPECT_GT(stddevs[1], 1.04 * stddevs[0]);
+  EXPECT_GT(stddevs[1], 1.02 * stddevs[0]);
 }
 
 }  // namespace
