@@ -153,7 +153,7 @@ std::string readDate(const YamlMap& map) {
 
 CycleRecord readCycle(const YamlMap& map) {
   CycleRecord record;
-  record.cycle = map.choice("cycle", {"joint", "poles", "coil", "refine"});
+  record.cycle = map.choice("cycle", {"joint", "poles", "coil", "refine", "motion"});
   record.coil = indexOf(readCount(map, "coil"));
   record.samples_used = readCount(map, "samples_used");
   record.samples_rejected = readCount(map, "samples_rejected");

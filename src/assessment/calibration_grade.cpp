@@ -39,12 +39,15 @@ class Examiner {
   bool mends(const CycleReport& report) const {
     const bool is_same =
         refused_ != nullptr && report.cycle == refused_->cycle && report.coil == refused_->coil;
-    return report.success && (is_same || report.cycle == Cycle::kRefine);
+    return report.success &&
+           (is_same || report.cycle == Cycle::kRefine || report.cycle == Cycle::kMotion);
   }
 
   Grade grade() const {
     if (identified_ == 0) {
-      return Grade::kFailed;
+      // Motion is one cycle for everything: where it does not fit, nothing else has a say.
+      const bool is_motion = refused_ != nullptr && refused_->cycle == Cycle::kMotion;
+      return is_motion ? Grade::kContradicted : Grade::kFailed;
     }
     if (refused_ != nullptr || isContradicted()) {
       return Grade::kContradicted;

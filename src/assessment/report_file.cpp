@@ -85,6 +85,28 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
   return lines;
 }
 
+/// What became of a recording of motion.
+void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
+  writer.map(3, "motion");
+  writer.entry(4, "duration", yamlNumber(motion.duration));
+  writer.entry(4, "windows", std::to_string(motion.windows));
+  writer.entry(4, "windows_used", std::to_string(motion.used));
+  std::vector<std::string> reasons;
+  for (const WindowsLeftOut& left_out : motion.left_out) {
+    YamlLine line;
+    line.add("count", std::to_string(left_out.count)).add("reason", yamlText(left_out.reason));
+    reasons.push_back(line.text());
+  }
+  writer.list(4, "windows_left_out", reasons);
+  writer.entry(4, "orientations", std::to_string(motion.orientations));
+  writer.entry(4, "orientations_rejected", std::to_string(motion.orientations_rejected));
+  writer.entry(4, "joint_stddev", yamlNumbers(motion.joint_stddev));
+  writer.entry(4, "current_stddev", yamlNumber(motion.current_stddev));
+  writer.entry(4, "orientation_stddev", yamlNumber(motion.orientation_stddev));
+  writer.entry(4, "window_chi_square", yamlNumber(motion.window_chi_square));
+  writer.entry(4, "orientation_chi_square", yamlNumber(motion.orientation_chi_square));
+}
+
 void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.line(2, "- cycle: " + cycleName(report.cycle));
   writer.entry(3, "coil", std::to_string(numberOrZero(report.coil)));
@@ -103,6 +125,9 @@ void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.entry(3, "solve_time", yamlNumber(report.solve_time));
   writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));
   writer.entry(3, "torque_uncertainty", yamlNumber(report.torque_uncertainty));
+  if (report.motion) {
+    writeMotion(writer, *report.motion);
+  }
   writer.list(3, "estimates", estimateLines(report.estimates));
   writer.list(3, "residuals", residualLines(report.residuals));
 }

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "motion_cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
@@ -171,7 +172,9 @@ void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport>
 }
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
-  CycleOutcome outcome = runCycle(model_, samples_, state_, request, config_.estimation);
+  CycleOutcome outcome = request.cycle == Cycle::kMotion
+                             ? runMotionCycle(model_, motion(), state_, config_)
+                             : runCycle(model_, samples_, state_, request, config_.estimation);
   state_ = std::move(outcome.state);
   reports_.push_back(std::move(outcome.report));
   map_choice_.reset();
@@ -185,7 +188,8 @@ bool CalibrationSession::isComplete() const {
                        [&](const CycleReport& later) {
                          const bool is_same = later.cycle == reports_[failed].cycle &&
                                               later.coil == reports_[failed].coil;
-                         return later.success && (is_same || later.cycle == Cycle::kRefine);
+                         return later.success && (is_same || later.cycle == Cycle::kRefine ||
+                                                  later.cycle == Cycle::kMotion);
                        });
   };
   for (std::size_t n = 0; n < reports_.size(); ++n) {

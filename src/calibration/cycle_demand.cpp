@@ -12,6 +12,8 @@ CycleDemand demandOf(Cycle cycle, std::size_t poles) {
       return {poles + 1, kAdvisedTorquesPerPole * poles};
     case Cycle::kCoil:
       return {1, kAdvisedTorquesPerCoil};
+    case Cycle::kMotion:
+      return {0, 0};  // it needs no sample
     case Cycle::kRefine:
       break;
   }

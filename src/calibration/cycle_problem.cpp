@@ -16,6 +16,8 @@ bool concerns(const EffectLayout& effects,
       return true;
     case LaboratoryEffect::ActsOn::kOrientations:
       return any_orientation;
+    case LaboratoryEffect::ActsOn::kMotion:
+      return false;
     case LaboratoryEffect::ActsOn::kTorques:
       break;
   }

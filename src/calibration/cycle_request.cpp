@@ -10,6 +10,8 @@ std::string cycleName(Cycle cycle) {
       return "poles";
     case Cycle::kCoil:
       return "coil";
+    case Cycle::kMotion:
+      return "motion";
     case Cycle::kRefine:
       break;
   }

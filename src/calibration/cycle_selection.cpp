@@ -15,8 +15,8 @@ namespace {
 
 [[noreturn]] void throwUnknown(const std::string& word) {
   throw ConfigError("The cycle \"" + word +
-                    "\" is unknown: give joint, poles:J, coil:J (J counts coils from 1), coils or "
-                    "refine, separated by commas.");
+                    "\" is unknown: give joint, poles:J, coil:J (J counts coils from 1), coils, "
+                    "refine or motion, separated by commas.");
 }
 
 /// The coil of a number: digits only, from 1.
@@ -39,6 +39,9 @@ CycleRequest parseCycle(const std::string& word) {
   }
   if (word == "refine") {
     return {Cycle::kRefine};
+  }
+  if (word == "motion") {
+    return {Cycle::kMotion};
   }
   const std::size_t colon = word.find(':');
   const std::string name = word.substr(0, colon);
@@ -191,6 +194,7 @@ std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
       case Cycle::kCoil:
         return counts.at(request.coil.value()) >= needed;
       case Cycle::kRefine:
+      case Cycle::kMotion:
         break;
     }
     // What one cycle has enough of, all at once have; without, torques of several coils at a time.

@@ -18,6 +18,8 @@ std::string cycleInWords(const CycleRequest& request) {
       return "Poles and coil " + std::to_string(numberOrZero(request.coil));
     case Cycle::kCoil:
       return "Coil " + std::to_string(numberOrZero(request.coil));
+    case Cycle::kMotion:
+      return "Motion";
     case Cycle::kRefine:
       break;
   }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "orientation_hypotheses.hpp"
@@ -38,6 +39,17 @@ struct RefinedFit {
   }
 };
 
+/// Cycles of a trial of the session: those that its data allow, and motion where it was recorded.
+std::vector<CycleRequest> cyclesOf(const CalibrationSession& session, CalibrationSession& trial) {
+  if (session.motion() == nullptr) {
+    return possibleCycles(trial.model(), trial.samples(), trial.config().estimation);
+  }
+  // The session outlives its trial, and so does its recording.
+  trial.setMotion(
+      std::shared_ptr<const MotionRecording>(std::shared_ptr<void>(), session.motion()));
+  return {{Cycle::kMotion}};
+}
+
 RefinedFit refined(const CalibrationSession& session, const EffectSelection& effects) {
   CalibrationConfig config = session.config();
   config.effects = effects;
@@ -48,13 +60,14 @@ RefinedFit refined(const CalibrationSession& session, const EffectSelection& eff
   config.estimation.false_alarm_probability = 1e-200;
   CalibrationSession trial(session.start(), session.samples(), config);
   RefinedFit fit;
-  for (const CycleRequest& request :
-       possibleCycles(trial.model(), trial.samples(), config.estimation)) {
+  for (const CycleRequest& request : cyclesOf(session, trial)) {
     const CycleReport& report = trial.run(request);
     fit.converged = report.success;
     fit.reduced_chi_square = report.reduced_chi_square;
-    fit.freedom = 3.0 * static_cast<double>(report.residuals.size()) -
-                  static_cast<double>(report.estimates.size());
+    fit.freedom = request.cycle == Cycle::kMotion
+                      ? report.degrees_of_freedom
+                      : 3.0 * static_cast<double>(report.residuals.size()) -
+                            static_cast<double>(report.estimates.size());
     fit.estimates = report.estimates;
   }
   return fit;
@@ -103,12 +116,20 @@ std::string valuesInWords(const std::string& effect,
   return own.size() > kMostShown ? text + ", …" : text;
 }
 
-/// Single effects that explain a misfit of the refinement, the best first.
+/// Registrations and sensors of torque leave motion as it is, and strength is told by its ratio to
+/// inertia only.
+bool isToldByMotion(const std::string& effect) {
+  return effect != "torque_bias" && effect != "strength_scale" &&
+         effect.find("_registration") == std::string::npos;
+}
+
+/// Single effects that explain a misfit of the refinement, or of the motion, the best first.
 std::vector<Diagnosis> effectsThatExplain(const CalibrationSession& session,
                                           const RefinedFit& unchanged) {
   std::vector<std::pair<double, Diagnosis>> found;
   for (const std::string& effect : effectNames()) {
-    if (session.config().effects.has(effect)) {
+    if (session.config().effects.has(effect) ||
+        (session.motion() != nullptr && !isToldByMotion(effect))) {
       continue;
     }
     EffectSelection effects = session.config().effects;
@@ -191,6 +212,9 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session) {
     return diagnoses;
   }
   diagnoses = effectsThatExplain(session, unchanged);
+  if (session.motion() != nullptr) {
+    return diagnoses;
+  }
   for (Diagnosis& small : smallMistakes(session)) {
     diagnoses.push_back(std::move(small));
   }

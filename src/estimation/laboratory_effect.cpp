@@ -2,6 +2,10 @@
 
 namespace sac {
 
+double LaboratoryEffect::nominalValue(Eigen::Index /*n*/) const {
+  return 0.0;
+}
+
 bool LaboratoryEffect::isToldBy(Eigen::Index /*n*/, const std::vector<bool>& /*excited*/) const {
   return true;
 }

@@ -1,7 +1,6 @@
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include "effects/registered_effects.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -52,19 +51,34 @@ const std::vector<std::string>& effectNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> result;
     for (const EffectKind& kind : kinds()) {
-      result.emplace_back(kind.name);
+      // What only motion tells belongs to its cycle, and is no option.
+      if (kind.acts_on != LaboratoryEffect::ActsOn::kMotion) {
+        result.emplace_back(kind.name);
+      }
     }
     return result;
   }();
   return names;
 }
 
+EffectSelection withMotionEffects(EffectSelection selection) {
+  for (const EffectKind& kind : kinds()) {
+    if (kind.acts_on == LaboratoryEffect::ActsOn::kMotion) {
+      selection[kind.name] = true;
+    }
+  }
+  selection["rotor_unbalance"] = true;
+  selection["rotor_inertia"] = !selection.has("strength_scale");
+  return selection;
+}
+
 std::vector<std::string> modelledEffects(const EffectSelection& selection) {
   std::vector<std::string> names;
-  std::copy_if(effectNames().begin(),
-               effectNames().end(),
-               std::back_inserter(names),
-               [&](const std::string& name) { return selection.has(name); });
+  for (const EffectKind& kind : kinds()) {
+    if (selection.has(kind.name)) {
+      names.emplace_back(kind.name);
+    }
+  }
   return names;
 }
 
@@ -83,7 +97,8 @@ std::string describe(const EffectSelection& selection) {
 
 EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selection) {
   const auto require = [](const std::string& name) {
-    if (std::count(effectNames().begin(), effectNames().end(), name) == 0) {
+    const auto has_name = [&](const EffectKind& kind) { return kind.name == name; };
+    if (std::none_of(kinds().begin(), kinds().end(), has_name)) {
       throw ConfigError("effects." + name + ": there is no such laboratory effect.");
     }
   };
@@ -97,7 +112,9 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
     if (!selection.has(kind.name) && !isStatedBy(nominal, kind)) {
       continue;
     }
-    if (kind.acts_on == LaboratoryEffect::ActsOn::kTorques && !nominal.hasTorqueModel()) {
+    const bool needs_torques = kind.acts_on == LaboratoryEffect::ActsOn::kTorques ||
+                               kind.acts_on == LaboratoryEffect::ActsOn::kMotion;
+    if (needs_torques && !nominal.hasTorqueModel()) {
       if (!selection[kind.name]) {
         continue;  // stated for all, but nothing here feels it
       }
@@ -138,6 +155,11 @@ double EffectLayout::statedVariance(Eigen::Index coordinate) const {
   const PlacedEffect& placed = at(coordinate);
   const double stddev = placed.stddev / placed.effect->scale();
   return stddev * stddev;
+}
+
+double EffectLayout::nominalValue(Eigen::Index coordinate) const {
+  const PlacedEffect& placed = at(coordinate);
+  return placed.effect->nominalValue(coordinate - placed.first);
 }
 
 const std::string& EffectLayout::name(Eigen::Index coordinate) const {

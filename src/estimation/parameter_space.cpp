@@ -160,7 +160,7 @@ Eigen::VectorXd ParameterSpace::reportedValues(const Eigen::VectorXd& x) const {
     values.segment<2>(coil(j)) << actuator.coils[j].polar, actuator.coils[j].azimuth;
   }
   for (Eigen::Index e = 0; e < effects_.size(); ++e) {
-    values[effect() + e] = x[effect() + e] * effects_.scale(e);
+    values[effect() + e] = effects_.nominalValue(e) + x[effect() + e] * effects_.scale(e);
   }
   return values;
 }

@@ -22,8 +22,8 @@ constexpr std::array<std::pair<Quantity, const char*>, 2> kQuantities = {{
     {Quantity::kTorque, "torque"},
 }};
 
-constexpr std::array<Cycle, 4> kCycles = {
-    Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine};
+constexpr std::array<Cycle, 5> kCycles = {
+    Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine, Cycle::kMotion};
 
 [[noreturn]] void throwUnknown(const std::string& word) {
   throw DataError("The session database holds the unknown word \"" + word + "\".");

@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/open_directions.hpp"
+#include "spherical_actuator_calibration/motion/motion_summary.hpp"
 
 namespace sac {
 
@@ -57,8 +58,9 @@ struct CycleReport {
   std::vector<ParameterEstimate> estimates;
   std::vector<OpenDirection> open_directions;  ///< beside single unobservable parameters
   std::vector<SampleResidual> residuals;
-  double orientation_uncertainty = 0.0;  ///< see workspace_uncertainty.hpp [rad]
-  double torque_uncertainty = 0.0;       ///< [N·m/A]
+  double orientation_uncertainty = 0.0;                ///< see workspace_uncertainty.hpp [rad]
+  double torque_uncertainty = 0.0;                     ///< [N·m/A]
+  std::optional<MotionSummary> motion = std::nullopt;  ///< of the cycle motion
 };
 
 }  // namespace sac

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {
 
@@ -61,6 +63,9 @@ class CalibrationSession {
   /// False when there is no sample with this id.
   bool remove(std::uint32_t id);
   void clearSamples() { samples_.clear(); }
+  /// What the cycle motion takes; nothing where no motion was recorded.
+  void setMotion(std::shared_ptr<const MotionRecording> motion) { motion_ = std::move(motion); }
+  const MotionRecording* motion() const { return motion_.get(); }
 
   /// Parameters of the description at the start, as if no cycle had run.
   CalibrationState startState() const;
@@ -103,6 +108,7 @@ class CalibrationSession {
 
   CalibratedDescription start_;
   std::vector<Sample> samples_;
+  std::shared_ptr<const MotionRecording> motion_;
   CalibrationConfig config_;
   CalibrationModel model_;
   CalibrationState state_;

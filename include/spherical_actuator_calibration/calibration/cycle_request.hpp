@@ -6,10 +6,11 @@
 
 namespace sac {
 
-/// The cycles of a calibration: level 1, level 2 situations 1 and 2, and all parameters at once.
-enum class Cycle { kJoint, kPoles, kCoil, kRefine };
+/// The cycles of a calibration: level 1, level 2 situations 1 and 2, all parameters at once from
+/// dwells, and all at once from motion.
+enum class Cycle { kJoint, kPoles, kCoil, kRefine, kMotion };
 
-/// joint, poles, coil, refine: as in CalibrationReport messages.
+/// joint, poles, coil, refine, motion: as in CalibrationReport messages.
 std::string cycleName(Cycle cycle);
 
 /// A cycle as an operator asks for it.

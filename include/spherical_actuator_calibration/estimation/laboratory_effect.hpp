@@ -21,7 +21,7 @@ class LaboratoryEffect {
   using Columns = Eigen::Ref<Eigen::Matrix3Xd>;
 
   /// Observations that an effect acts on.
-  enum class ActsOn { kEverything, kOrientations, kTorques };
+  enum class ActsOn { kEverything, kOrientations, kTorques, kMotion };
 
   virtual ~LaboratoryEffect() = default;
 
@@ -30,6 +30,8 @@ class LaboratoryEffect {
   /// Value of one unit of a coordinate. Chosen so that coordinates compare with geometric errors in
   /// rad: 0.03 is a usual, 0.05 a hardly tolerable size.
   double scale() const { return scale_; }
+  /// What is added to value `n` where it is told to people: its coordinate is a deviation from it.
+  virtual double nominalValue(Eigen::Index n) const;
 
   /// Standard deviation of each value around zero that is known of every machine; 0: none is. Such
   /// an effect is estimated as far as the observations tell it, and stays at zero beyond.

@@ -15,6 +15,11 @@ namespace sac {
 /// torque_bias, rotor_unbalance and so on: as in configurations, in the order of coordinates.
 const std::vector<std::string>& effectNames();
 
+/// The selected ones, and what moves a free rotor beside its coils: inertia, unbalance, friction,
+/// and delays of the streams. Where a common strength is selected the inertia stays at its nominal
+/// value: motion tells only their ratio.
+EffectSelection withMotionEffects(EffectSelection selection);
+
 /// The modelled ones among them, in the same order.
 std::vector<std::string> modelledEffects(const EffectSelection& selection);
 
@@ -55,6 +60,8 @@ class EffectLayout {
   double statedVariance(Eigen::Index coordinate) const;
   /// Value of the effect per coordinate.
   double scale(Eigen::Index coordinate) const { return at(coordinate).effect->scale(); }
+  /// Value of the effect where its coordinate is zero.
+  double nominalValue(Eigen::Index coordinate) const;
   /// Values of one effect at coordinates of all effects.
   static Eigen::VectorXd values(const PlacedEffect& placed, const double* coordinates);
 

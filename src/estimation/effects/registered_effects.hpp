@@ -5,7 +5,10 @@
 #include "coil_gains.hpp"
 #include "encoder_harmonics.hpp"
 #include "marker_registration.hpp"
+#include "motion_delays.hpp"
 #include "pole_gains.hpp"
+#include "rotor_friction.hpp"
+#include "rotor_inertia.hpp"
 #include "rotor_unbalance.hpp"
 #include "strength_scale.hpp"
 #include "tilt_cross_axis.hpp"
@@ -32,6 +35,12 @@ using Registered = std::tuple<TorqueBias,
                               TorqueCurveChange,
                               MarkerRegistration,
                               TrackerRegistration,
-                              TorqueRegistration>;
+                              TorqueRegistration,
+                              RotorInertia,
+                              ViscousFriction,
+                              CoulombFriction,
+                              CurrentDelay,
+                              CurrentDispersion,
+                              TrackerDelay>;
 
 }  // namespace sac::effects

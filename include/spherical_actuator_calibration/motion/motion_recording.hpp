@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/measurement/measurements.hpp"
+
+namespace sac {
+
+/// Streams of one span of time, each with stamps that increase strictly.
+struct MotionStreams {
+  std::vector<Stamp> joint_stamps;
+  /// Readings [rad], without the jumps of a sensor that wraps around.
+  std::vector<Eigen::Vector3d> joints;
+  std::vector<Stamp> current_stamps;
+  /// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
+  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> currents;
+  std::vector<Stamp> orientation_stamps;
+  std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
+};
+
+/// What a rotor did while it moved: spans with clocks of their own, as of several recordings.
+struct MotionRecording {
+  std::vector<MotionStreams> spans;
+  std::size_t dropped = 0;  ///< measurements that were not finite, or out of order
+
+  bool empty() const { return spans.empty(); }
+};
+
+/// Whether a rotor moves with currents, so that the recording is one of motion rather than dwells:
+/// it turns for most of the time, and nothing else would tell the torque.
+bool tellsMotion(const MotionRecording& recording);
+
+/// Collects streams as they come.
+class MotionRecorder {
+ public:
+  explicit MotionRecorder(std::size_t coils) : coils_(coils) {}
+
+  // What is not finite, not later than the last of its kind, or beyond a million of it, is dropped
+  // and counted.
+  void add(const JointMeasurement& measurement);
+  void add(const CurrentMeasurement& measurement);
+  void add(const OrientationMeasurement& measurement);
+
+  /// No more measurements of this base of time follow.
+  void finish();
+  /// All spans with joint angles and currents so far.
+  MotionRecording take();
+
+ private:
+  bool isNext(const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
+
+  std::size_t coils_;
+  MotionStreams streams_;
+  std::vector<float> currents_;
+  MotionRecording recording_;
+};
+
+}  // namespace sac

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+
+namespace sac {
+
+/// The cycle motion: all parameters from a recording of motion, where there is one (doc/motion.md).
+CycleOutcome runMotionCycle(const CalibrationModel& model,
+                            const MotionRecording* recording,
+                            const CalibrationState& state,
+                            const CalibrationConfig& config);
+
+}  // namespace sac

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+
+namespace sac {
+
+/// Joint angles at a time between readings.
+struct TrackPoint {
+  Eigen::Vector3d position;       ///< [rad]
+  Eigen::Vector3d velocity;       ///< [rad/s]
+  std::size_t first = 0;          ///< of the four readings that it is made of
+  std::array<double, 4> share{};  ///< of each in `position`
+};
+
+/// The readings of one span as a smooth motion: cubic through the nearest four readings.
+class JointTrack {
+ public:
+  /// Keeps a reference. Times count in seconds from `origin`.
+  JointTrack(const MotionStreams& streams, Stamp origin);
+
+  std::size_t size() const { return times_.size(); }
+  double time(std::size_t n) const { return times_[n]; }
+  const Eigen::Vector3d& reading(std::size_t n) const { return streams_->joints[n]; }
+  /// Usual step between readings [s].
+  double step() const { return step_; }
+  /// Whether no reading is missing between n and n + 1.
+  bool isWhole(std::size_t n) const { return times_[n + 1] - times_[n] <= kGap * step_; }
+
+  /// Nothing where readings are missing.
+  std::optional<TrackPoint> at(double time) const;
+
+ private:
+  static constexpr double kGap = 2.5;  ///< steps
+
+  const MotionStreams* streams_;
+  std::vector<double> times_;
+  double step_ = 0.0;
+};
+
+/// Median step of increasing times; 0 for fewer than two.
+double usualStep(const std::vector<double>& times);
+
+/// Seconds from `origin`.
+std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps);
+
+}  // namespace sac

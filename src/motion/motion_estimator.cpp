@@ -1,0 +1,323 @@
+#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "motion_solution.hpp"
+#include "motion_terms.hpp"
+#include "noise_factors.hpp"
+
+namespace sac {
+namespace {
+
+double chiSquareLimitOf(double degrees_of_freedom, double probability) {
+  return boost::math::quantile(
+      boost::math::complement(boost::math::chi_squared(degrees_of_freedom), probability));
+}
+
+/// The steps of one estimation from motion.
+class Estimator {
+ public:
+  Estimator(const MotionProblem& problem,
+            const EstimationOptions& estimation,
+            const MotionOptions& options)
+      : problem_(problem),
+        estimation_(estimation),
+        options_(options),
+        terms_(problem, options),
+        descent_(problem, estimation, options, terms_) {}
+
+  MotionEstimate run();
+
+ private:
+  bool solve();
+  bool rejectOutliers();
+  bool weighAnew();
+  std::size_t activeWindows() const;
+  double windowFreedom() const;
+  double windowSquares() const;
+  double orientationChiSquare() const;
+  void judgeMisfit();
+  void findCovariance();
+  void listResiduals();
+  void summarise();
+
+  const MotionProblem& problem_;
+  const EstimationOptions& estimation_;
+  const MotionOptions& options_;
+  MotionTerms terms_;
+  MotionDescent descent_;
+  NoiseFactors factors_;
+  MotionEstimate result_;
+};
+
+std::size_t Estimator::activeWindows() const {
+  const std::vector<WindowTerm>& windows = terms_.windows();
+  return static_cast<std::size_t>(std::count_if(
+      windows.begin(), windows.end(), [](const WindowTerm& term) { return term.active; }));
+}
+
+double Estimator::windowFreedom() const {
+  const auto values = static_cast<double>(terms_.valuesPerWindow());
+  return values * static_cast<double>(activeWindows()) -
+         static_cast<double>(descent_.estimated().size());
+}
+
+double Estimator::windowSquares() const {
+  double sum = 0.0;
+  for (const WindowTerm& term : terms_.windows()) {
+    sum += term.active ? term.square * static_cast<double>(terms_.valuesPerWindow()) : 0.0;
+  }
+  return sum;
+}
+
+/// Marks what does not fit as inactive, and as active again what does; whether that changed
+/// anything. Where most fit badly, outliers stand out of their scatter.
+bool Estimator::rejectOutliers() {
+  const auto reject = [this](auto& terms, double freedom, const auto& counts) {
+    std::vector<double> squares;
+    for (const auto& term : terms) {
+      if (counts(term)) {
+        squares.push_back(term.square);
+      }
+    }
+    if (squares.empty()) {
+      return false;
+    }
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::nth_element(squares.begin(), middle, squares.end());
+    const double usual = chiSquareLimitOf(freedom, 0.5) / freedom;
+    const double probability =
+        estimation_.false_alarm_probability / static_cast<double>(squares.size());
+    const double limit =
+        chiSquareLimitOf(freedom, probability) / freedom * std::max(1.0, *middle / usual);
+    bool changed = false;
+    for (auto& term : terms) {
+      const bool active = !counts(term) || term.square <= limit;
+      changed = changed || active != term.active;
+      term.active = active;
+    }
+    return changed;
+  };
+  const bool windows = reject(terms_.windows(),
+                              static_cast<double>(terms_.valuesPerWindow()),
+                              [](const WindowTerm& term) { return term.residual.size() > 0; });
+  const bool orientations =
+      reject(terms_.orientations(), 3.0, [](const OrientationTerm& term) { return term.is_known; });
+  return windows || orientations;
+}
+
+/// Noise and outliers at the present solution; whether that changes anything that counts.
+bool Estimator::weighAnew() {
+  constexpr double kNoticeable = 1.1;
+  const double values =
+      static_cast<double>(terms_.valuesPerWindow()) * static_cast<double>(activeWindows());
+  const double share = std::max(0.1, windowFreedom() / values);
+  const double current_variance = terms_.noise().current * terms_.noise().current;
+  const NoiseFactors factors = likelyFactors(terms_.windows(), current_variance, share);
+  const auto differs = [](double one, double other) {
+    return std::max(one / other, other / one) > kNoticeable;
+  };
+  const bool changes =
+      differs(factors.joints, factors_.joints) || differs(factors.currents, factors_.currents);
+  if (changes) {
+    factors_ = factors;
+    terms_.setNoiseFactors(factors.joints, factors.currents);
+  }
+  return rejectOutliers() || changes;
+}
+
+bool Estimator::solve() {
+  constexpr int kMostRounds = 4;
+  descent_.solveCoarsely();
+  weighAnew();
+  if (!descent_.solveFinely(true)) {
+    return false;
+  }
+  for (int round = 0; round < kMostRounds && weighAnew(); ++round) {
+    if (!descent_.solveFinely(false)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Reduced χ² of the tracker's means over windows: drift and wrong joints show there, white noise
+/// does not.
+double Estimator::orientationChiSquare() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  double squares = 0.0;
+  double freedom = 0.0;
+  std::size_t span = 0;
+  double begin = 0.0;
+  const auto close = [&] {
+    if (count > 0.0) {
+      squares += sum.squaredNorm() / count;
+      freedom += 3.0;
+    }
+    sum.setZero();
+    count = 0.0;
+  };
+  for (const OrientationTerm& term : terms_.orientations()) {
+    if (!term.is_known || !term.active) {
+      continue;
+    }
+    if (term.span != span || term.time - begin > options_.window) {
+      close();
+      span = term.span;
+      begin = term.time;
+    }
+    sum += term.residual;
+    count += 1.0;
+  }
+  close();
+  const auto joints = static_cast<double>(problem_.model->space().pole(0));
+  return freedom > 2.0 * joints ? squares / (freedom - joints) : 0.0;
+}
+
+void Estimator::judgeMisfit() {
+  constexpr double kSignificance = 1e-3;
+  Estimate& estimate = result_.estimate;
+  const double freedom = windowFreedom();
+  estimate.degrees_of_freedom = static_cast<int>(std::lround(freedom));
+  if (freedom <= 0.0) {
+    return;
+  }
+  const double squares = windowSquares();
+  result_.summary.window_chi_square = squares / freedom;
+  result_.summary.orientation_chi_square = orientationChiSquare();
+  estimate.reduced_chi_square = squares / freedom;
+  if (squares > chiSquareLimitOf(freedom, kSignificance)) {
+    estimate.covariance_scale = std::sqrt(squares / freedom);
+  }
+}
+
+/// N⁻¹ (Σ s² N) N⁻¹ with a scale s for each kind of terms, and what held coordinates add.
+void Estimator::findCovariance() {
+  const std::vector<Eigen::Index>& estimated = descent_.estimated();
+  const Eigen::MatrixXd prior = descent_.priorInformation();
+  const MotionSums& sums = descent_.sums();
+  const auto count = static_cast<Eigen::Index>(estimated.size());
+  const Eigen::MatrixXd information = sums.information();
+  const Eigen::MatrixXd inverse = (information + prior)(estimated, estimated)
+                                      .ldlt()
+                                      .solve(Eigen::MatrixXd::Identity(count, count));
+  const double windows = std::pow(result_.estimate.covariance_scale, 2);
+  const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
+  const Eigen::MatrixXd noise =
+      (windows * sums.balance.information + orientations * sums.orientation.information + prior)(
+          estimated, estimated);
+  Eigen::MatrixXd held = problem_.prior.covariance;
+  for (const Eigen::Index a : estimated) {
+    held.row(a).setZero();
+    held.col(a).setZero();
+  }
+  Eigen::MatrixXd others = information(estimated, Eigen::all);
+  others(Eigen::all, estimated).setZero();
+  const Eigen::MatrixXd gain = -inverse * others;
+  const Eigen::MatrixXd with_held = gain * held;
+  const Eigen::MatrixXd own = inverse * noise * inverse + with_held * gain.transpose();
+  ParameterBelief& belief = result_.estimate.belief;
+  belief.x = descent_.x();
+  belief.covariance = held;
+  belief.covariance(estimated, Eigen::all) += with_held;
+  belief.covariance(Eigen::all, estimated) += with_held.transpose();
+  belief.covariance(estimated, estimated) = 0.5 * (own + own.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information(estimated, estimated),
+                                                             Eigen::EigenvaluesOnly);
+  const double least = eigen.eigenvalues()[0];
+  result_.estimate.condition_number =
+      least > 0.0 ? std::sqrt(eigen.eigenvalues()[count - 1] / least) : 0.0;
+}
+
+void Estimator::listResiduals() {
+  const std::vector<WindowTerm>& windows = terms_.windows();
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    const WindowTerm& term = windows[n];
+    const JointTrack& track = terms_.spans()[term.window.span].track;
+    const TestFunctions functions(
+        track.time(term.window.first), track.time(term.window.last), options_.test_functions);
+    ObservationResidual entry;
+    entry.observation = {n, Quantity::kTorque};
+    const Eigen::VectorXd residual =
+        term.whitening.triangularView<Eigen::Lower>().solve(term.residual);
+    entry.residual = residual.head<3>() / functions.integralOfFirst();
+    entry.standardized = std::sqrt(term.square);
+    entry.rejected = !term.active;
+    result_.estimate.residuals.push_back(entry);
+  }
+}
+
+void Estimator::summarise() {
+  MotionSummary& summary = result_.summary;
+  summary.left_out = terms_.leftOut();
+  summary.values = static_cast<std::size_t>(terms_.valuesPerWindow());
+  summary.windows = terms_.windowCount();
+  for (const WindowsLeftOut& left_out : summary.left_out) {
+    summary.windows += left_out.count;
+  }
+  for (const WindowTerm& term : terms_.windows()) {
+    if (!term.active) {
+      countLeftOut("it contradicts the others: something else moved the rotor", summary.left_out);
+      continue;
+    }
+    const JointTrack& track = terms_.spans()[term.window.span].track;
+    summary.duration += track.time(term.window.last) - track.time(term.window.first);
+    ++summary.used;
+  }
+  for (const OrientationTerm& term : terms_.orientations()) {
+    summary.orientations += term.is_known && term.active ? 1 : 0;
+    summary.orientations_rejected += term.is_known && !term.active ? 1 : 0;
+  }
+  summary.joint_stddev = std::sqrt(factors_.joints) * terms_.noise().joint;
+  summary.current_stddev = std::sqrt(factors_.currents) * terms_.noise().current;
+  summary.orientation_stddev = terms_.noise().orientation;
+}
+
+MotionEstimate Estimator::run() {
+  const auto begin = std::chrono::steady_clock::now();
+  Estimate& estimate = result_.estimate;
+  estimate.belief = problem_.prior;
+  estimate.open_directions.resize(problem_.prior.x.size(), 0);
+  if (terms_.windowCount() * static_cast<std::size_t>(terms_.valuesPerWindow()) <
+      problem_.free.size()) {
+    estimate.termination = Termination::kTooFewObservations;
+    summarise();
+    return std::move(result_);
+  }
+  const bool solved = solve();
+  estimate.unobservable = descent_.open().coordinates;
+  estimate.open_directions = descent_.open().directions;
+  estimate.error_history = descent_.errors();
+  estimate.iterations = descent_.iterations();
+  estimate.termination = solved ? Termination::kConverged : Termination::kIterationLimit;
+  if (descent_.estimated().empty()) {
+    estimate.termination = Termination::kNothingObservable;
+  }
+  summarise();
+  listResiduals();
+  if (estimate.termination == Termination::kConverged) {
+    judgeMisfit();
+    findCovariance();
+  }
+  estimate.solve_time =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return std::move(result_);
+}
+
+}  // namespace
+
+MotionEstimate estimateMotion(const MotionProblem& problem,
+                              const EstimationOptions& estimation,
+                              const MotionOptions& options) {
+  return Estimator(problem, estimation, options).run();
+}
+
+}  // namespace sac

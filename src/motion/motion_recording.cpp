@@ -1,0 +1,104 @@
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "spherical_actuator_calibration/base/pi.hpp"
+
+namespace sac {
+namespace {
+
+/// The angle of the same direction nearest to the one before.
+double unwrapped(double angle, double before) {
+  return angle - 2.0 * kPi * std::round((angle - before) / (2.0 * kPi));
+}
+
+}  // namespace
+
+bool MotionRecorder::isNext(const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine) {
+  // Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
+  constexpr std::size_t kMost = 1U << 20U;
+  const bool is_next =
+      is_fine && (stamps.empty() || stamp > stamps.back()) && stamps.size() < kMost;
+  recording_.dropped += is_next ? 0 : 1;
+  return is_next;
+}
+
+void MotionRecorder::add(const JointMeasurement& measurement) {
+  if (!isNext(streams_.joint_stamps, measurement.stamp, measurement.position.allFinite())) {
+    return;
+  }
+  Eigen::Vector3d position = measurement.position;
+  if (!streams_.joints.empty()) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      position[k] = unwrapped(position[k], streams_.joints.back()[k]);
+    }
+  }
+  streams_.joint_stamps.push_back(measurement.stamp);
+  streams_.joints.push_back(position);
+}
+
+void MotionRecorder::add(const CurrentMeasurement& measurement) {
+  const bool is_fine = measurement.current.size() == static_cast<Eigen::Index>(coils_) &&
+                       measurement.current.allFinite();
+  if (!isNext(streams_.current_stamps, measurement.stamp, is_fine)) {
+    return;
+  }
+  streams_.current_stamps.push_back(measurement.stamp);
+  for (const double current : measurement.current) {
+    currents_.push_back(static_cast<float>(current));
+  }
+}
+
+void MotionRecorder::add(const OrientationMeasurement& measurement) {
+  const double norm = measurement.q_stator_rotor.norm();
+  const bool is_fine = std::isfinite(norm) && norm > 0.5;
+  if (!isNext(streams_.orientation_stamps, measurement.stamp, is_fine)) {
+    return;
+  }
+  streams_.orientation_stamps.push_back(measurement.stamp);
+  streams_.orientations.push_back(measurement.q_stator_rotor.normalized());
+}
+
+void MotionRecorder::finish() {
+  if (!streams_.joints.empty() && !streams_.current_stamps.empty()) {
+    const auto rows = static_cast<Eigen::Index>(streams_.current_stamps.size());
+    streams_.currents = Eigen::Map<decltype(streams_.currents)>(
+        currents_.data(), rows, static_cast<Eigen::Index>(coils_));
+    recording_.spans.push_back(std::move(streams_));
+  }
+  streams_ = MotionStreams();
+  currents_ = {};
+}
+
+MotionRecording MotionRecorder::take() {
+  finish();
+  return std::exchange(recording_, MotionRecording());
+}
+
+bool tellsMotion(const MotionRecording& recording) {
+  constexpr double kSpan = 0.1;      // [s] over which a rotor turns or rests
+  constexpr double kMoved = 0.01;    // [rad] in that time
+  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
+  std::size_t moving = 0;
+  std::size_t spans = 0;
+  Eigen::Index driven = 0;
+  Eigen::Index currents = 0;
+  for (const MotionStreams& streams : recording.spans) {
+    std::size_t begin = 0;
+    for (std::size_t n = 1; n < streams.joints.size(); ++n) {
+      if (secondsBetween(streams.joint_stamps[begin], streams.joint_stamps[n]) < kSpan) {
+        continue;
+      }
+      ++spans;
+      moving += (streams.joints[n] - streams.joints[begin]).norm() > kMoved ? 1 : 0;
+      begin = n;
+    }
+    currents += streams.currents.rows();
+    driven += (streams.currents.cwiseAbs().rowwise().maxCoeff().array() > kCurrent).count();
+  }
+  return spans > 0 && 2 * moving > spans && 2 * driven > currents;
+}
+
+}  // namespace sac

@@ -1,0 +1,210 @@
+#include "motion_solution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace sac {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return 1.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+MotionDescent::MotionDescent(const MotionProblem& problem,
+                             const EstimationOptions& estimation,
+                             const MotionOptions& options,
+                             MotionTerms& terms)
+    : problem_(problem),
+      estimation_(estimation),
+      options_(options),
+      terms_(terms),
+      x_(problem.prior.x),
+      estimated_(problem.free) {
+  open_.directions.resize(x_.size(), 0);
+}
+
+MotionSums MotionDescent::sumsAt(const Eigen::VectorXd& x, const TermOrder& order) {
+  return {terms_.balance(x, order), terms_.orientation(x, order)};
+}
+
+/// Misfits count against their usual size: far from the solution all windows fit badly.
+void MotionDescent::rescale() {
+  std::vector<double> windows;
+  std::vector<double> orientations;
+  for (const WindowTerm& term : terms_.windows()) {
+    if (term.residual.size() > 0) {
+      windows.push_back(term.square);
+    }
+  }
+  for (const OrientationTerm& term : terms_.orientations()) {
+    if (term.is_known) {
+      orientations.push_back(term.square);
+    }
+  }
+  terms_.setScales(std::max(1.0, median(windows)), std::max(1.0, median(orientations)));
+}
+
+double MotionDescent::cost(const MotionSums& sums) const {
+  const Eigen::VectorXd apart = x_ - problem_.prior.x;
+  return sums.misfit() + apart.dot(priorInformation() * apart);
+}
+
+Eigen::MatrixXd MotionDescent::priorInformation() const {
+  const ParameterSpace& space = problem_.model->space();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(x_.size(), x_.size());
+  for (const Eigen::Index p : estimated_) {
+    const double variance =
+        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
+    information(p, p) += variance > 0.0 ? 1.0 / variance : 0.0;
+  }
+  if (open_.directions.cols() > 0) {
+    const Eigen::MatrixXd& D = open_.directions;
+    const Eigen::MatrixXd covariance = D.transpose() * problem_.prior.covariance * D;
+    information += D * covariance.ldlt().solve(D.transpose());
+  }
+  return information;
+}
+
+void MotionDescent::judgeOpen() {
+  Eigen::MatrixXd information = sums_.information()(problem_.free, problem_.free);
+  const ParameterSpace& space = problem_.model->space();
+  for (std::size_t k = 0; k < problem_.free.size(); ++k) {
+    const Eigen::Index p = problem_.free[k];
+    const double variance =
+        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
+    const auto place = static_cast<Eigen::Index>(k);
+    information(place, place) += variance > 0.0 ? 1.0 / variance : 0.0;
+  }
+  open_ = unidentifiedPart(information, problem_.free, space, estimation_.unobservable_stddev);
+  estimated_.clear();
+  std::set_difference(problem_.free.begin(),
+                      problem_.free.end(),
+                      open_.coordinates.begin(),
+                      open_.coordinates.end(),
+                      std::back_inserter(estimated_));
+  for (const Eigen::Index p : open_.coordinates) {
+    x_[p] = problem_.prior.x[p];
+  }
+}
+
+/// Gauss–Newton, P entries.
+Eigen::VectorXd MotionDescent::step() {
+  const Eigen::MatrixXd prior = priorInformation();
+  const Eigen::MatrixXd information = (sums_.information() + prior)(estimated_, estimated_);
+  const Eigen::VectorXd gradient = (sums_.gradient() + prior * (x_ - problem_.prior.x))(estimated_);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(x_.size());
+  result(estimated_) = -information.ldlt().solve(gradient);
+  return result;
+}
+
+void MotionDescent::noteError() {
+  const auto values = terms_.windowCount() * static_cast<std::size_t>(terms_.valuesPerWindow());
+  errors_.push_back(std::sqrt(sums_.balance.misfit / static_cast<double>(values)));
+}
+
+/// Steps until the next one is at most `tolerance` standard deviations long in all; false where
+/// they do not end. The noise of windows is looked at in the first evaluation only.
+bool MotionDescent::descend(TermOrder order, double tolerance, int most_iterations) {
+  constexpr int kMostHalvings = 6;
+  sums_ = sumsAt(x_, order);
+  order.balance.covariance = false;
+  rescale();
+  if (errors_.empty()) {
+    noteError();
+  }
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    judgeOpen();
+    if (estimated_.empty()) {
+      return true;
+    }
+    Eigen::VectorXd forward = step();
+    if (!forward.allFinite()) {
+      return false;
+    }
+    const double length = std::sqrt(std::max(0.0, forward.dot(sums_.information() * forward)));
+    if (length <= tolerance) {
+      return true;
+    }
+    const double before = cost(sums_);
+    const Eigen::VectorXd start = x_;
+    for (int halving = 0; halving < kMostHalvings; ++halving) {
+      x_ = start + forward;
+      sums_ = sumsAt(x_, order);
+      if (cost(sums_) <= before || length < 1.0) {
+        break;
+      }
+      forward *= 0.5;
+    }
+    ++iterations_;
+    rescale();
+    noteError();
+  }
+  return false;
+}
+
+/// Currents vary too fast for a start half a period off: of several delays the one with the least
+/// misfit after one step, by a part of the windows.
+void MotionDescent::findDelay(const TermOrder& order) {
+  constexpr double kGrid = 0.01;       // [s]
+  constexpr double kLoose = 0.1;       // coordinates may go so far [rad]
+  constexpr std::size_t kEnough = 30;  // windows
+  const Eigen::Index place = terms_.places().current_delay;
+  if (place < 0) {
+    return;
+  }
+  TermOrder sparse = order;
+  sparse.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
+  const ParameterSpace& space = problem_.model->space();
+  const double scale = space.effects().scale(place - space.effect());
+  std::vector<Eigen::Index> others = problem_.free;
+  others.erase(std::remove(others.begin(), others.end(), place), others.end());
+  double least = std::numeric_limits<double>::infinity();
+  double best = 0.0;
+  const int reach = static_cast<int>(std::floor(options_.largest_delay / kGrid + 1e-9));
+  for (int n = -reach; n <= reach; ++n) {
+    Eigen::VectorXd x = problem_.prior.x;
+    x[place] = kGrid * n / scale;
+    const TermSum sum = terms_.balance(x, sparse);
+    Eigen::MatrixXd information = sum.information(others, others);
+    information.diagonal().array() += 1.0 / (kLoose * kLoose);
+    const Eigen::VectorXd gradient = sum.gradient(others);
+    const double left = sum.misfit - gradient.dot(information.ldlt().solve(gradient));
+    if (left < least) {
+      least = left;
+      best = x[place];
+    }
+  }
+  x_[place] = best;
+}
+
+void MotionDescent::solveCoarsely() {
+  constexpr int kMostSteps = 8;
+  constexpr double kNear = 3.0;
+  terms_.setScales(1e12, 1e12);
+  TermOrder order;
+  order.balance.stride = terms_.coarseStride();
+  order.balance.covariance = true;
+  findDelay(order);
+  // Where coarse steps find no end, fine ones may.
+  descend(order, kNear, kMostSteps);
+}
+
+bool MotionDescent::solveFinely(bool covariance) {
+  constexpr double kEnd = 0.02;
+  TermOrder order;
+  order.balance.covariance = covariance;
+  return descend(order, kEnd, estimation_.max_iterations);
+}
+
+}  // namespace sac

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "motion_terms.hpp"
+#include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
+
+namespace sac {
+
+/// Both kinds of terms at one place.
+struct MotionSums {
+  TermSum balance;
+  TermSum orientation;
+
+  Eigen::MatrixXd information() const { return balance.information + orientation.information; }
+  Eigen::VectorXd gradient() const { return balance.gradient + orientation.gradient; }
+  double misfit() const { return balance.misfit + orientation.misfit; }
+};
+
+/// The descent from the prior to the solution, coarse first.
+class MotionDescent {
+ public:
+  MotionDescent(const MotionProblem& problem,
+                const EstimationOptions& estimation,
+                const MotionOptions& options,
+                MotionTerms& terms);
+
+  /// Coarsely from the prior, with the delay of the currents that explains most.
+  void solveCoarsely();
+  /// On from the present place, to the last digit that counts; false where there is no end.
+  /// `covariance`: the noise of windows is looked at anew.
+  bool solveFinely(bool covariance);
+
+  const Eigen::VectorXd& x() const { return x_; }
+  const MotionSums& sums() const { return sums_; }
+  const UnidentifiedPart& open() const { return open_; }
+  /// Free coordinates without those held whole.
+  const std::vector<Eigen::Index>& estimated() const { return estimated_; }
+  /// Information of stated effects and of directions that are held, P×P.
+  Eigen::MatrixXd priorInformation() const;
+  int iterations() const { return iterations_; }
+  /// Root mean squares of standardised residuals, before the first and after each iteration.
+  const std::vector<double>& errors() const { return errors_; }
+
+ private:
+  void findDelay(const TermOrder& order);
+  bool descend(TermOrder order, double tolerance, int most_iterations);
+  void noteError();
+  MotionSums sumsAt(const Eigen::VectorXd& x, const TermOrder& order);
+  void rescale();
+  double cost(const MotionSums& sums) const;
+  Eigen::VectorXd step();
+  void judgeOpen();
+
+  const MotionProblem& problem_;
+  const EstimationOptions& estimation_;
+  const MotionOptions& options_;
+  MotionTerms& terms_;
+  Eigen::VectorXd x_;
+  MotionSums sums_;
+  UnidentifiedPart open_;
+  std::vector<Eigen::Index> estimated_;
+  int iterations_ = 0;
+  std::vector<double> errors_;
+};
+
+}  // namespace sac

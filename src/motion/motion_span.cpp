@@ -1,0 +1,102 @@
+#include "motion_span.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sac {
+namespace {
+
+/// Whether currents were measured without a hole from `begin` to `end`.
+bool hasCurrents(const MotionSpan& span, double begin, double end) {
+  constexpr double kGap = 3.0;  // steps
+  const std::vector<double>& times = span.current_times;
+  auto place = std::lower_bound(times.begin(), times.end(), begin);
+  if (place == times.begin() || times.back() < end) {
+    return false;
+  }
+  for (--place; *place < end; ++place) {
+    if (place[1] - place[0] > kGap * span.current_step) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Fastest joint between readings some steps apart [rad/s].
+double largestSpeed(const JointTrack& track, const MotionWindow& window) {
+  constexpr std::size_t kParts = 5;
+  const std::size_t step = std::max<std::size_t>(1, (window.last - window.first) / kParts);
+  double fastest = 0.0;
+  for (std::size_t n = window.first; n + step <= window.last; n += step) {
+    const double time = track.time(n + step) - track.time(n);
+    fastest = std::max(fastest, (track.reading(n + step) - track.reading(n)).norm() / time);
+  }
+  return fastest;
+}
+
+/// Why a window cannot serve; empty: it can.
+std::string refusal(const MotionSpan& span,
+                    const MotionWindow& window,
+                    const MotionOptions& options) {
+  for (std::size_t n = window.first - 1; n <= window.last; ++n) {
+    if (!span.track.isWhole(n)) {
+      return "joint readings are missing";
+    }
+  }
+  const double begin = span.track.time(window.first) - options.largest_delay;
+  const double end = span.track.time(window.last) + options.largest_delay;
+  if (!hasCurrents(span, begin, end)) {
+    return "currents are missing";
+  }
+  return largestSpeed(span.track, window) < options.least_speed ? "the rotor rests" : "";
+}
+
+}  // namespace
+
+MotionSpan::MotionSpan(const MotionStreams& recorded)
+    : streams(&recorded),
+      track(recorded, recorded.joint_stamps.front()),
+      current_times(secondsFrom(recorded.joint_stamps.front(), recorded.current_stamps)),
+      orientation_times(secondsFrom(recorded.joint_stamps.front(), recorded.orientation_stamps)),
+      current_step(usualStep(current_times)) {}
+
+void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_out) {
+  const auto place = std::find_if(left_out.begin(), left_out.end(), [&](const WindowsLeftOut& one) {
+    return one.reason == reason;
+  });
+  if (place == left_out.end()) {
+    left_out.push_back({reason, 1});
+  } else {
+    ++place->count;
+  }
+}
+
+std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
+                                     const MotionOptions& options,
+                                     std::vector<WindowsLeftOut>& left_out) {
+  constexpr std::size_t kLeastReadings = 12;
+  std::vector<MotionWindow> windows;
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    const JointTrack& track = spans[s].track;
+    if (track.step() <= 0.0) {
+      continue;
+    }
+    const std::size_t length = std::max(
+        kLeastReadings, static_cast<std::size_t>(std::lround(options.window / track.step())));
+    // Two readings more on either side, for what is interpolated there.
+    std::size_t first = 2;
+    while (first + length + 2 < track.size()) {
+      const MotionWindow window{s, first, first + length};
+      const std::string reason = refusal(spans[s], window, options);
+      if (reason.empty()) {
+        windows.push_back(window);
+      } else {
+        countLeftOut(reason, left_out);
+      }
+      first += length;
+    }
+  }
+  return windows;
+}
+
+}  // namespace sac

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "joint_track.hpp"
+#include "spherical_actuator_calibration/motion/motion_options.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "spherical_actuator_calibration/motion/motion_summary.hpp"
+
+namespace sac {
+
+/// One span of a recording, with times in seconds from its first reading.
+struct MotionSpan {
+  explicit MotionSpan(const MotionStreams& recorded);
+
+  const MotionStreams* streams;
+  JointTrack track;
+  std::vector<double> current_times;      ///< stamps
+  std::vector<double> orientation_times;  ///< stamps
+  double current_step;                    ///< usual
+};
+
+/// A stretch of readings without holes, over which momentum is balanced.
+struct MotionWindow {
+  std::size_t span = 0;
+  std::size_t first = 0;  ///< reading at the begin
+  std::size_t last = 0;   ///< reading at the end
+};
+
+/// Cuts windows one after the other out of what has no holes, also within the largest delay of the
+/// currents, and where the rotor moves. What is left out is added to `left_out`.
+std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
+                                     const MotionOptions& options,
+                                     std::vector<WindowsLeftOut>& left_out);
+
+/// Counts one more window left out for a reason.
+void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_out);
+
+}  // namespace sac

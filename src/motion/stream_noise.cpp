@@ -1,0 +1,91 @@
+#include "stream_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tracker_term.hpp"
+
+namespace sac {
+namespace {
+
+/// Differences are sampled where there are more.
+constexpr std::size_t kEnough = 20000;
+
+/// Standard deviation of what has this one's absolute values, by their median.
+double robustStddev(std::vector<double> magnitudes) {
+  constexpr double kMedianOfNormal = 0.6745;
+  if (magnitudes.empty()) {
+    return 0.0;
+  }
+  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
+  return *middle / kMedianOfNormal;
+}
+
+/// Standard deviation of white noise by third differences of series, each `get(n)` for n < count.
+class ThirdDifferences {
+ public:
+  template <typename Get>
+  void add(std::size_t count, const Get& get) {
+    const std::size_t stride = std::max<std::size_t>(1, count / kEnough);
+    for (std::size_t n = 3; n < count; n += stride) {
+      magnitudes_.push_back(std::abs(get(n) - 3.0 * get(n - 1) + 3.0 * get(n - 2) - get(n - 3)));
+    }
+  }
+  double stddev() const { return robustStddev(magnitudes_) / std::sqrt(20.0); }
+
+ private:
+  std::vector<double> magnitudes_;
+};
+
+double orientationNoise(const std::vector<MotionSpan>& spans,
+                        const CalibrationModel& model,
+                        const Eigen::VectorXd& x) {
+  ThirdDifferences differences;
+  const MotionPlaces places(model.space());
+  for (const MotionSpan& span : spans) {
+    TrackerTerm term(model, places, x);
+    std::vector<Eigen::Vector3d> misfits;
+    for (std::size_t n = 0; n < std::min(kEnough, span.orientation_times.size()); ++n) {
+      if (term.evaluate(span, n)) {
+        misfits.push_back(term.residual());
+      }
+    }
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      differences.add(misfits.size(), [&](std::size_t n) { return misfits[n][k]; });
+    }
+  }
+  return differences.stddev();
+}
+
+}  // namespace
+
+StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
+                    const CalibrationModel& model,
+                    const Eigen::VectorXd& x) {
+  // Streams without noise have at least that of their numbers.
+  constexpr double kLeastJoint = 1e-9;
+  constexpr double kLeastCurrent = 1e-7;
+  constexpr double kLeastOrientation = 1e-8;
+  StreamNoise noise;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    ThirdDifferences joint;
+    for (const MotionSpan& span : spans) {
+      joint.add(span.track.size(), [&](std::size_t n) { return span.track.reading(n)[k]; });
+    }
+    noise.joint[k] = std::max(kLeastJoint, joint.stddev());
+  }
+  ThirdDifferences current;
+  for (const MotionSpan& span : spans) {
+    for (Eigen::Index j = 0; j < span.streams->currents.cols(); ++j) {
+      current.add(span.current_times.size(), [&](std::size_t n) {
+        return static_cast<double>(span.streams->currents(static_cast<Eigen::Index>(n), j));
+      });
+    }
+  }
+  noise.current = std::max(kLeastCurrent, current.stddev());
+  noise.orientation = std::max(kLeastOrientation, orientationNoise(spans, model, x));
+  return noise;
+}
+
+}  // namespace sac

@@ -1,0 +1,35 @@
+#include "tracker_term.hpp"
+
+namespace sac {
+
+TrackerTerm::TrackerTerm(const CalibrationModel& model,
+                         const MotionPlaces& places,
+                         const Eigen::VectorXd& x)
+    : model_(model), places_(places), x_(x), delay_(0.0) {
+  if (places.tracker_delay >= 0) {
+    const ParameterSpace& space = model.space();
+    scale_ = space.effects().scale(places.tracker_delay - space.effect());
+    delay_ = scale_ * x[places.tracker_delay];
+  }
+}
+
+bool TrackerTerm::evaluate(const MotionSpan& span, std::size_t orientation) {
+  time_ = span.orientation_times[orientation] - delay_;
+  const std::optional<TrackPoint> track = span.track.at(time_);
+  if (!track) {
+    return false;
+  }
+  sample_.joint_position = track->position;
+  sample_.R_stator_rotor = span.streams->orientations[orientation].toRotationMatrix();
+  residual_ = model_.orientationResidual(sample_, x_, &jacobian_);
+  if (places_.tracker_delay >= 0) {
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      jacobian_.col(places_.tracker_delay) -=
+          (scale_ * track->velocity[static_cast<Eigen::Index>(k)]) *
+          jacobian_.col(model_.space().joint(k));
+    }
+  }
+  return true;
+}
+
+}  // namespace sac

@@ -1,0 +1,124 @@
+#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "moving_rotor.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+
+namespace sac {
+namespace {
+
+MotionEstimate estimated(const CalibrationModel& model, const MotionRecording& recording) {
+  MotionProblem problem;
+  problem.model = &model;
+  problem.recording = &recording;
+  problem.prior = nominalState(model.space(), {}).belief;
+  problem.free.resize(static_cast<std::size_t>(model.space().size()));
+  std::iota(problem.free.begin(), problem.free.end(), 0);
+  return estimateMotion(problem, {}, {});
+}
+
+CalibrationModel motionModel() {
+  return CalibrationModel(ParameterSpace(scenarios::paperNominal(), withMotionEffects({})));
+}
+
+/// A unit with errors, and what else moves it.
+MovingRotor madeRotor() {
+  scenarios::Generator generator(3);
+  MovingRotor moving;
+  moving.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+  moving.rotor.inertia(0, 0) *= 1.1;
+  moving.rotor.inertia(0, 1) = moving.rotor.inertia(1, 0) = 2e-5;
+  moving.rotor.unbalance = Eigen::Vector3d(1e-3, -5e-4, 2e-3);
+  return moving;
+}
+
+double valueOf(const CalibrationModel& model, const MotionEstimate& found, const char* name) {
+  const ParameterSpace& space = model.space();
+  const Eigen::VectorXd values = space.reportedValues(found.estimate.belief.x);
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    if (space.name(p) == name) {
+      return values[p];
+    }
+  }
+  ADD_FAILURE() << name;
+  return 0.0;
+}
+
+TEST(MotionEstimator, FindsTheUnitThatMoved) {
+  MovingRotor moving = madeRotor();
+  moving.current_delay = 0.03;
+  moving.tracker_delay = -0.02;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, moving.record());
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_TRUE(found.estimate.unobservable.empty());
+  const ParameterSpace& space = model.space();
+  const Eigen::VectorXd truth = space.coordinatesOf(moving.truth);
+  const Eigen::Index geometry = space.effect();
+  EXPECT_LT((found.estimate.belief.x - truth).head(geometry).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_NEAR(valueOf(model, found, "rotor_inertia/xx"), moving.rotor.inertia(0, 0), 1e-6);
+  EXPECT_NEAR(valueOf(model, found, "rotor_inertia/xy"), 2e-5, 1e-6);
+  EXPECT_NEAR(valueOf(model, found, "rotor_unbalance/z"), 2e-3, 2e-5);
+  EXPECT_NEAR(valueOf(model, found, "current_delay"), 0.0295, 2e-5);
+  EXPECT_NEAR(valueOf(model, found, "tracker_delay"), -0.02, 2e-5);
+}
+
+TEST(MotionEstimator, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
+  MovingRotor moving = madeRotor();
+  moving.push = 5e-3;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, moving.record());
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  std::size_t rejected = 0;
+  for (const WindowsLeftOut& left_out : found.summary.left_out) {
+    rejected += left_out.reason.find("something else") != std::string::npos ? left_out.count : 0;
+  }
+  EXPECT_GE(rejected, 2U);
+  EXPECT_LE(rejected, 6U);
+  const ParameterSpace& space = model.space();
+  const Eigen::VectorXd apart = found.estimate.belief.x - space.coordinatesOf(moving.truth);
+  EXPECT_LT(apart.head(space.effect()).cwiseAbs().maxCoeff(), 2e-4);
+}
+
+TEST(MotionEstimator, CutsWindowsAroundHoles) {
+  MotionRecording recording = madeRotor().record();
+  MotionStreams& streams = recording.spans.front();
+  const auto begin = streams.joints.begin() + 2600;
+  streams.joints.erase(begin, begin + 50);
+  const auto stamps = streams.joint_stamps.begin() + 2600;
+  streams.joint_stamps.erase(stamps, stamps + 50);
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, recording);
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  const std::vector<WindowsLeftOut>& left_out = found.summary.left_out;
+  EXPECT_TRUE(std::any_of(left_out.begin(), left_out.end(), [](const WindowsLeftOut& one) {
+    return one.reason == "joint readings are missing" && one.count == 1;
+  }));
+  EXPECT_LE(found.estimate.reduced_chi_square, 2.0);
+}
+
+TEST(MotionEstimator, WithoutATrackerLeavesTheTurnOfTheStatorOpen) {
+  MovingRotor moving = madeRotor();
+  moving.has_tracker = false;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, moving.record());
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_GT(found.estimate.open_directions.cols() +
+                static_cast<Eigen::Index>(found.estimate.unobservable.size()),
+            0);
+}
+
+TEST(MotionEstimator, RefusesARecordingThatIsTooShort) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 0.8;
+  const CalibrationModel model = motionModel();
+  EXPECT_EQ(estimated(model, moving.record()).estimate.termination,
+            Termination::kTooFewObservations);
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,78 @@
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace sac {
+namespace {
+
+JointMeasurement joints(Stamp stamp, double spin) {
+  return {stamp, Eigen::Vector3d(0.1, 0.2, spin)};
+}
+
+CurrentMeasurement currents(Stamp stamp) {
+  return {stamp, Eigen::Vector2d(0.5, -0.25)};
+}
+
+TEST(MotionRecorder, TakesNoJumpOfASensorThatWrapsAround) {
+  MotionRecorder recorder(2);
+  recorder.add(joints(1, 3.1));
+  recorder.add(joints(2, -3.1));
+  recorder.add(joints(3, -3.0));
+  recorder.add(currents(1));
+  const MotionRecording recording = recorder.take();
+  ASSERT_EQ(recording.spans.size(), 1U);
+  EXPECT_NEAR(recording.spans[0].joints[1][2], 2.0 * M_PI - 3.1, 1e-12);
+  EXPECT_NEAR(recording.spans[0].joints[2][2], 2.0 * M_PI - 3.0, 1e-12);
+}
+
+TEST(MotionRecorder, DropsWhatIsOutOfOrderOrNotANumber) {
+  MotionRecorder recorder(2);
+  recorder.add(joints(5, 0.0));
+  recorder.add(joints(5, 0.1));
+  recorder.add(joints(4, 0.1));
+  recorder.add(joints(6, std::numeric_limits<double>::quiet_NaN()));
+  recorder.add(currents(7));
+  recorder.add(CurrentMeasurement{8, Eigen::VectorXd::Zero(3)});
+  recorder.add(OrientationMeasurement{9, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)});
+  const MotionRecording recording = recorder.take();
+  EXPECT_EQ(recording.dropped, 5U);
+  ASSERT_EQ(recording.spans.size(), 1U);
+  EXPECT_EQ(recording.spans[0].joints.size(), 1U);
+  EXPECT_FLOAT_EQ(recording.spans[0].currents(0, 1), -0.25F);
+}
+
+TEST(MotionRecorder, KeepsSpansApart) {
+  MotionRecorder recorder(2);
+  for (int span = 0; span < 2; ++span) {
+    recorder.add(joints(1, 0.0));
+    recorder.add(currents(1));
+    recorder.finish();
+  }
+  recorder.add(joints(1, 0.0));  // without currents it tells no motion
+  EXPECT_EQ(recorder.take().spans.size(), 2U);
+}
+
+TEST(MotionRecorder, TellsMotionFromDwells) {
+  MotionRecorder moving(2);
+  MotionRecorder resting(2);
+  MotionRecorder pushed_by_hand(2);
+  for (int n = 0; n < 1000; ++n) {
+    const Stamp stamp = 1'000'000LL * n;
+    moving.add(joints(stamp, 1e-3 * n));
+    moving.add(currents(stamp));
+    resting.add(joints(stamp, n < 700 ? 0.0 : 1e-3 * n));
+    resting.add(currents(stamp));
+    pushed_by_hand.add(joints(stamp, 1e-3 * n));
+    pushed_by_hand.add(CurrentMeasurement{stamp, Eigen::Vector2d::Zero()});
+  }
+  EXPECT_TRUE(tellsMotion(moving.take()));
+  EXPECT_FALSE(tellsMotion(resting.take()));
+  EXPECT_FALSE(tellsMotion(pushed_by_hand.take()));
+  EXPECT_FALSE(tellsMotion(MotionRecording()));
+}
+
+}  // namespace
+}  // namespace sac

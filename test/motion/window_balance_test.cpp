@@ -1,0 +1,125 @@
+#include "window_balance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "moving_rotor.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "support/numeric_jacobian.hpp"
+
+namespace sac {
+namespace {
+
+/// Every coordinate somewhere near zero.
+Eigen::VectorXd somewhere(const ParameterSpace& space) {
+  Eigen::VectorXd x(space.size());
+  for (Eigen::Index p = 0; p < x.size(); ++p) {
+    x[p] = 0.01 * std::sin(1.0 + 1.7 * static_cast<double>(p));
+  }
+  return x;
+}
+
+class WindowBalanceTest : public ::testing::Test {
+ protected:
+  WindowBalanceTest() {
+    rotor_.duration = 1.0;
+    recording_ = rotor_.record();
+    spans_.emplace_back(recording_.spans.front());
+    windows_ = cutWindows(spans_, options_, left_out_);
+  }
+
+  static CalibrationModel model(const std::vector<std::string>& effects) {
+    EffectSelection selection;
+    for (const std::string& effect : effects) {
+      selection[effect] = true;
+    }
+    return CalibrationModel(
+        ParameterSpace(scenarios::paperNominal(), withMotionEffects(selection)));
+  }
+
+  MovingRotor rotor_;
+  MotionRecording recording_;
+  std::vector<MotionSpan> spans_;
+  MotionOptions options_;
+  std::vector<WindowsLeftOut> left_out_;
+  std::vector<MotionWindow> windows_;
+};
+
+TEST_F(WindowBalanceTest, HasTheJacobianOfItsResidual) {
+  const CalibrationModel model =
+      WindowBalanceTest::model({"pole_gains", "coil_gains", "encoder_harmonics", "torque_curve"});
+  const MotionPlaces places(model.space());
+  BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(1e-5));
+  WindowBalance balance;
+  const auto residual = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    evaluator.evaluate(spans_[0], windows_[1], MotionPoint(model, places, x), {}, balance);
+    return balance.residual;
+  };
+  const Eigen::VectorXd x = somewhere(model.space());
+  const Eigen::MatrixXd numeric = numericJacobian(residual, x);
+  residual(x);
+  for (Eigen::Index p = 0; p < x.size(); ++p) {
+    // Numeric steps take pairs over the ends of the torque curve's parts, where its second
+    // derivative jumps; those of the delay take currents over readings.
+    const double tolerance = p == places.current_delay ? 1e-3 : 2e-4;
+    EXPECT_LT((balance.jacobian.col(p) - numeric.col(p)).norm(),
+              tolerance * (numeric.col(p).norm() + 1e-6))
+        << model.space().name(p);
+  }
+}
+
+TEST_F(WindowBalanceTest, IsZeroForTheRotorThatMoved) {
+  const CalibrationModel model = WindowBalanceTest::model({});
+  const MotionPlaces places(model.space());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model.space().size());
+  x[places.current_delay] =
+      -0.5e-3 / model.space().effects().scale(places.current_delay - model.space().effect());
+  BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(1e-5));
+  WindowBalance balance;
+  WindowBalance still;
+  for (const MotionWindow& window : windows_) {
+    evaluator.evaluate(spans_[0], window, MotionPoint(model, places, x), {}, balance);
+    // Beside what an inertia that is larger by half would leave.
+    x[places.inertia] += 0.35;
+    x[places.inertia + 1] += 0.35;
+    evaluator.evaluate(spans_[0], window, MotionPoint(model, places, x), {}, still);
+    x[places.inertia] -= 0.35;
+    x[places.inertia + 1] -= 0.35;
+    EXPECT_LT(balance.residual.norm(), 0.02 * still.residual.norm());
+  }
+}
+
+TEST_F(WindowBalanceTest, CoversThreeSquareNoisesByItsCovariance) {
+  const CalibrationModel model = WindowBalanceTest::model({});
+  const MotionPlaces places(model.space());
+  const Eigen::VectorXd x = Eigen::VectorXd::Zero(model.space().size());
+  const MotionPoint point(model, places, x);
+  constexpr double kJoints = 2e-5;
+  constexpr double kCurrents = 2e-3;
+  BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(kJoints));
+  WindowBalance exact;
+  evaluator.evaluate(spans_[0], windows_[1], point, {true, 1}, exact);
+  const Eigen::MatrixXd covariance = exact.by_joints + kCurrents * kCurrents * exact.by_currents;
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  double squares = 0.0;
+  constexpr int kTrials = 60;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    MotionStreams noisy = recording_.spans.front();
+    for (Eigen::Vector3d& reading : noisy.joints) {
+      reading += kJoints * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+    }
+    for (Eigen::Index n = 0; n < noisy.currents.size(); ++n) {
+      noisy.currents.data()[n] += static_cast<float>(kCurrents * normal(generator));
+    }
+    WindowBalance balance;
+    evaluator.evaluate(MotionSpan(noisy), windows_[1], point, {}, balance);
+    squares += factor.matrixL().solve(balance.residual - exact.residual).squaredNorm();
+  }
+  // χ² with 60 × 18 degrees of freedom: within 4 of its standard deviations.
+  const double freedom = kTrials * static_cast<double>(exact.residual.size());
+  EXPECT_NEAR(squares / freedom, 1.0, 4.0 * std::sqrt(2.0 / freedom));
+}
+
+}  // namespace
+}  // namespace sac
