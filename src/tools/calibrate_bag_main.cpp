@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -113,6 +115,18 @@ std::optional<Actuator> truthOf(const CalibrateBagOptions& options, const Actuat
   return truth;
 }
 
+bool isMotion(const CycleRequest& request) {
+  return request.cycle == Cycle::kMotion;
+}
+
+MotionUse motionUse(const CalibrateBagOptions& options) {
+  if (!options.cycles) {
+    return MotionUse::kWithoutTorques;
+  }
+  const bool is_asked = std::any_of(options.cycles->begin(), options.cycles->end(), isMotion);
+  return is_asked ? MotionUse::kAlways : MotionUse::kNever;
+}
+
 Recording readBags(const CalibrateBagOptions& options,
                    const Actuator& nominal,
                    const CalibrationConfig& config) {
@@ -121,6 +135,7 @@ Recording readBags(const CalibrateBagOptions& options,
   reading.frames = config.frames;
   reading.samples = config.samples;
   reading.source = options.source;
+  reading.motion = motionUse(options);
   reading.progress = terminalProgress("reading");
   Recording recording = readRecordings(options.bags, nominal, reading);
   std::string names;
@@ -134,11 +149,42 @@ Recording readBags(const CalibrateBagOptions& options,
   return recording;
 }
 
-void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {
+/// Whether motion is to be calibrated: asked for, or recorded without any torque.
+bool takesMotion(const Recording& recording,
+                 const CalibrateBagOptions& options,
+                 const Actuator& nominal) {
+  if (options.cycles) {
+    return std::any_of(options.cycles->begin(), options.cycles->end(), isMotion);
+  }
+  const bool has_torque = std::any_of(recording.samples.begin(),
+                                      recording.samples.end(),
+                                      [](const Sample& sample) { return sample.has_torque; });
+  return !has_torque && nominal.hasTorqueModel() && tellsMotion(recording.motion);
+}
+
+/// What is missing for samples is not missing for motion.
+void dropNotesOnSamples(RecordingReport& report) {
+  const auto is_on_samples = [](const std::string& note) {
+    return note.find("No torque is recorded") != std::string::npos;
+  };
+  report.notes.erase(std::remove_if(report.notes.begin(), report.notes.end(), is_on_samples),
+                     report.notes.end());
+}
+
+std::vector<CycleRequest> cyclesOf(const CalibrationSession& session,
+                                   const CalibrateBagOptions& options) {
   const EstimationOptions& estimation = session.config().estimation;
-  const std::vector<CycleRequest> requests =
-      options.cycles ? expandCoils(*options.cycles, session.model(), session.samples(), estimation)
-                     : possibleCycles(session.model(), session.samples(), estimation);
+  if (options.cycles) {
+    return expandCoils(*options.cycles, session.model(), session.samples(), estimation);
+  }
+  if (session.motion() != nullptr) {
+    return {{Cycle::kMotion}};
+  }
+  return possibleCycles(session.model(), session.samples(), estimation);
+}
+
+void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {
+  const std::vector<CycleRequest> requests = cyclesOf(session, options);
   for (const CycleRequest& request : requests) {
     std::cout << cycleParagraph(session.run(request)) << std::flush;
   }
@@ -200,9 +246,12 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
   }
   std::cout << "\n" << parameterTable(session, truth);
   std::cout << influenceParagraph(session);
-  for (const std::string& line :
-       describe(compareEffects(session.start(), session.samples(), session.config()))) {
-    std::cout << line << "\n";
+  // Samples judge effects; motion has more of its own.
+  if (session.motion() == nullptr) {
+    for (const std::string& line :
+         describe(compareEffects(session.start(), session.samples(), session.config()))) {
+      std::cout << line << "\n";
+    }
   }
   std::cout << openParagraph(session);
   const std::string& map = session.orientationMap().sentence;
@@ -271,7 +320,7 @@ void writeReport(const std::string& report, const Files& files, OverwritePolicy 
 
 int calibrateBag(const CalibrateBagOptions& options) {
   const CalibratedDescription start = loadDescription(options.actuator_path);
-  const CalibrationConfig config =
+  CalibrationConfig config =
       options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
   const std::optional<Actuator> truth = truthOf(options, start.actuator);
   const Files files = prepareFiles(options, start.actuator);
@@ -279,12 +328,21 @@ int calibrateBag(const CalibrateBagOptions& options) {
       options.issuer_path ? loadCertificateIssuer(*options.issuer_path) : CertificateIssuer{};
 
   Recording recording = readBags(options, start.actuator, config);
+  const bool takes_motion = takesMotion(recording, options, start.actuator);
+  if (takes_motion) {
+    dropNotesOnSamples(recording.report);
+  }
   const std::vector<std::string> lines = describe(recording.report);
   for (const std::string& line : lines) {
     std::cout << line << "\n";
   }
+  if (takes_motion) {
+    config.effects = withMotionEffects(config.effects);
+  }
   CalibrationSession session(start, std::move(recording.samples), config);
-  if (session.samples().empty()) {
+  if (takes_motion) {
+    session.setMotion(std::make_shared<const MotionRecording>(std::move(recording.motion)));
+  } else if (session.samples().empty()) {
     std::cout << "No sample was found: let the rotor rest longer, or see above what was dropped.\n";
   }
   if (options.check) {

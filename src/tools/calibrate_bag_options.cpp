@@ -85,11 +85,13 @@ void addInputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
            "samples|streams",
            "what to calibrate from; without it samples where they were recorded. The sections "
            "dwell, currents, means and streams of the configuration act on streams only");
-  line.add("cycles",
-           words.cycles,
-           "LIST",
-           "cycles in this order: joint, poles:J (coil J excited), coil:J, coils (every other coil "
-           "with samples), refine; without it, all that the data allow");
+  line.add(
+      "cycles",
+      words.cycles,
+      "LIST",
+      "cycles in this order: joint, poles:J (coil J excited), coil:J, coils (every other coil "
+      "with samples), refine, motion (of a rotor that moves: needs no torque); without it, all "
+      "that the data allow");
 }
 
 void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {

@@ -87,8 +87,11 @@ std::vector<Row> rowsOf(const CalibrationSession& session, const std::optional<A
   if (truth) {
     const ParameterSpace& space = session.model().space();
     const Eigen::VectorXd values = space.reportedValues(space.coordinatesOf(*truth));
-    for (std::size_t p = 0; p < rows.size(); ++p) {
-      rows[p].truth = values[static_cast<Eigen::Index>(p)];
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      // No description tells what only motion does.
+      const bool is_told = p < space.effect() || space.effects().at(p - space.effect()).acts_on !=
+                                                     LaboratoryEffect::ActsOn::kMotion;
+      rows[static_cast<std::size_t>(p)].truth = is_told ? std::optional(values[p]) : std::nullopt;
     }
   }
   return rows;
@@ -105,12 +108,17 @@ double errorOf(const Row& row) {
 }
 
 std::string rowText(const Row& row) {
+  constexpr double kSmall = 1e-5;
   const ParameterEstimate& p = row.parameter;
   std::string text = format("%-18s %12.6f", p.name.c_str(), p.nominal);
   if (!hasValue(p)) {
     text += format(" %16s %13s %11s", "not identified", "-", "-");
   } else {
-    text += format(" %16.6f %13.3f %11.3f", p.value, 1e3 * (p.value - p.nominal), 1e3 * p.stddev);
+    // Inertia and delays are small beside angles.
+    const double change = 1e3 * (p.value - p.nominal);
+    text += p.unit == "rad" || p.stddev >= kSmall
+                ? format(" %16.6f %13.3f %11.3f", p.value, change, 1e3 * p.stddev)
+                : format(" %16.6g %13.4g %11.2g", p.value, change, 1e3 * p.stddev);
   }
   if (row.truth) {
     text += format(" %12.6f", *row.truth);

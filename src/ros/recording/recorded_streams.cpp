@@ -27,11 +27,20 @@ RecordedStreams::RecordedStreams(const Actuator& nominal,
     : nominal_(nominal),
       frames_(frames),
       reader_(nominal, frames),
-      builder_(options, modelledCoils(nominal)) {}
+      builder_(options, modelledCoils(nominal)),
+      motion_(modelledCoils(nominal)) {}
+
+template <typename Measurement>
+void RecordedStreams::take(const Measurement& measurement) {
+  builder_.add(measurement);
+  if (keeps_motion_) {
+    motion_.add(measurement);
+  }
+}
 
 void RecordedStreams::add(const sensor_msgs::JointState& message) {
   if (const JointMeasurement* measurement = reader_.read(message)) {
-    builder_.add(*measurement);
+    take(*measurement);
     return;
   }
   ++counts_.incomplete_joint_states;
@@ -40,7 +49,7 @@ void RecordedStreams::add(const sensor_msgs::JointState& message) {
 
 void RecordedStreams::add(const geometry_msgs::QuaternionStamped& message) {
   if (const OrientationMeasurement* measurement = reader_.read(message)) {
-    builder_.add(*measurement);
+    take(*measurement);
     return;
   }
   ++counts_.orientations_in_other_frame;
@@ -58,7 +67,7 @@ void RecordedStreams::add(const geometry_msgs::Vector3Stamped& message) {
 
 void RecordedStreams::add(const msg::CoilCurrents& message) {
   if (const CurrentMeasurement* measurement = reader_.read(message)) {
-    builder_.add(*measurement);
+    take(*measurement);
   }
   currents_ = message.current.size();
 }

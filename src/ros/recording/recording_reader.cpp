@@ -51,6 +51,7 @@ class Reader {
     for (std::size_t k = 0; k < groups.size(); ++k) {
       readGroup(groups[k], {k, groups.size()});
     }
+    recording_.motion = streams_.takeMotion();
     complete(pathsOf(all));
     return std::move(recording_);
   }
@@ -67,6 +68,9 @@ class Reader {
     if (!from_samples) {
       topics_.requireStreams(group);
     }
+    streams_.keepMotion(options_.motion == MotionUse::kAlways ||
+                        (options_.motion == MotionUse::kWithoutTorques &&
+                         !topics_.isRecorded(group, TopicRole::kTorque)));
     guarded(group, [&] { readMessages(group, rolesToRead(from_samples), step); });
     streams_.finish();
     append(streams_.takeSamples());

@@ -13,7 +13,7 @@ GRADES = {
     "contradicted": "Contradicted",
     "failed": "Failed",
 }
-CYCLES = {"joint": "Joint", "poles": "Poles with coil {}", "coil": "Coil {}", "refine": "Refinement"}
+CYCLES = {"joint": "Joint", "poles": "Poles with coil {}", "coil": "Coil {}", "refine": "Refinement", "motion": "Motion"}
 QUANTITIES = ("orientation", "torque")
 MOST_INFLUENTIAL = 8
 

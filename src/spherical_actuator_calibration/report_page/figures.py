@@ -97,7 +97,13 @@ def _plain_logarithm(axes):
     axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-CYCLE_TITLES = {"joint": "Joint", "poles": "Poles with their coil", "coil": "Single coils", "refine": "Refinement"}
+CYCLE_TITLES = {
+    "joint": "Joint",
+    "poles": "Poles with their coil",
+    "coil": "Single coils",
+    "refine": "Refinement",
+    "motion": "Motion",
+}
 ERROR_TITLES = {"rad": "mean orientation error", "N·m": "torque error", "1": "standardised error"}
 
 

@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
 #include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
@@ -22,14 +23,22 @@ class RecordedStreams {
                   const MeasurementFrames& frames,
                   const SampleBuilderOptions& options);
 
+  /// Whether what follows is kept for takeMotion(); it is not from the start.
+  void keepMotion(bool keep) { keeps_motion_ = keep; }
+
   void add(const sensor_msgs::JointState& message);
   void add(const geometry_msgs::QuaternionStamped& message);
   void add(const geometry_msgs::Vector3Stamped& message);
   void add(const msg::CoilCurrents& message);
 
   /// No more messages of this base of time follow.
-  void finish() { builder_.finish(); }
+  void finish() {
+    builder_.finish();
+    motion_.finish();
+  }
   std::vector<Sample> takeSamples() { return builder_.takeSamples(); }
+  /// The streams themselves, of all bases of time.
+  MotionRecording takeMotion() { return motion_.take(); }
 
   /// True when any message came.
   bool any() const;
@@ -47,6 +56,11 @@ class RecordedStreams {
   const MeasurementFrames& frames_;
   MeasurementReader reader_;
   SampleBuilder builder_;
+  MotionRecorder motion_;
+  bool keeps_motion_ = false;
+
+  template <typename Measurement>
+  void take(const Measurement& measurement);
 
   RecordedStreamsReport counts_;  ///< without `samples`
   // The last ones of their kind, for messages.

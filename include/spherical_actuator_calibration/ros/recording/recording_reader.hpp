@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
 
@@ -19,12 +20,16 @@ enum class SampleSource {
   kStreams,               ///< the raw streams, also where samples were recorded
 };
 
+/// When the raw streams are kept for calibration in motion.
+enum class MotionUse { kNever, kWithoutTorques, kAlways };
+
 /// How recordings are read.
 struct RecordingOptions {
   std::string ns = "/actuator";  ///< namespace of the actuator's topics
   MeasurementFrames frames;
   SampleBuilderOptions samples;
   SampleSource source = SampleSource::kSamplesWhereRecorded;
+  MotionUse motion = MotionUse::kNever;
   std::function<void(double)>
       progress;  ///< told the share done (0 to 1) now and then; may be empty
 };
@@ -32,12 +37,14 @@ struct RecordingOptions {
 /// Samples of recordings, and how they were obtained.
 struct Recording {
   std::vector<Sample> samples;  ///< ids are unique
+  MotionRecording motion;       ///< raw streams, where they are wanted
   RecordingReport report;
 };
 
 /// Reads the samples of one actuator out of recordings: from the topic `samples`, or from the raw
 /// streams by a SampleBuilder. Bags are read in the order of their begin; those recorded side by
-/// side are read as one. Beside rosbag's index, memory does not grow with their length.
+/// side are read as one. Beside rosbag's index and what is wanted of motion, memory does not grow
+/// with their length.
 ///
 /// Throws DataError, naming the file, for bags that cannot be read, that miss topics, are of
 /// another actuator, unit or number of coils, or whose measurements are all in another frame.
