@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""Calibration in motion on a free rotor that the package did not simulate: one motion, recorded in several ways."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+import free_motion
+import laboratory
+import numpy as np
+import yaml
+
+SECONDS = 12.0
+SEED = 5
+NOMINAL = os.path.join(os.environ["SOURCE"], "config", "pm_spherical_8x24.yaml")
+
+
+class Outcome:
+    """What motion_cases prints of one file."""
+
+    def __init__(self, lines):
+        self.parameters, self.left_out = {}, {}
+        for line in lines:
+            word, *rest = line.split()
+            if word == "parameter":
+                name, value, stddev, state = rest
+                self.parameters[name] = float(value), float(stddev), state == "identified"
+            elif word == "left_out":
+                self.left_out[" ".join(rest[1:])] = int(rest[0])
+            elif word == "motion":
+                self.moves, self.converged = rest[0] == "moves", rest[2] == "0"
+                self.chi_square = float(rest[rest.index("chi_square") + 1])
+
+    def value(self, name):
+        return self.parameters[name][0]
+
+    def judged(self, unit, errors):
+        """Errors and standard deviations of the unit's own parameters; which are identified."""
+        rows = [self.parameters[name] for name in unit.names()]
+        apart = np.array([row[0] for row in rows]) - unit.values(errors)
+        apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
+        return apart, np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+
+
+def calibrate(recording, nominal=NOMINAL, options=()):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "streams.txt")
+        free_motion.write_text(path, recording)
+        command = [os.environ["MOTION_CASES"], nominal, *options, path]
+        return Outcome(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines())
+
+
+def write_bag(path, recording, coils):
+    """As a laboratory records it."""
+    import genpy
+    import rosbag
+    from geometry_msgs.msg import QuaternionStamped
+    from sensor_msgs.msg import JointState
+    from spherical_actuator_calibration.msg import CoilCurrents
+
+    messages = []
+
+    def add(topic, message, t):
+        message.header.stamp = genpy.Time.from_sec(100.0 + t)
+        messages.append((message.header.stamp, topic, message))
+
+    for t, q in zip(*recording["joints"]):
+        add("joint_states", JointState(name=["joint_1", "joint_2", "joint_3"], position=list(q)), t)
+    for t, current in zip(*recording["currents"]):
+        add("coil_currents", CoilCurrents(current=list(current)), t)
+    for t, R in zip(*recording["orientations"]):
+        message = QuaternionStamped()
+        message.header.frame_id = "stator"
+        q = message.quaternion
+        q.x, q.y, q.z, q.w = laboratory.quaternion_xyzw(R)
+        add("measured_orientation", message, t)
+    assert len(recording["currents"][1][0]) == coils
+    with rosbag.Bag(path, "w") as bag:
+        for stamp, topic, message in sorted(messages, key=lambda one: one[0]):
+            bag.write("/actuator/" + topic, message, stamp)
+
+
+class Motion(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.unit = laboratory.paper_unit()
+        rng = np.random.default_rng(SEED)
+        cls.errors = rng.uniform(-0.03, 0.03, cls.unit.size())
+        cls.machine = free_motion.Machine(push=(6.0, 6.2, (0.0, 0.0, 4e-3)))
+        cls.motion = free_motion.simulate(cls.unit, cls.errors, cls.machine, SECONDS, SEED)
+
+    def record(self, **streams):
+        return free_motion.record(self.unit, self.errors, self.motion, free_motion.Streams(**streams), SEED)
+
+    def check(self, outcome, rms):
+        self.assertTrue(outcome.converged and outcome.moves)
+        apart, stddevs, identified = outcome.judged(self.unit, self.errors)
+        self.assertTrue(identified.all())
+        self.assertLess(np.sqrt(np.mean(apart**2)), rms)
+        self.assertLess(np.sqrt(np.mean((apart / stddevs) ** 2)), 1.6)
+        self.assertGreater(outcome.chi_square, 0.8)
+        self.assertLess(outcome.chi_square, 1.25)
+
+    def test_finds_all_parameters_and_what_else_moves_the_rotor(self):
+        outcome = calibrate(self.record(current_delay=-0.04, tracker_delay=0.05))
+        self.check(outcome, 1e-4)
+        inertia = self.machine.inertia
+        self.assertAlmostEqual(outcome.value("rotor_inertia/xx"), inertia[0, 0], delta=2e-6)
+        self.assertAlmostEqual(outcome.value("rotor_inertia/xy"), inertia[0, 1], delta=1e-6)
+        self.assertAlmostEqual(outcome.value("rotor_unbalance/z"), self.machine.unbalance[2], delta=6e-5)
+        self.assertAlmostEqual(outcome.value("viscous_friction"), self.machine.viscous, delta=4e-5)
+        self.assertAlmostEqual(outcome.value("coulomb_friction"), self.machine.coulomb, delta=8e-5)
+        self.assertAlmostEqual(outcome.value("tracker_delay"), 0.05, delta=2e-5)
+        # Currents that step at the instants of the samples and lag seem to be later by h^2 / (12 lag).
+        quadrature = 1e-6 / (12.0 * self.machine.lag)
+        self.assertAlmostEqual(outcome.value("current_delay"), -0.04 + quadrature, delta=2e-5)
+        # A hand touched the rotor for a fifth of a second.
+        touched = [count for reason, count in outcome.left_out.items() if "something else" in reason]
+        self.assertEqual(len(touched), 1)
+        self.assertLessEqual(touched[0], 3)
+
+    def test_two_hundred_hertz(self):
+        self.check(calibrate(self.record(joint_rate=200.0, current_rate=200.0)), 1.6e-4)
+
+    def test_a_wrong_torque_curve_is_told(self):
+        with open(NOMINAL, encoding="utf-8") as file:
+            description = yaml.safe_load(file)
+        curve = description["actuator"]["torque_curve"]
+        curve["coefficients"] = [c / 1.01**n for n, c in enumerate(curve["coefficients"])]
+        with tempfile.TemporaryDirectory() as folder:
+            stretched = os.path.join(folder, "stretched.yaml")
+            with open(stretched, "w", encoding="utf-8") as file:
+                yaml.safe_dump(description, file, default_flow_style=None)
+            recording = self.record()
+            outcome = calibrate(recording, stretched)
+            self.assertGreater(outcome.chi_square, 20.0)
+
+    def test_calibrate_bag_takes_motion_by_itself(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag, output = os.path.join(folder, "motion.bag"), os.path.join(folder, "calibrated.yaml")
+            write_bag(bag, self.record(), len(self.unit.coils))
+            command = [os.environ["CALIBRATE_BAG"], "--actuator", NOMINAL, "--output", output, bag]
+            result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            self.assertEqual(result.returncode, 0, result.stdout)
+            self.assertIn("grade: not_validated", result.stdout)
+            with open(output, encoding="utf-8") as file:
+                calibrated = yaml.safe_load(file)["actuator"]
+        poles = self.unit.poles + self.errors[9 : 9 + 2 * len(self.unit.poles)].reshape(-1, 2)
+        found = np.array([pole["polar"] for pole in calibrated["poles"]])
+        np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
+
+
+if __name__ == "__main__":
+    unittest.main()
