@@ -73,7 +73,7 @@ class PlannedMotion {
         plan_(plan),
         run_(plan),
         time_(plan.duration, plan.ramp),
-        joints_(jointGeometry(model.space().nominal().joints)),
+        joints_(jointGeometry(model.space().nominal())),
         torques_(torqueGeometry(model.space().nominal())),
         x_(Eigen::VectorXd::Zero(model.space().size())) {}
 
