@@ -41,7 +41,8 @@ bool concernsOrientations(const EffectSelection& effects, const Actuator& nomina
       });
 }
 
-/// Error of the orientations of regions that take no part in the refinement.
+/// Error of the orientations of regions that take no part in the refinement; from orientations
+/// alone, which is quick.
 std::optional<double> heldOutError(const CalibrationSession& session) {
   constexpr int kDepth = 3;
   constexpr std::size_t kFewest = 30;
@@ -57,6 +58,7 @@ std::optional<double> heldOutError(const CalibrationSession& session) {
     std::vector<Sample> others = session.samples();
     for (std::size_t n = 0; n < others.size(); ++n) {
       others[n].validation = others[n].validation || regions[n] == region;
+      others[n].has_torque = false;
     }
     const CycleOutcome outcome = runCycle(
         session.model(), others, session.state(), {Cycle::kRefine}, session.config().estimation);
