@@ -40,6 +40,13 @@ bool isToldByMotion(const PlacedEffect& placed, bool has_orientations) {
   return !is_of_sensor && (has_orientations || !is_of_tracker);
 }
 
+/// Whether an effect changes the strength of coils, poles or curve: motion tells only its ratio to
+/// inertia.
+bool changesStrength(const PlacedEffect& placed, const ParameterSpace& space) {
+  return placed.effect->changesCurve() ||
+         placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
+}
+
 std::vector<Eigen::Index> requestedCoordinates(const ParameterSpace& space,
                                                const MotionRecording& recording) {
   const bool has_orientations =
@@ -48,8 +55,15 @@ std::vector<Eigen::Index> requestedCoordinates(const ParameterSpace& space,
       });
   std::vector<Eigen::Index> coordinates(static_cast<std::size_t>(space.effect()));
   std::iota(coordinates.begin(), coordinates.end(), 0);
+  const std::vector<PlacedEffect>& effects = space.effects().effects();
+  const bool strength_moves =
+      std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
+        return changesStrength(placed, space);
+      });
   for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
-    if (isToldByMotion(space.effects().at(e), has_orientations)) {
+    // Beside strengths one inertia is the reference; else all could shrink to nothing.
+    const bool is_reference = strength_moves && space.effects().name(e) == "rotor_inertia/zz";
+    if (!is_reference && isToldByMotion(space.effects().at(e), has_orientations)) {
       coordinates.push_back(space.effect() + e);
     }
   }

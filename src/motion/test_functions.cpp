@@ -15,7 +15,7 @@ TestFunctions::TestFunctions(double begin, double end, int count)
 
 void TestFunctions::evaluate(double time, TestFunctionValues& out) const {
   const double s = (time - middle_) / half_;
-  const auto last = static_cast<std::size_t>(count_ + 3);
+  const auto last = static_cast<std::size_t>(count_) + 3;
   Polynomials P{1.0, s};
   Polynomials slopes{0.0, 1.0};
   for (std::size_t n = 1; n < last; ++n) {
@@ -28,7 +28,7 @@ void TestFunctions::evaluate(double time, TestFunctionValues& out) const {
   out.second.resize(count_);
   out.third.resize(count_);
   for (int i = 0; i < count_; ++i) {
-    const auto n = static_cast<std::size_t>(i + 2);
+    const auto n = static_cast<std::size_t>(i) + 2;
     const auto k = static_cast<double>(n);
     // ∫P_k = (P_{k+1} − P_{k−1})/(2k+1) from −1, and once more.
     const double once = (P[n + 1] - P[n - 1]) / (2.0 * k + 1.0);
