@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -50,11 +51,10 @@ AxisScan::AxisScan(const TorqueCurve& curve,
       coarse_curve_(coarse_curve),
       chart_(chart),
       is_pole_(is_pole),
-      torques_(std::move(torques.torques)),
-      each_stands_for_(torques.each_stands_for),
+      scanned_(std::move(torques)),
       limit_(transition * transition),
       range_(range),
-      steps_(torques_.size() <= kFewTorques ? kFineSteps : kSteps),
+      steps_(scanned_.torques.size() <= kFewTorques ? kFineSteps : kSteps),
       step_(range / steps_) {}
 
 /// Of a place of the grid: what decides where to look closely.
@@ -64,7 +64,7 @@ double AxisScan::coarseMisfit(const Eigen::Vector2d& place) const {
   const double sign = is_pole_ ? 1.0 : -1.0;
   double sum = 0.0;
   double product = 1.0;  // of what the logarithms would be summed up of
-  for (const ScannedTorque& torque : torques_) {
+  for (const ScannedTorque& torque : scanned_.torques) {
     const Eigen::Vector3d own = torque.to_rotor * axis;
     Eigen::Vector3d rest = torque.rest;
     for (const ScannedPartner& partner : torque.partners) {
@@ -87,7 +87,7 @@ AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
   Eigen::Matrix<double, 3, 2> d_axis;
   chart_.evaluate(place[0], place[1], axis, d_axis);
   Normal sum;
-  for (const ScannedTorque& torque : torques_) {
+  for (const ScannedTorque& torque : scanned_.torques) {
     const Eigen::Vector3d own = torque.to_rotor * axis;
     Eigen::Vector3d rest = torque.rest;
     Eigen::Matrix3d d_own = Eigen::Matrix3d::Zero();
@@ -187,7 +187,7 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
   constexpr double kFarBetter = 16.0;  // of χ²
   constexpr double kSamePlace = 1e-3;  // [rad]
   std::vector<ScannedPlace> found;
-  if (torques_.empty()) {
+  if (scanned_.torques.empty()) {
     return found;
   }
   const Normal here = linearized(present);
@@ -209,7 +209,7 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
     }
   }
   for (ScannedPlace& there : found) {
-    there.gain *= each_stands_for_;
+    there.gain *= scanned_.each_stands_for;
   }
   return found;
 }

@@ -89,8 +89,7 @@ class AxisScan {
   const CoarseCurve& coarse_curve_;
   const AxisChart& chart_;
   bool is_pole_;
-  std::vector<ScannedTorque> torques_;
-  double each_stands_for_;
+  ScannedTorques scanned_;
   double limit_;
   double range_;
   int steps_;  ///< from the nominal axis to the edge of the scan
