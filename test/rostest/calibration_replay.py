@@ -27,7 +27,7 @@ STALLS = (5, 15, 30)
 STALL_DURATION = 0.7  # [s]
 # Seed and numbers give a recording of 80 s that determines every parameter.
 SESSION = {
-    "seed": 8,
+    "seed": 2,
     "joint-poses": 4,
     "main-coil": MAIN_COIL,
     "main-coil-poses": 12,
