@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "estimate_conclusion.hpp"
+#include "solution.hpp"
 
 namespace sac {
 
