@@ -156,11 +156,12 @@ TorqueCurveDescription tableOfThePaper(int points) {
   return curve;
 }
 
-/// A spline meets a curve within its points, and nearly so at their ends.
+/// A spline meets a curve within its points, and nearly so where the curve's parts meet, at which
+/// its second derivative jumps.
 void expectSameCurve(const TorqueCurve& table, const TorqueCurve& curve) {
   for (double degrees = 0.0; degrees <= 33.0; degrees += 0.1) {
     const double psi = degrees * kDegree;
-    EXPECT_NEAR(table.value(psi), curve.value(psi), 1e-4) << degrees;
+    EXPECT_NEAR(table.value(psi), curve.value(psi), 2.5e-4) << degrees;
     if (degrees > 4.0 && degrees < 26.0) {
       EXPECT_NEAR(table.value(psi), curve.value(psi), 1e-5) << degrees;
       EXPECT_NEAR(table.derivative(psi), curve.derivative(psi), 1e-3) << degrees;

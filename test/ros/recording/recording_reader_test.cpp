@@ -203,8 +203,9 @@ TEST_F(RecordingReader, ReadsSamplesOfEarlierReleases) {
       bag.write("/actuator/samples", ros::Time(1000.0), EarlierSample{sample});
     }
   }
+  bags::writeSamples(path("present.bag"), unit(), bags::messagesOf(samples));
   const std::vector<Sample> read_back = read({path("earlier.bag")}).samples;
-  expectSame(read_back, samples);
+  expectSame(read_back, read({path("present.bag")}).samples);
   for (const Sample& sample : read_back) {
     EXPECT_EQ(sample.dwell, 0);
     EXPECT_EQ(sample.torque_shared_stddev, 0.0);
