@@ -5,7 +5,7 @@ namespace sac {
 TrackerTerm::TrackerTerm(const CalibrationModel& model,
                          const MotionPlaces& places,
                          const Eigen::VectorXd& x)
-    : model_(model), places_(places), x_(x), delay_(0.0) {
+    : model_(model), places_(places), x_(x) {
   if (places.tracker_delay >= 0) {
     const ParameterSpace& space = model.space();
     scale_ = space.effects().scale(places.tracker_delay - space.effect());

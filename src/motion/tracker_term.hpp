@@ -26,7 +26,7 @@ class TrackerTerm {
   const CalibrationModel& model_;
   const MotionPlaces& places_;
   const Eigen::VectorXd& x_;
-  double delay_;
+  double delay_ = 0.0;
   double scale_ = 0.0;  ///< of the coordinate of the delay [s]
   double time_ = 0.0;
   Sample sample_;

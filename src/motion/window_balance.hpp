@@ -66,7 +66,7 @@ class BalanceEvaluator {
 
   MotionWindow window_;
   bool wants_noise_ = false;
-  int count_ = 0;                           ///< of test functions
+  Eigen::Index count_ = 0;                  ///< of test functions
   std::vector<TurnedRotor> turned_;         ///< at the readings, one more on either side
   std::vector<TestFunctionValues> middle_;  ///< between them
   TurnedRotor between_;
