@@ -28,29 +28,37 @@ std::size_t excitedCoil(Cycle cycle) {
   return cycle == Cycle::kPoles ? kPolesCycleCoil : kSingleCycleCoil;
 }
 
+std::vector<Sample> exactOrientations(std::size_t count,
+                                      const Actuator& truth,
+                                      scenarios::Generator& generator) {
+  return scenarios::orientationSamples(truth,
+                                       scenarios::randomPoses(count, kTilt, generator),
+                                       0.0,
+                                       scenarios::uniformStddev(kOrientationNoise),
+                                       generator);
+}
+
+void addExactTorques(const std::vector<Eigen::Vector3d>& poses,
+                     std::size_t coil,
+                     const Actuator& truth,
+                     scenarios::Generator& generator,
+                     std::vector<Sample>& samples) {
+  const std::vector<Sample> more = scenarios::torqueSamples(
+      truth, poses, coil, kCurrent, 0.0, scenarios::uniformStddev(kTorqueNoise), generator);
+  samples.insert(samples.end(), more.begin(), more.end());
+}
+
 /// Every coil in turn, each as often as the others.
 std::vector<Sample> sessionSamples(std::size_t count, const Actuator& truth) {
   scenarios::Generator generator(kSeed);
   const std::size_t orientations = count / (kTorquesPerOrientation + 1);
   const std::size_t torques = count - orientations;
-  std::vector<Sample> samples =
-      scenarios::orientationSamples(truth,
-                                    scenarios::randomPoses(orientations, kTilt, generator),
-                                    0.0,
-                                    scenarios::uniformStddev(kOrientationNoise),
-                                    generator);
+  std::vector<Sample> samples = exactOrientations(orientations, truth, generator);
   const std::size_t coils = truth.coils.size();
   for (std::size_t coil = 0; coil < coils; ++coil) {
     const std::size_t poses = torques / coils + (coil < torques % coils ? 1 : 0);
-    const std::vector<Sample> more =
-        scenarios::torqueSamples(truth,
-                                 scenarios::randomPoses(poses, kTilt, generator),
-                                 coil,
-                                 kCurrent,
-                                 0.0,
-                                 scenarios::uniformStddev(kTorqueNoise),
-                                 generator);
-    samples.insert(samples.end(), more.begin(), more.end());
+    addExactTorques(
+        scenarios::randomPoses(poses, kTilt, generator), coil, truth, generator, samples);
   }
   return samples;
 }
@@ -206,23 +214,14 @@ CycleScenario manyCoilsScenario(std::size_t coils, std::size_t samples) {
   }
   const Actuator truth = scenarios::perturbed(nominal, kMadeWithin, kMadeWithin, generator);
   const std::size_t orientations = samples / (kTorquesPerOrientation + 1);
-  std::vector<Sample> session =
-      scenarios::orientationSamples(truth,
-                                    scenarios::randomPoses(orientations, kTilt, generator),
-                                    0.0,
-                                    scenarios::uniformStddev(kOrientationNoise),
-                                    generator);
+  std::vector<Sample> session = exactOrientations(orientations, truth, generator);
   const std::size_t each = std::max(nominal.poles.size(), (samples - orientations) / coils);
   for (std::size_t coil = 0; coil < coils; ++coil) {
-    const std::vector<Sample> more = scenarios::torqueSamples(
-        truth,
-        scenarios::posesThatSeeEveryPole(truth, coil, each, kTilt, generator),
-        coil,
-        kCurrent,
-        0.0,
-        scenarios::uniformStddev(kTorqueNoise),
-        generator);
-    session.insert(session.end(), more.begin(), more.end());
+    addExactTorques(scenarios::posesThatSeeEveryPole(truth, coil, each, kTilt, generator),
+                    coil,
+                    truth,
+                    generator,
+                    session);
   }
   CalibrationModel model{ParameterSpace(nominal)};
   CalibrationState state = initialState(Cycle::kRefine, model.space(), truth);

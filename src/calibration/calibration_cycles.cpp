@@ -44,16 +44,7 @@ std::vector<SampleResidual> sampleResiduals(const std::vector<Sample>& samples,
   std::vector<SampleResidual> residuals;
   residuals.reserve(estimate.residuals.size());
   for (const ObservationResidual& from : estimate.residuals) {
-    SampleResidual residual;
-    residual.id = samples[from.observation.sample].id;
-    residual.quantity = from.observation.quantity;
-    residual.residual = from.residual.norm();
-    residual.standardized = from.standardized;
-    residual.rejected = from.rejected;
-    if (from.rejected) {
-      residual.reason = format("misfit is %.1f times its uncertainty", from.standardized);
-    }
-    residuals.push_back(residual);
+    residuals.push_back(reportedResidual(from, samples[from.observation.sample].id));
   }
   return residuals;
 }
@@ -79,13 +70,8 @@ void fillReport(const std::vector<Sample>& samples,
                 const Estimate& estimate,
                 CycleReport& report) {
   countSamples(estimate, report);
-  report.iterations = static_cast<std::uint32_t>(estimate.iterations);
+  reportIteration(estimate, report);
   report.error_measure = errorMeasure(observations);
-  report.error_history = estimate.error_history;
-  report.reduced_chi_square = estimate.reduced_chi_square;
-  report.degrees_of_freedom = estimate.degrees_of_freedom;
-  report.condition_number = estimate.condition_number;
-  report.solve_time = estimate.solve_time;
   report.residuals = sampleResiduals(samples, estimate);
 }
 

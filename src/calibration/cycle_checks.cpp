@@ -194,33 +194,6 @@ std::string growth(const Estimate& estimate) {
              : std::string();
 }
 
-/// What the estimate has told: free, and not left open.
-bool isTold(const EstimationProblem& problem, const Estimate& estimate, Eigen::Index p) {
-  return std::binary_search(problem.free.begin(), problem.free.end(), p) &&
-         !std::binary_search(estimate.unobservable.begin(), estimate.unobservable.end(), p);
-}
-
-std::string deviations(const EstimationProblem& problem,
-                       const Estimate& estimate,
-                       const EstimationOptions& options) {
-  constexpr double kSure = 3.0;  // standard deviations
-  const ParameterSpace& space = problem.model->space();
-  for (Eigen::Index p = 0; p < space.effect(); ++p) {
-    const double limit = options.max_deviation * toleranceOf(space.id(p).kind, options.tolerance);
-    const double deviation = std::abs(estimate.belief.x[p]);
-    const double stddev = std::sqrt(std::max(0.0, estimate.belief.covariance(p, p)));
-    if (limit > 0.0 && isTold(problem, estimate, p) && deviation - kSure * stddev > limit) {
-      return format(
-          ": %s would lie %.2g rad from its drawing, more than %.0f tolerances of manufacture; "
-          "check the wiring of sensors and coils, all frames, and the nominal description.",
-          space.name(p).c_str(),
-          deviation,
-          options.max_deviation);
-    }
-  }
-  return {};
-}
-
 std::string registrations(const Estimate& estimate) {
   constexpr double kMost = 3.0;
   return estimate.stated_misfit > kMost
@@ -258,6 +231,31 @@ std::string lostAxes(const EstimationProblem& problem,
 
 }  // namespace
 
+std::string deviation(const ParameterSpace& space,
+                      const Estimate& estimate,
+                      const std::vector<Eigen::Index>& free,
+                      const EstimationOptions& options) {
+  constexpr double kSure = 3.0;  // standard deviations
+  const auto is_told = [&](Eigen::Index p) {
+    return std::binary_search(free.begin(), free.end(), p) &&
+           !std::binary_search(estimate.unobservable.begin(), estimate.unobservable.end(), p);
+  };
+  for (Eigen::Index p = 0; p < space.effect(); ++p) {
+    const double limit = options.max_deviation * toleranceOf(space.id(p).kind, options.tolerance);
+    const double apart = std::abs(estimate.belief.x[p]);
+    const double stddev = std::sqrt(std::max(0.0, estimate.belief.covariance(p, p)));
+    if (limit > 0.0 && is_told(p) && apart - kSure * stddev > limit) {
+      return format(
+          "%s would lie %.2g rad from its drawing, more than %.0f tolerances of manufacture; check "
+          "the wiring of sensors and coils, all frames, and the nominal description.",
+          space.name(p).c_str(),
+          apart,
+          options.max_deviation);
+    }
+  }
+  return {};
+}
+
 std::string contradiction(const EstimationProblem& problem,
                           const Estimate& estimate,
                           const EstimationOptions& options) {
@@ -265,7 +263,11 @@ std::string contradiction(const EstimationProblem& problem,
   const std::vector<std::function<std::string()>> checks{
       [&] { return rejections(groups, options); },
       [&] { return misfits(groups, estimate, options); },
-      [&] { return deviations(problem, estimate, options); },
+      [&] {
+        const std::string words =
+            deviation(problem.model->space(), estimate, problem.free, options);
+        return words.empty() ? words : ": " + words;
+      },
       [&] { return lostAxes(problem, estimate, groups); },
       [&] { return registrations(estimate); },
       [&] { return growth(estimate); }};

@@ -16,6 +16,13 @@ std::string contradiction(const EstimationProblem& problem,
                           const Estimate& estimate,
                           const EstimationOptions& options);
 
+/// Which coordinate of `free` (ascending) would lie farther from its drawing than anything is made,
+/// in words, or empty.
+std::string deviation(const ParameterSpace& space,
+                      const Estimate& estimate,
+                      const std::vector<Eigen::Index>& free,
+                      const EstimationOptions& options);
+
 /// What keeps an estimate that is taken from being good, a sentence each.
 std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate& estimate);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 
@@ -34,6 +35,28 @@ std::vector<ParameterEstimate> parameterEstimates(const ParameterSpace& space,
 }
 
 }  // namespace
+
+void reportIteration(const Estimate& estimate, CycleReport& report) {
+  report.iterations = static_cast<std::uint32_t>(estimate.iterations);
+  report.error_history = estimate.error_history;
+  report.reduced_chi_square = estimate.reduced_chi_square;
+  report.degrees_of_freedom = estimate.degrees_of_freedom;
+  report.condition_number = estimate.condition_number;
+  report.solve_time = estimate.solve_time;
+}
+
+SampleResidual reportedResidual(const ObservationResidual& from, std::uint32_t id) {
+  SampleResidual residual;
+  residual.id = id;
+  residual.quantity = from.observation.quantity;
+  residual.residual = from.residual.norm();
+  residual.standardized = from.standardized;
+  residual.rejected = from.rejected;
+  if (from.rejected) {
+    residual.reason = format("misfit is %.1f times its uncertainty", from.standardized);
+  }
+  return residual;
+}
 
 void conclude(const CalibrationModel& model,
               const Estimate& estimate,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
@@ -15,6 +16,12 @@ struct CycleCoordinates {
   std::vector<Eigen::Index> unexcited;     ///< never asked of the data
   std::vector<Eigen::Index> unobservable;  ///< held at the prior whole
 };
+
+/// Puts how an estimate was found into the report: iterations, errors, misfit and time.
+void reportIteration(const Estimate& estimate, CycleReport& report);
+
+/// What the report says of one observation, whose sample has the number `id`.
+SampleResidual reportedResidual(const ObservationResidual& from, std::uint32_t id);
 
 /// Takes a usable estimate over into state and report.
 void conclude(const CalibrationModel& model,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -29,7 +30,8 @@ std::string refusal(const CalibrationModel& model, const MotionRecording* record
       return {};
     }
   }
-  return "The effects of motion are not modelled.";
+  return "Inertia, friction and delays are not modelled: calibrate a recording of motion by "
+         "calibrate_bag, which adds them.";
 }
 
 /// Whether the data of a recording of motion can tell an effect at all.
@@ -70,29 +72,8 @@ std::vector<Eigen::Index> requestedCoordinates(const ParameterSpace& space,
   return coordinates;
 }
 
-/// Axes that would lie too far from their drawing, in words; empty: none.
-std::string deviation(const CalibrationModel& model,
-                      const Estimate& estimate,
-                      const EstimationOptions& options) {
-  constexpr double kSure = 3.0;  // standard deviations
-  const ParameterSpace& space = model.space();
-  for (Eigen::Index p = 0; p < space.effect(); ++p) {
-    const double limit = options.max_deviation * toleranceOf(space.id(p).kind, options.tolerance);
-    const double stddev = std::sqrt(std::max(0.0, estimate.belief.covariance(p, p)));
-    if (limit > 0.0 && std::abs(estimate.belief.x[p]) - kSure * stddev > limit) {
-      return format(
-          "%s would lie %.2g rad from its drawing, more than %.0f tolerances of manufacture; check "
-          "the wiring of sensors and coils, all frames, and the nominal description.",
-          space.name(p).c_str(),
-          std::abs(estimate.belief.x[p]),
-          options.max_deviation);
-    }
-  }
-  return {};
-}
-
 /// Why an estimate is not to be used; empty: it is.
-std::string failure(const CalibrationModel& model,
+std::string failure(const MotionProblem& problem,
                     const MotionEstimate& found,
                     const EstimationOptions& options) {
   const Estimate& estimate = found.estimate;
@@ -103,7 +84,8 @@ std::string failure(const CalibrationModel& model,
           "coils.",
           found.summary.windows);
     case Termination::kNothingObservable:
-      return "the recording tells nothing about the parameters.";
+      return "the recording tells nothing about the parameters; record a motion of all joints with "
+             "currents in all coils.";
     case Termination::kIterationLimit:
     case Termination::kNumericalFailure:
       return "no convergence; check the streams and the nominal description.";
@@ -114,7 +96,11 @@ std::string failure(const CalibrationModel& model,
   const auto rejected = static_cast<double>(summary.windows - summary.used);
   if (rejected > options.max_rejected_fraction * static_cast<double>(summary.windows) &&
       summary.used * summary.values < 2 * static_cast<std::size_t>(estimate.belief.x.size())) {
-    return format("%.0f of %zu windows cannot serve.", rejected, summary.windows);
+    return format(
+        "%.0f of %zu windows cannot serve; record again, with all streams and without touching the "
+        "rotor.",
+        rejected,
+        summary.windows);
   }
   const double worst = std::max(summary.window_chi_square, summary.orientation_chi_square);
   if (worst > options.max_reduced_chi_square) {
@@ -125,7 +111,7 @@ std::string failure(const CalibrationModel& model,
            (is_balance ? "Check torque curve, strengths, polarities, currents and joint sensors."
                        : "Check joint sensors, frames and the tracker.");
   }
-  return deviation(model, estimate, options);
+  return deviation(problem.model->space(), estimate, problem.free, options);
 }
 
 std::vector<std::string> doubts(const MotionEstimate& found) {
@@ -145,25 +131,12 @@ void fillReport(const MotionEstimate& found, CycleReport& report) {
   report.motion = found.summary;
   report.samples_used = static_cast<std::uint32_t>(found.summary.used);
   report.samples_rejected = 0;
-  report.iterations = static_cast<std::uint32_t>(estimate.iterations);
+  reportIteration(estimate, report);
   report.error_measure = ErrorMeasure::kStandardized;
-  report.error_history = estimate.error_history;
-  report.reduced_chi_square = estimate.reduced_chi_square;
-  report.degrees_of_freedom = estimate.degrees_of_freedom;
-  report.condition_number = estimate.condition_number;
-  report.solve_time = estimate.solve_time;
   for (const ObservationResidual& from : estimate.residuals) {
-    SampleResidual residual;
-    residual.id = static_cast<std::uint32_t>(from.observation.sample + 1);
-    residual.quantity = from.observation.quantity;
-    residual.residual = from.residual.norm();
-    residual.standardized = from.standardized;
-    residual.rejected = from.rejected;
-    if (from.rejected) {
-      residual.reason = format("misfit is %.1f times its uncertainty", from.standardized);
-      ++report.samples_rejected;
-    }
-    report.residuals.push_back(residual);
+    const auto id = static_cast<std::uint32_t>(from.observation.sample + 1);
+    report.residuals.push_back(reportedResidual(from, id));
+    report.samples_rejected += from.rejected ? 1U : 0U;
   }
 }
 
@@ -202,7 +175,7 @@ CycleOutcome runMotionCycle(const CalibrationModel& model,
   problem.prior = state.belief;
   problem.free = requestedCoordinates(model.space(), *recording);
   const MotionEstimate found = estimateMotion(problem, config.estimation, MotionOptions());
-  const std::string words = failure(model, found, config.estimation);
+  const std::string words = failure(problem, found, config.estimation);
   report.motion = found.summary;
   if (!words.empty()) {
     report.contradicted = found.estimate.termination == Termination::kConverged;

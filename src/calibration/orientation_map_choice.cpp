@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
@@ -36,12 +37,10 @@ UnexplainedRotations withoutOutliers(const UnexplainedRotations& all) {
   if (sizes.empty()) {
     return all;
   }
-  std::vector<double> sorted = sizes;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double median = medianOf(sizes);
   UnexplainedRotations kept;
   for (std::size_t n = 0; n < sizes.size(); ++n) {
-    if (sizes[n] <= kFar * *middle) {
+    if (sizes[n] <= kFar * median) {
       kept.readings.push_back(all.readings[n]);
       kept.rotations.push_back(all.rotations[n]);
     }
@@ -179,8 +178,7 @@ double significance(const std::vector<HeldOutErrors>& regions) {
 std::string inWords(const MapRecord& record, bool is_chosen) {
   return format(
       "Orientation map%s: %u regions, each predicted from the others, are met to %.3g mrad rms "
-      "with "
-      "it and to %.3g mrad by axes and corrections alone; %.0f %% within the 95 %% intervals.",
+      "with it and to %.3g mrad by axes and corrections alone; %.0f %% within the 95 %% intervals.",
       is_chosen ? "" : " (not taken)",
       static_cast<unsigned>(record.regions),
       kMilli * record.map_rms,
@@ -240,11 +238,10 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
   }
   const UnexplainedRotations poses = mergedPoses(unexplained(model, samples, state.belief.x));
   if (poses.readings.size() < kFewestPoses) {
-    choice.sentence = format(
-        "Orientation map: none; %zu poses with an orientation are too few, %zu "
-        "are needed.",
-        poses.readings.size(),
-        kFewestPoses);
+    choice.sentence =
+        format("Orientation map: none; %zu poses with an orientation are too few, %zu are needed.",
+               poses.readings.size(),
+               kFewestPoses);
     return choice;
   }
   const OrientationMapFit fit = fitOrientationMap(poses);

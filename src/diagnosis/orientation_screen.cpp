@@ -81,7 +81,7 @@ void scanRotation(Hypothesis& hypothesis,
                   const WiringCase& few,
                   bool is_tracker,
                   const CalibrationConfig& config) {
-  const JointGeometry joints = jointGeometry(few.actuator.joints);
+  const JointGeometry joints = jointGeometry(few.actuator);
   double best = lossOf(few, {hypothesis}, config);
   const Hypothesis original = hypothesis;
   for (const Sample& sample : few.samples) {
@@ -124,7 +124,7 @@ std::vector<Hypothesis> singles(const WiringCase& few, const CalibrationConfig& 
 }  // namespace
 
 double orientationLoss(const WiringCase& given, const CalibrationConfig& config) {
-  const JointGeometry joints = jointGeometry(given.actuator.joints);
+  const JointGeometry joints = jointGeometry(given.actuator);
   const ManufacturingTolerance& tolerance = config.tolerance;
   double loss = 0.0;
   for (const Sample& sample : given.samples) {

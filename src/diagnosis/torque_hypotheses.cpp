@@ -73,9 +73,8 @@ std::string torqueUnitName(double factor) {
 }  // namespace
 
 Eigen::Matrix3d knownOrientation(const Actuator& actuator, const Sample& sample) {
-  return sample.has_orientation
-             ? sample.R_stator_rotor
-             : rotorOrientation(jointGeometry(actuator.joints), sample.joint_position);
+  return sample.has_orientation ? sample.R_stator_rotor
+                                : rotorOrientation(jointGeometry(actuator), sample.joint_position);
 }
 
 Hypothesis torqueFrame(const Eigen::Matrix3d& rotation) {

@@ -1,4 +1,4 @@
-#include "chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
 

@@ -7,9 +7,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "chi_square_limit.hpp"
 #include "observability.hpp"
 #include "observed_information.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "axis_modes.hpp"
-#include "chi_square_limit.hpp"
 #include "estimate_conclusion.hpp"
 #include "problem_check.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "weighted_observations.hpp"

@@ -1,6 +1,9 @@
 #include "joint_track.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
 
@@ -12,9 +15,7 @@ double usualStep(const std::vector<double>& times) {
   for (std::size_t n = 0; n < steps.size(); ++n) {
     steps[n] = times[n + 1] - times[n];
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return medianOf(std::move(steps));
 }
 
 std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) {

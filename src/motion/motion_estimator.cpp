@@ -3,23 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
+#include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 namespace {
-
-double chiSquareLimitOf(double degrees_of_freedom, double probability) {
-  return boost::math::quantile(
-      boost::math::complement(boost::math::chi_squared(degrees_of_freedom), probability));
-}
 
 /// The steps of one estimation from motion.
 class Estimator {
@@ -90,13 +86,11 @@ bool Estimator::rejectOutliers() {
     if (squares.empty()) {
       return false;
     }
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    const double usual = chiSquareLimitOf(freedom, 0.5) / freedom;
+    const double usual = chiSquareLimit(freedom, 0.5) / freedom;
     const double probability =
         estimation_.false_alarm_probability / static_cast<double>(squares.size());
     const double limit =
-        chiSquareLimitOf(freedom, probability) / freedom * std::max(1.0, *middle / usual);
+        chiSquareLimit(freedom, probability) / freedom * std::max(1.0, medianOf(squares) / usual);
     bool changed = false;
     for (auto& term : terms) {
       const bool active = !counts(term) || term.square <= limit;
@@ -194,7 +188,7 @@ void Estimator::judgeMisfit() {
   result_.summary.window_chi_square = squares / freedom;
   result_.summary.orientation_chi_square = orientationChiSquare();
   estimate.reduced_chi_square = squares / freedom;
-  if (squares > chiSquareLimitOf(freedom, kSignificance)) {
+  if (squares > chiSquareLimit(freedom, kSignificance)) {
     estimate.covariance_scale = std::sqrt(squares / freedom);
   }
 }

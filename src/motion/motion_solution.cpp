@@ -4,19 +4,17 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
 namespace {
 
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return 1.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double medianOrOne(std::vector<double> values) {
+  return values.empty() ? 1.0 : medianOf(std::move(values));
 }
 
 }  // namespace
@@ -52,7 +50,7 @@ void MotionDescent::rescale() {
       orientations.push_back(term.square);
     }
   }
-  terms_.setScales(std::max(1.0, median(windows)), std::max(1.0, median(orientations)));
+  terms_.setScales(std::max(1.0, medianOrOne(windows)), std::max(1.0, medianOrOne(orientations)));
 }
 
 double MotionDescent::cost(const MotionSums& sums) const {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "spherical_actuator_calibration/base/median.hpp"
 #include "tracker_term.hpp"
 
 namespace sac {
@@ -17,9 +19,7 @@ double robustStddev(std::vector<double> magnitudes) {
   if (magnitudes.empty()) {
     return 0.0;
   }
-  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  return *middle / kMedianOfNormal;
+  return medianOf(std::move(magnitudes)) / kMedianOfNormal;
 }
 
 /// Standard deviation of white noise by third differences of series, each `get(n)` for n < count.

@@ -1,32 +1,12 @@
 """What a calibrated description says of the rotor's orientation: a NumPy model, written from doc/method.md."""
 
 import numpy as np
-
-
-def cross_matrix(v):
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
-
-
-def rotation(v):
-    """e^v̂."""
-    angle = np.linalg.norm(v)
-    if angle < 1e-9:
-        return np.eye(3) + cross_matrix(v)
-    axis = cross_matrix(np.asarray(v) / angle)
-    return np.eye(3) + np.sin(angle) * axis + (1.0 - np.cos(angle)) * axis @ axis
-
-
-def rotation_vector(R):
-    """Of a rotation by less than π."""
-    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine, cosine = 0.5 * np.linalg.norm(w), 0.5 * (np.trace(R) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    return 0.5 * w if sine < 1e-9 else 0.5 * w * angle / sine
+from laboratory import rotation, rotation_vector, skew
 
 
 def matrix_of(quaternion):
     x, y, z, w = quaternion
-    v = cross_matrix([x, y, z])
+    v = skew([x, y, z])
     return np.eye(3) + 2.0 * w * v + 2.0 * v @ v
 
 

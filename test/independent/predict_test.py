@@ -9,7 +9,8 @@ import unittest
 
 import numpy as np
 import yaml
-from described_rotor import DescribedRotor, matrix_of, rotation_vector
+from described_rotor import DescribedRotor, matrix_of
+from laboratory import rotation_vector
 
 PROGRAMS = os.environ["PROGRAMS"]
 POSITIONER = os.path.join(os.environ["SOURCE"], "config", "examples", "two_axis_positioner")
