@@ -162,15 +162,6 @@ bool takesMotion(const Recording& recording,
   return !has_torque && nominal.hasTorqueModel() && tellsMotion(recording.motion);
 }
 
-/// What is missing for samples is not missing for motion.
-void dropNotesOnSamples(RecordingReport& report) {
-  const auto is_on_samples = [](const std::string& note) {
-    return note.find("No torque is recorded") != std::string::npos;
-  };
-  report.notes.erase(std::remove_if(report.notes.begin(), report.notes.end(), is_on_samples),
-                     report.notes.end());
-}
-
 std::vector<CycleRequest> cyclesOf(const CalibrationSession& session,
                                    const CalibrateBagOptions& options) {
   const EstimationOptions& estimation = session.config().estimation;
@@ -330,7 +321,7 @@ int calibrateBag(const CalibrateBagOptions& options) {
   Recording recording = readBags(options, start.actuator, config);
   const bool takes_motion = takesMotion(recording, options, start.actuator);
   if (takes_motion) {
-    dropNotesOnSamples(recording.report);
+    recording.report.missing.clear();
   }
   const std::vector<std::string> lines = describe(recording.report);
   for (const std::string& line : lines) {

@@ -109,21 +109,21 @@ void RecordedStreams::requireUsable(const std::string& files) const {
   }
 }
 
-std::vector<std::string> RecordedStreams::notes() const {
+std::vector<std::string> RecordedStreams::missing() const {
   const SampleBuilderReport& streams = builder_.report();
-  std::vector<std::string> notes;
+  std::vector<std::string> missing;
   if (streams.orientations.received == 0) {
-    notes.emplace_back("No orientation is recorded: the joint cannot be calibrated.");
+    missing.emplace_back("No orientation is recorded: the joint cannot be calibrated.");
   }
   if (modelledCoils(nominal_) == 0) {
-    return notes;
+    return missing;
   }
   if (streams.torques.received == 0) {
-    notes.emplace_back("No torque is recorded: poles and coils cannot be calibrated.");
+    missing.emplace_back("No torque is recorded: poles and coils cannot be calibrated.");
   } else if (streams.currents.received == 0) {
-    notes.emplace_back("No coil current is recorded: poles and coils cannot be calibrated.");
+    missing.emplace_back("No coil current is recorded: poles and coils cannot be calibrated.");
   }
-  return notes;
+  return missing;
 }
 
 std::string coilMismatch(const std::string& files,

@@ -198,7 +198,7 @@ class Reader {
     noteIdentity();
     if (report.has_streams) {
       streams_.requireUsable(files);
-      report.notes = concatenated(std::move(report.notes), streams_.notes());
+      report.missing = streams_.missing();
     }
     recorded_samples_.requireUsable(files);
     const std::size_t renumbered = makeIdsUnique(recording_.samples);
@@ -217,12 +217,6 @@ class Reader {
       notes.push_back("The recording is of unit " + recorded_serial_ +
                       "; the description names none.");
     }
-  }
-
-  static std::vector<std::string> concatenated(std::vector<std::string> first,
-                                               const std::vector<std::string>& second) {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
   }
 
   const Actuator& nominal_;

@@ -67,6 +67,7 @@ std::vector<std::string> describe(const RecordingReport& report) {
     addSamples(lines, report.samples);
   }
   lines.insert(lines.end(), report.notes.begin(), report.notes.end());
+  lines.insert(lines.end(), report.missing.begin(), report.missing.end());
   return lines;
 }
 

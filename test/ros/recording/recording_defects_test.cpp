@@ -225,13 +225,14 @@ TEST_F(RecordingDefects, TellsWhichTopicIsMissingAndWhereItIs) {
 }
 
 TEST_F(RecordingDefects, NotesWhichStreamsAreMissing) {
-  const auto notes = [this](const std::vector<std::string>& topics) {
-    return read({edited(bags::without(topics))}).report.notes;
+  const auto missing = [this](const std::vector<std::string>& topics) {
+    return read({edited(bags::without(topics))}).report.missing;
   };
-  EXPECT_EQ(notes({kOrientation}).at(0),
+  EXPECT_EQ(missing({kOrientation}).at(0),
             "No orientation is recorded: the joint cannot be calibrated.");
-  EXPECT_EQ(notes({kTorque}).at(0), "No torque is recorded: poles and coils cannot be calibrated.");
-  EXPECT_EQ(notes({kCurrents}).at(0),
+  EXPECT_EQ(missing({kTorque}).at(0),
+            "No torque is recorded: poles and coils cannot be calibrated.");
+  EXPECT_EQ(missing({kCurrents}).at(0),
             "No coil current is recorded: poles and coils cannot be calibrated.");
 }
 

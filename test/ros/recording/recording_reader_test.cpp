@@ -121,6 +121,7 @@ TEST_F(RecordingReader, CountsEveryMessageOfTheStreams) {
   EXPECT_EQ(report.streams.samples.torques.received, view.size());
   EXPECT_EQ(report.streams.samples.joints.droppedInAll(), 0U);
   EXPECT_TRUE(report.notes.empty());
+  EXPECT_TRUE(report.missing.empty());
 }
 
 TEST_F(RecordingReader, PartsOfARecordingGiveTheSamplesOfTheWhole) {

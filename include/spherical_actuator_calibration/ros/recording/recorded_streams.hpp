@@ -48,8 +48,8 @@ class RecordedStreams {
   /// another frame: no joint of the description, no current pattern of its number of coils.
   void requireUsable(const std::string& files) const;
 
-  /// What is missing, one sentence each.
-  std::vector<std::string> notes() const;
+  /// What samples of dwells lack, one sentence each.
+  std::vector<std::string> missing() const;
 
  private:
   const Actuator& nominal_;

@@ -34,7 +34,8 @@ struct RecordingReport {
   RecordedStreamsReport streams;
   bool has_samples = false;  ///< samples were recorded as such
   RecordedSamplesReport samples;
-  std::vector<std::string> notes;  ///< what an operator should know, one sentence each
+  std::vector<std::string> notes;    ///< what an operator should know, one sentence each
+  std::vector<std::string> missing;  ///< what samples of dwells lack, likewise; motion needs less
 };
 
 /// All of it for people, one line each: counts of every stream, what was dropped and why, notes.
