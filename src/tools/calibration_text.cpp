@@ -87,11 +87,9 @@ std::vector<Row> rowsOf(const CalibrationSession& session, const std::optional<A
   if (truth) {
     const ParameterSpace& space = session.model().space();
     const Eigen::VectorXd values = space.reportedValues(space.coordinatesOf(*truth));
-    for (Eigen::Index p = 0; p < space.size(); ++p) {
-      // No description tells what only motion does.
-      const bool is_told = p < space.effect() || space.effects().at(p - space.effect()).acts_on !=
-                                                     LaboratoryEffect::ActsOn::kMotion;
-      rows[static_cast<std::size_t>(p)].truth = is_told ? std::optional(values[p]) : std::nullopt;
+    // What the laboratory adds is not in a description of axes.
+    for (Eigen::Index p = 0; p < space.effect(); ++p) {
+      rows[static_cast<std::size_t>(p)].truth = values[p];
     }
   }
   return rows;
@@ -132,13 +130,13 @@ std::string coverageLine(const std::vector<Row>& rows) {
   int identified = 0;
   int covered = 0;
   for (const Row& row : rows) {
-    if (row.parameter.observable) {
+    if (row.parameter.observable && row.truth) {
       ++identified;
       covered += std::abs(errorOf(row)) <= kInterval95 * row.parameter.stddev ? 1 : 0;
     }
   }
   if (identified == 0) {
-    return "No parameter is identified.\n";
+    return "No parameter whose truth is known is identified.\n";
   }
   return format(
       "The 95 %% interval holds the truth for %d of %d identified parameters (%.1f %%).\n",
