@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
@@ -69,7 +70,10 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
     follow(now, result);
   }
   last_beat_ = now;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
   result.measured = measure(now);
+  result.reading_time = std::chrono::duration<double>(Clock::now() - begin).count();
   return result;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -42,6 +44,12 @@ class ScriptedTransport : public ModbusTransport {
     is_open_ = is_open_ && reachable;
   }
 
+  /// Reading from this address on takes so long [s], from now on.
+  void setSlow(int address, double seconds) {
+    slow_address_ = address;
+    slow_time_ = seconds;
+  }
+
   const std::vector<Write>& writes() const { return writes_; }
   int reads() const { return reads_; }
   int opened() const { return opened_; }
@@ -70,6 +78,9 @@ class ScriptedTransport : public ModbusTransport {
   std::vector<std::uint16_t> read(int unit, RegisterTable table, int address, int count) override {
     request();
     ++reads_;
+    if (address == slow_address_) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(slow_time_));
+    }
     std::vector<std::uint16_t> words(static_cast<std::size_t>(count));
     std::generate(words.begin(), words.end(), [&] { return at(unit, table, address++); });
     return words;
@@ -106,6 +117,8 @@ class ScriptedTransport : public ModbusTransport {
   int opened_ = 0;
   int spans_ = 0;
   double span_ = 0.0;
+  int slow_address_ = -1;
+  double slow_time_ = 0.0;
 };
 
 }  // namespace sac

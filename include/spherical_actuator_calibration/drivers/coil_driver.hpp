@@ -27,6 +27,8 @@ class CoilDriver {
     std::optional<Eigen::VectorXd> measured;  ///< currents [A]; nothing when they could not be read
     std::string zero_reason;  ///< why zero is set; empty while a command is followed
     bool fault = false;       ///< the device is the reason, not the want of commands
+    /// That reading the currents took, at the end of the beat [s].
+    double reading_time = 0.0;
   };
 
   /// Keeps a reference to the transport, which may be closed. Throws ConfigError when the options

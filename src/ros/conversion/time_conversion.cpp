@@ -37,4 +37,11 @@ ros::Time middleOf(const ros::Time& begin, const ros::Time& end) {
   return stampToRos(first + (stampFromRos(end) - first) / 2);
 }
 
+ros::Time timeBefore(const ros::Time& time, double seconds) {
+  const double ticks = seconds * static_cast<double>(kTicksPerSecond);
+  const Stamp stamp = stampFromRos(time);
+  return ticks < static_cast<double>(stamp) ? stampToRos(stamp - static_cast<Stamp>(ticks))
+                                            : ros::Time();
+}
+
 }  // namespace sac

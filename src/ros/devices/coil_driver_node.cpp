@@ -164,10 +164,9 @@ void CoilDriverNode::beat() {
       driver_.stop();
       return;
     }
-    const ros::Time before = ros::Time::now();
     const CoilDriver::Beat beat = driver_.beat(steadySeconds());
     if (beat.measured) {
-      publish(*beat.measured, middleOf(before, ros::Time::now()));
+      publish(*beat.measured, timeBefore(ros::Time::now(), 0.5 * beat.reading_time));
     }
     tell(beat);
   } catch (const std::exception& error) {

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -263,6 +264,11 @@ void LabEmulatorNode::showCurrents() {
   amplifier_.show(current_sensor_.measure(0, seen.currents, {}).current);
 }
 
+// Threads that wait for each other must not make a sensor late.
+ros::Time LabEmulatorNode::stampOfState() const {
+  return timeBefore(ros::Time::now(), std::max(0.0, steadySeconds() - now_));
+}
+
 void LabEmulatorNode::publishPose() {
   if (tracker_lost_) {
     return;
@@ -271,14 +277,14 @@ void LabEmulatorNode::publishPose() {
   const MarkerPoseMeasurement pose = tracker_.measure(
       0, actuator_.orientation(seen.position), std::nullopt, scheduled(outlier_pose_));
   outlier_pose_ = false;
-  pose_message_.header.stamp = ros::Time::now();
+  pose_message_.header.stamp = stampOfState();
   pose_message_.pose.position = pointToRos(pose.position);
   pose_message_.pose.orientation = quaternionToRos(pose.q_tracker_marker);
   pose_publisher_.publish(pose_message_);
 }
 
 void LabEmulatorNode::publishTruth() {
-  true_message_.header.stamp = ros::Time::now();
+  true_message_.header.stamp = stampOfState();
   true_message_.quaternion = quaternionToRos(Eigen::Quaterniond(actuator_.orientation(position())));
   true_publisher_.publish(true_message_);
 }
@@ -292,7 +298,7 @@ void LabEmulatorNode::publishWrench() {
                          actuator_.weight(R_stator_rotor),
                          scheduled(outlier_wrench_));
   outlier_wrench_ = false;
-  wrench_message_.header.stamp = ros::Time::now();
+  wrench_message_.header.stamp = stampOfState();
   wrench_message_.wrench.force = vectorToRos(wrench.force);
   wrench_message_.wrench.torque = vectorToRos(wrench.torque);
   wrench_publisher_.publish(wrench_message_);

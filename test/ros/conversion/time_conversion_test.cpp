@@ -40,5 +40,12 @@ TEST(TimeConversion, HoldsEveryDifference) {
   EXPECT_EQ(middleOf(ros::Time(2.0), ros::Time(1.0)), ros::Time(1.5));
 }
 
+TEST(TimeConversion, GoesBackUntilZero) {
+  EXPECT_EQ(timeBefore(ros::Time(5, 250'000'000), 0.5), ros::Time(4, 750'000'000));
+  EXPECT_EQ(timeBefore(ros::Time(5.0), 0.0), ros::Time(5.0));
+  EXPECT_EQ(timeBefore(ros::Time(0.1), 0.5), ros::Time());
+  EXPECT_EQ(timeBefore(ros::Time(), 1e12), ros::Time());
+}
+
 }  // namespace
 }  // namespace sac

@@ -20,4 +20,8 @@ double secondsBetween(const ros::Time& from, const ros::Time& to);
 /// The time in the middle between two.
 ros::Time middleOf(const ros::Time& begin, const ros::Time& end);
 
+/// The time so many seconds before another, at the earliest that of a clock at zero, as a simulated
+/// one that was not heard yet. Precondition: seconds ≥ 0.
+ros::Time timeBefore(const ros::Time& time, double seconds);
+
 }  // namespace sac

@@ -76,6 +76,8 @@ class LabEmulatorNode {
   const Eigen::Vector3d& position() const;
   void showJoints();
   void showCurrents();
+  /// When it was what it is now, by the clock of the stamps.
+  ros::Time stampOfState() const;
   void publishPose();
   void publishTruth();
   void publishWrench();
