@@ -109,7 +109,9 @@ class Examiner {
     if (!registration.rotor_marker) {
       add("rotor_marker");
     }
-    if (isTorqueIdentified() && !registration.rotor_ft_sensor) {
+    const bool used_torques =
+        isTorqueIdentified() && (last_success_ == nullptr || !last_success_->motion);
+    if (used_torques && !registration.rotor_ft_sensor) {
       add("rotor_ft_sensor");
     }
     return names.empty() ? names

@@ -103,6 +103,12 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
   writer.entry(4, "joint_stddev", yamlNumbers(motion.joint_stddev));
   writer.entry(4, "current_stddev", yamlNumber(motion.current_stddev));
   writer.entry(4, "orientation_stddev", yamlNumber(motion.orientation_stddev));
+  const HeldOutMotion& held_out = motion.held_out;
+  writer.entry(4,
+               "held_out",
+               "{windows: " + std::to_string(held_out.windows) +
+                   ", rejected: " + std::to_string(held_out.rejected) +
+                   ", orientations: " + std::to_string(held_out.orientations) + "}");
   writer.entry(4, "window_chi_square", yamlNumber(motion.window_chi_square));
   writer.entry(4, "orientation_chi_square", yamlNumber(motion.orientation_chi_square));
 }

@@ -268,6 +268,11 @@ Actuator CalibrationSession::actuator() const {
 }
 
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
+  const auto last = std::find_if(
+      reports_.rbegin(), reports_.rend(), [](const CycleReport& one) { return one.success; });
+  if (last != reports_.rend() && last->motion && last->motion->held_out.windows > 0) {
+    return validationOf(last->motion->held_out);
+  }
   const HeldOutValidation result = validateHeldOut(
       orientationMap().map ? mappedModel() : model_, samples_, state_, config_.estimation);
   return result.samples == 0 ? std::nullopt : std::optional(result);

@@ -5,11 +5,11 @@
 #include <map>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
+#include "cycle_conclusion.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
@@ -38,18 +38,6 @@ EstimationProblem heldOutProblem(const CalibrationModel& model,
     }
   }
   return problem;
-}
-
-/// Squared Mahalanobis norm of all residuals r of a sum. Their covariance is N + J P Jᵀ with
-/// block-diagonal noise N and P = L Lᵀ of the coordinates; its inverse by Woodbury's identity.
-double jointChiSquare(const InformationSum& sum, const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(covariance);
-  const Eigen::MatrixXd root =
-      spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  Eigen::MatrixXd inner = root.transpose() * sum.information() * root;
-  inner.diagonal().array() += 1.0;
-  const Eigen::VectorXd projected = root.transpose() * sum.gradient();
-  return sum.squaredMisfit() - projected.dot(inner.llt().solve(projected));
 }
 
 SampleResidual residualOf(const Sample& sample,
@@ -165,10 +153,13 @@ class HeldOutJudge {
 
   void conclude(std::size_t judged, HeldOutValidation& result) const {
     const auto values = 3.0 * static_cast<double>(judged);
-    const double chi_square = std::max(jointChiSquare(misfit_, state_.belief.covariance), 0.0);
+    const double chi_square = std::max(jointChiSquare(misfit_.information(),
+                                                      misfit_.gradient(),
+                                                      misfit_.squaredMisfit(),
+                                                      state_.belief.covariance),
+                                       0.0);
     result.reduced_chi_square = chi_square / values;
-    const boost::math::chi_squared_distribution<double> distribution(values);
-    result.probability = boost::math::cdf(boost::math::complement(distribution, chi_square));
+    result.probability = chiSquareProbability(values, chi_square);
   }
 
   const EstimationProblem& problem_;
@@ -200,6 +191,22 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
   const EstimationProblem problem = heldOutProblem(model, samples, state.belief, options);
   if (!problem.observations.empty()) {
     HeldOutJudge(problem, state, options).judge(result);
+  }
+  return result;
+}
+
+HeldOutValidation validationOf(const HeldOutMotion& motion) {
+  HeldOutValidation result;
+  result.samples = motion.windows;
+  result.torques = motion.windows;
+  result.torque_rms = motion.torque_rms;
+  result.orientations = motion.orientations;
+  result.orientation_rms = motion.orientation_rms;
+  result.reduced_chi_square = motion.reduced_chi_square;
+  result.probability = motion.probability;
+  for (const ObservationResidual& from : motion.residuals) {
+    const auto id = static_cast<std::uint32_t>(from.observation.sample + 1);
+    result.residuals.push_back(reportedResidual(from, id));
   }
   return result;
 }

@@ -9,4 +9,9 @@ double chiSquareLimit(double degrees_of_freedom, double probability) {
   return boost::math::quantile(boost::math::complement(distribution, probability));
 }
 
+double chiSquareProbability(double degrees_of_freedom, double value) {
+  const boost::math::chi_squared_distribution<double> distribution(degrees_of_freedom);
+  return boost::math::cdf(boost::math::complement(distribution, value));
+}
+
 }  // namespace sac

@@ -13,6 +13,7 @@
 #include "noise_factors.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 
 namespace sac {
 namespace {
@@ -41,6 +42,9 @@ class Estimator {
   double orientationChiSquare() const;
   void judgeMisfit();
   void findCovariance();
+  void judgeHeldOut();
+  ObservationResidual residualOf(std::size_t window) const;
+  HeldOutMotion countHeldOut();
   void listResiduals();
   void summarise();
 
@@ -56,7 +60,7 @@ class Estimator {
 std::size_t Estimator::activeWindows() const {
   const std::vector<WindowTerm>& windows = terms_.windows();
   return static_cast<std::size_t>(std::count_if(
-      windows.begin(), windows.end(), [](const WindowTerm& term) { return term.active; }));
+      windows.begin(), windows.end(), [](const WindowTerm& term) { return term.serves(); }));
 }
 
 double Estimator::windowFreedom() const {
@@ -68,7 +72,7 @@ double Estimator::windowFreedom() const {
 double Estimator::windowSquares() const {
   double sum = 0.0;
   for (const WindowTerm& term : terms_.windows()) {
-    sum += term.active ? term.square * static_cast<double>(terms_.valuesPerWindow()) : 0.0;
+    sum += term.serves() ? term.square * static_cast<double>(terms_.valuesPerWindow()) : 0.0;
   }
   return sum;
 }
@@ -128,18 +132,8 @@ bool Estimator::weighAnew() {
 }
 
 bool Estimator::solve() {
-  constexpr int kMostRounds = 4;
   descent_.solveCoarsely();
-  weighAnew();
-  if (!descent_.solveFinely(true)) {
-    return false;
-  }
-  for (int round = 0; round < kMostRounds && weighAnew(); ++round) {
-    if (!descent_.solveFinely(false)) {
-      return false;
-    }
-  }
-  return true;
+  return descent_.solveFinely([this] { return weighAnew(); });
 }
 
 /// Reduced χ² of the tracker's means over windows: drift and wrong joints show there, white noise
@@ -160,7 +154,7 @@ double Estimator::orientationChiSquare() const {
     count = 0.0;
   };
   for (const OrientationTerm& term : terms_.orientations()) {
-    if (!term.is_known || !term.active) {
+    if (!term.serves()) {
       continue;
     }
     if (term.span != span || term.time - begin > options_.window) {
@@ -231,33 +225,90 @@ void Estimator::findCovariance() {
       least > 0.0 ? std::sqrt(eigen.eigenvalues()[count - 1] / least) : 0.0;
 }
 
-void Estimator::listResiduals() {
+/// Windows and orientations that are held out, and their errors.
+HeldOutMotion Estimator::countHeldOut() {
+  HeldOutMotion held_out;
+  double torques = 0.0;
   const std::vector<WindowTerm>& windows = terms_.windows();
   for (std::size_t n = 0; n < windows.size(); ++n) {
-    const WindowTerm& term = windows[n];
-    const JointTrack& track = terms_.spans()[term.window.span].track;
-    const TestFunctions functions(
-        track.time(term.window.first), track.time(term.window.last), options_.test_functions);
-    ObservationResidual entry;
-    entry.observation = {n, Quantity::kTorque};
-    const Eigen::VectorXd residual =
-        term.whitening.triangularView<Eigen::Lower>().solve(term.residual);
-    entry.residual = residual.head<3>() / functions.integralOfFirst();
-    entry.standardized = std::sqrt(term.square);
-    entry.rejected = !term.active;
-    result_.estimate.residuals.push_back(entry);
+    if (windows[n].held_out && windows[n].active) {
+      held_out.residuals.push_back(residualOf(n));
+      torques += held_out.residuals.back().residual.squaredNorm();
+    } else if (windows[n].held_out) {
+      ++held_out.rejected;
+    }
+  }
+  held_out.windows = held_out.residuals.size();
+  double turns = 0.0;
+  for (const OrientationTerm& term : terms_.orientations()) {
+    if (term.held_out && term.is_known && term.active) {
+      ++held_out.orientations;
+      turns += std::pow(terms_.noise().orientation, 2) * term.residual.squaredNorm();
+    }
+  }
+  const auto rootMean = [](double sum, std::size_t count) {
+    return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
+  };
+  held_out.torque_rms = rootMean(torques, held_out.windows);
+  held_out.orientation_rms = rootMean(turns, held_out.orientations);
+  return held_out;
+}
+
+/// Against the stated noise, whatever the misfit of the windows that serve: what these could not
+/// explain must not excuse it.
+void Estimator::judgeHeldOut() {
+  HeldOutMotion& held_out = result_.summary.held_out;
+  std::size_t values = 0;
+  const TermSum sum = terms_.heldOut(descent_.x(), values);
+  if (values == 0) {
+    return;
+  }
+  const double squares =
+      std::max(0.0,
+               jointChiSquare(
+                   sum.information, sum.gradient, sum.misfit, result_.estimate.belief.covariance));
+  const auto freedom = static_cast<double>(values);
+  held_out.reduced_chi_square = squares / freedom;
+  held_out.probability = chiSquareProbability(freedom, squares);
+}
+
+/// Mean torque error over a window, stator frame [N·m].
+ObservationResidual Estimator::residualOf(std::size_t window) const {
+  const WindowTerm& term = terms_.windows()[window];
+  const JointTrack& track = terms_.spans()[term.window.span].track;
+  const TestFunctions functions(
+      track.time(term.window.first), track.time(term.window.last), options_.test_functions);
+  const Eigen::VectorXd residual =
+      term.whitening.triangularView<Eigen::Lower>().solve(term.residual);
+  ObservationResidual result;
+  result.observation = {window, Quantity::kTorque};
+  result.residual = residual.head<3>() / functions.integralOfFirst();
+  result.standardized = std::sqrt(term.square);
+  result.rejected = !term.active;
+  return result;
+}
+
+void Estimator::listResiduals() {
+  for (std::size_t n = 0; n < terms_.windowCount(); ++n) {
+    if (!terms_.windows()[n].held_out) {
+      result_.estimate.residuals.push_back(residualOf(n));
+    }
   }
 }
 
 void Estimator::summarise() {
   MotionSummary& summary = result_.summary;
   summary.left_out = terms_.leftOut();
+  summary.held_out = countHeldOut();
   summary.values = static_cast<std::size_t>(terms_.valuesPerWindow());
   summary.windows = terms_.windowCount();
   for (const WindowsLeftOut& left_out : summary.left_out) {
     summary.windows += left_out.count;
   }
   for (const WindowTerm& term : terms_.windows()) {
+    if (term.held_out) {
+      continue;
+    }
     if (!term.active) {
       countLeftOut("it contradicts the others: something else moved the rotor", summary.left_out);
       continue;
@@ -267,7 +318,7 @@ void Estimator::summarise() {
     ++summary.used;
   }
   for (const OrientationTerm& term : terms_.orientations()) {
-    summary.orientations += term.is_known && term.active ? 1 : 0;
+    summary.orientations += term.serves() ? 1 : 0;
     summary.orientations_rejected += term.is_known && !term.active ? 1 : 0;
   }
   summary.joint_stddev = std::sqrt(factors_.joints) * terms_.noise().joint;
@@ -300,6 +351,7 @@ MotionEstimate Estimator::run() {
   if (estimate.termination == Termination::kConverged) {
     judgeMisfit();
     findCovariance();
+    judgeHeldOut();
   }
   estimate.solve_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -32,18 +32,16 @@ MotionDescent::MotionDescent(const MotionProblem& problem,
   open_.directions.resize(x_.size(), 0);
 }
 
-MotionSums MotionDescent::sumsAt(const Eigen::VectorXd& x, const TermOrder& order) {
-  return {terms_.balance(x, order), terms_.orientation(x, order)};
+MotionSums MotionDescent::sumsAt(const Eigen::VectorXd& x) {
+  return {terms_.balance(x), terms_.orientation(x)};
 }
 
 /// Misfits count against their usual size: far from the solution all windows fit badly.
 void MotionDescent::rescale() {
   std::vector<double> windows;
   std::vector<double> orientations;
-  for (const WindowTerm& term : terms_.windows()) {
-    if (term.residual.size() > 0) {
-      windows.push_back(term.square);
-    }
+  for (std::size_t n = 0; n < terms_.windowCount(); n += terms_.every()) {
+    windows.push_back(terms_.windows()[n].square);
   }
   for (const OrientationTerm& term : terms_.orientations()) {
     if (term.is_known) {
@@ -107,48 +105,59 @@ Eigen::VectorXd MotionDescent::step() {
 }
 
 void MotionDescent::noteError() {
-  const auto values = terms_.windowCount() * static_cast<std::size_t>(terms_.valuesPerWindow());
+  const auto values = terms_.servingWindows() * static_cast<std::size_t>(terms_.valuesPerWindow());
   errors_.push_back(std::sqrt(sums_.balance.misfit / static_cast<double>(values)));
 }
 
-/// Steps until the next one is at most `tolerance` standard deviations long in all; false where
-/// they do not end. The noise of windows is looked at in the first evaluation only.
-bool MotionDescent::descend(TermOrder order, double tolerance, int most_iterations) {
-  constexpr int kMostHalvings = 6;
-  sums_ = sumsAt(x_, order);
-  order.balance.covariance = false;
-  rescale();
-  if (errors_.empty()) {
-    noteError();
-  }
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+/// Gauss–Newton with the windows as they are linearised, until the next step is at most `tolerance`
+/// standard deviations long in all; false where nothing can be told. Weights follow the misfits.
+bool MotionDescent::settle(double tolerance) {
+  constexpr int kMostSteps = 20;
+  for (int n = 0; n < kMostSteps; ++n) {
+    rescale();
+    sums_ = sumsAt(x_);
     judgeOpen();
     if (estimated_.empty()) {
       return true;
     }
-    Eigen::VectorXd forward = step();
+    const Eigen::VectorXd forward = step();
     if (!forward.allFinite()) {
       return false;
     }
-    const double length = std::sqrt(std::max(0.0, forward.dot(sums_.information() * forward)));
-    if (length <= tolerance) {
+    if (lengthOf(forward) <= tolerance) {
       return true;
     }
-    const double before = cost(sums_);
-    const Eigen::VectorXd start = x_;
-    for (int halving = 0; halving < kMostHalvings; ++halving) {
-      x_ = start + forward;
-      sums_ = sumsAt(x_, order);
-      if (cost(sums_) <= before || length < 1.0) {
-        break;
-      }
-      forward *= 0.5;
-    }
-    ++iterations_;
-    rescale();
-    noteError();
+    x_ += forward;
   }
-  return false;
+  return true;
+}
+
+/// In standard deviations of all coordinates together.
+double MotionDescent::lengthOf(const Eigen::VectorXd& change) const {
+  return std::sqrt(std::max(0.0, change.dot(sums_.information() * change)));
+}
+
+/// Linearises anew, half way back to `start` as long as the misfit has grown; how far that is.
+double MotionDescent::advance(const Eigen::VectorXd& start, const TermOrder& order) {
+  constexpr int kMostHalvings = 6;
+  constexpr double kShort = 1.0;
+  const Eigen::VectorXd end = x_;
+  x_ = start;
+  const double before = cost(sumsAt(start));
+  x_ = end;
+  double length = lengthOf(x_ - start);
+  for (int halving = 0;; ++halving) {
+    terms_.linearize(x_, order);
+    sums_ = sumsAt(x_);
+    if (cost(sums_) <= before || length < kShort || halving == kMostHalvings) {
+      break;
+    }
+    x_ = start + 0.5 * (x_ - start);
+    length *= 0.5;
+  }
+  ++iterations_;
+  noteError();
+  return length;
 }
 
 /// Currents vary too fast for a start half a period off: of several delays the one with the least
@@ -163,6 +172,7 @@ void MotionDescent::findDelay(const TermOrder& order) {
   }
   TermOrder sparse = order;
   sparse.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
+  sparse.orientations = false;
   const ParameterSpace& space = problem_.model->space();
   const double scale = space.effects().scale(place - space.effect());
   std::vector<Eigen::Index> others = problem_.free;
@@ -173,7 +183,8 @@ void MotionDescent::findDelay(const TermOrder& order) {
   for (int n = -reach; n <= reach; ++n) {
     Eigen::VectorXd x = problem_.prior.x;
     x[place] = kGrid * n / scale;
-    const TermSum sum = terms_.balance(x, sparse);
+    terms_.linearize(x, sparse);
+    const TermSum sum = terms_.balance(x);
     Eigen::MatrixXd information = sum.information(others, others);
     information.diagonal().array() += 1.0 / (kLoose * kLoose);
     const Eigen::VectorXd gradient = sum.gradient(others);
@@ -189,20 +200,64 @@ void MotionDescent::findDelay(const TermOrder& order) {
 void MotionDescent::solveCoarsely() {
   constexpr int kMostSteps = 8;
   constexpr double kNear = 3.0;
+  constexpr std::size_t kEnough = 100;  // windows
   terms_.setScales(1e12, 1e12);
   TermOrder order;
   order.balance.stride = terms_.coarseStride();
-  order.balance.covariance = true;
   findDelay(order);
+  order.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
+  terms_.linearize(x_, order);
+  sums_ = sumsAt(x_);
+  rescale();
+  sums_ = sumsAt(x_);
+  noteError();
   // Where coarse steps find no end, fine ones may.
-  descend(order, kNear, kMostSteps);
+  for (int n = 0; n < kMostSteps; ++n) {
+    const Eigen::VectorXd start = x_;
+    judgeOpen();
+    x_ += step();
+    if (!x_.allFinite()) {
+      x_ = start;
+      return;
+    }
+    if (advance(start, order) <= kNear) {
+      return;
+    }
+    rescale();
+    sums_ = sumsAt(x_);
+  }
 }
 
-bool MotionDescent::solveFinely(bool covariance) {
-  constexpr double kEnd = 0.02;
+bool MotionDescent::solveFinely(const std::function<bool()>& weighAnew) {
+  // A step as short as this one changes the derivatives by nothing that counts.
+  constexpr double kEnd = 1.0;
+  constexpr double kSettled = 0.02;
+  // Where nothing fits, outliers come and go for ever.
+  constexpr int kMostWeighings = 6;
+  int weighings = 0;
   TermOrder order;
-  order.balance.covariance = covariance;
-  return descend(order, kEnd, estimation_.max_iterations);
+  order.balance.covariance = true;
+  terms_.linearize(x_, order);
+  order.balance.covariance = false;
+  sums_ = sumsAt(x_);
+  for (int iteration = 0; iteration < estimation_.max_iterations; ++iteration) {
+    const Eigen::VectorXd start = x_;
+    bool settled = settle(kSettled);
+    // Far from the solution everything is an outlier.
+    const bool is_near = iteration > 0 || lengthOf(x_ - start) <= kEnd;
+    while (settled && is_near && weighings < kMostWeighings && weighAnew()) {
+      ++weighings;
+      settled = settle(kSettled);
+    }
+    if (!settled) {
+      return false;
+    }
+    if (estimated_.empty() || lengthOf(x_ - start) <= kEnd) {
+      return true;
+    }
+    advance(start, order);
+  }
+  return false;
 }
 
 }  // namespace sac

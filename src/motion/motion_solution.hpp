@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,8 +31,9 @@ class MotionDescent {
   /// Coarsely from the prior, with the delay of the currents that explains most.
   void solveCoarsely();
   /// On from the present place, to the last digit that counts; false where there is no end.
-  /// `covariance`: the noise of windows is looked at anew.
-  bool solveFinely(bool covariance);
+  /// `weighAnew` looks at noise and outliers at the present place, and tells whether that changed
+  /// what counts.
+  bool solveFinely(const std::function<bool()>& weighAnew);
 
   const Eigen::VectorXd& x() const { return x_; }
   const MotionSums& sums() const { return sums_; }
@@ -46,9 +48,11 @@ class MotionDescent {
 
  private:
   void findDelay(const TermOrder& order);
-  bool descend(TermOrder order, double tolerance, int most_iterations);
+  bool settle(double tolerance);
+  double advance(const Eigen::VectorXd& start, const TermOrder& order);
+  double lengthOf(const Eigen::VectorXd& change) const;
   void noteError();
-  MotionSums sumsAt(const Eigen::VectorXd& x, const TermOrder& order);
+  MotionSums sumsAt(const Eigen::VectorXd& x);
   void rescale();
   double cost(const MotionSums& sums) const;
   Eigen::VectorXd step();

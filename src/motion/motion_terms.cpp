@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <thread>
+#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "spherical_actuator_calibration/base/parallel_for.hpp"
 
 namespace sac {
 namespace {
@@ -24,6 +29,23 @@ std::vector<MotionSpan> spansOf(const MotionRecording& recording) {
   return spans;
 }
 
+/// What the orientations of a window tell together.
+struct OrientationSum {
+  Eigen::MatrixXd jacobian;
+  Eigen::VectorXd residual;
+  double count = 0.0;
+
+  void add(const Eigen::MatrixXd& one_jacobian, const Eigen::Vector3d& one_residual) {
+    if (count == 0.0) {
+      jacobian.setZero(3, one_jacobian.cols());
+      residual.setZero(3);
+    }
+    jacobian += one_jacobian;
+    residual += one_residual;
+    count += 1.0;
+  }
+};
+
 void startSum(Eigen::Index size, TermSum& sum) {
   sum.information.setZero(size, size);
   sum.gradient.setZero(size);
@@ -43,9 +65,12 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       places_(problem.model->space()),
       spans_(spansOf(*problem.recording)),
       noise_(noiseOf(spans_, *problem.model, problem.prior.x)),
-      evaluator_(options, noise_.joint) {
+      evaluators_(std::max(1U, std::thread::hardware_concurrency()),
+                  BalanceEvaluator(options, noise_.joint)) {
   for (const MotionWindow& window : cutWindows(spans_, options, left_out_)) {
-    windows_.push_back({window, {}, {}, {}, {}, 0.0, true});
+    WindowTerm term;
+    term.window = window;
+    windows_.push_back(std::move(term));
   }
   for (std::size_t s = 0; s < spans_.size(); ++s) {
     for (std::size_t n = 0; n < spans_[s].orientation_times.size(); ++n) {
@@ -55,12 +80,21 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       orientations_.push_back(term);
     }
   }
+  holdOut();
   const ParameterSpace& space = problem.model->space();
   for (Eigen::Index p = 0; p < space.size(); ++p) {
     if (p < space.pole(0) || p >= space.effect()) {
       orienting_.push_back(p);
     }
   }
+}
+
+std::size_t MotionTerms::servingWindows() const {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < windows_.size(); n += every_) {
+    count += windows_[n].serves() ? 1 : 0;
+  }
+  return std::max<std::size_t>(1, count);
 }
 
 std::size_t MotionTerms::coarseStride() const {
@@ -81,80 +115,120 @@ void MotionTerms::setScales(double windows, double orientations) {
   orientation_scale_ = orientations;
 }
 
+Eigen::MatrixXd MotionTerms::whiteningFor(const WindowBalance& balance) const {
+  const double variance = current_factor_ * noise_.current * noise_.current;
+  return whiteningOfMany(joint_factor_ * balance.by_joints + variance * balance.by_currents);
+}
+
 void MotionTerms::setNoiseFactors(double joints, double currents) {
   joint_factor_ = joints;
   current_factor_ = currents;
-  const double variance = currents * noise_.current * noise_.current;
   for (WindowTerm& term : windows_) {
-    if (term.by_joints.size() > 0) {
-      term.whitening = whiteningOfMany(joints * term.by_joints + variance * term.by_currents);
+    if (term.balance.by_joints.size() > 0) {
+      term.whitening = whiteningFor(term.balance);
     }
   }
 }
 
-void MotionTerms::addWindow(const MotionPoint& point,
-                            const TermOrder& order,
-                            WindowTerm& term,
-                            TermSum& sum) {
-  BalanceOrder balance = order.balance;
-  balance.covariance = balance.covariance || term.whitening.size() == 0;
-  evaluator_.evaluate(spans_[term.window.span], term.window, point, balance, balance_);
-  if (balance.covariance) {
-    term.by_joints = balance_.by_joints;
-    term.by_currents = balance_.by_currents;
-    term.whitening =
-        whiteningOfMany(joint_factor_ * term.by_joints +
-                        current_factor_ * noise_.current * noise_.current * term.by_currents);
+void MotionTerms::linearize(const Eigen::VectorXd& x, const TermOrder& order) {
+  linearized_at_ = x;
+  every_ = order.every;
+  linearizeWindows(order);
+  if (order.orientations) {
+    linearizeOrientations();
   }
-  term.residual = term.whitening * balance_.residual;
-  term.square = term.residual.squaredNorm() / static_cast<double>(valuesPerWindow());
-  if (!term.active) {
-    return;
-  }
-  const double weight = weightOf(term.square / window_scale_);
-  const Eigen::MatrixXd jacobian =
-      term.whitening.triangularView<Eigen::Lower>() * balance_.jacobian;
-  sum.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), weight);
-  sum.gradient.noalias() += weight * (jacobian.transpose() * term.residual);
-  sum.misfit += weight * term.residual.squaredNorm();
 }
 
-TermSum MotionTerms::balance(const Eigen::VectorXd& x, const TermOrder& order) {
+void MotionTerms::linearizeWindows(const TermOrder& order) {
+  const MotionPoint point(*problem_.model, places_, linearized_at_);
+  const std::size_t count = (windows_.size() + every_ - 1) / every_;
+  const auto threads = static_cast<unsigned>(evaluators_.size());
+  parallelFor(count, threads, [&](unsigned worker, std::size_t n) {
+    WindowTerm& term = windows_[n * every_];
+    BalanceOrder balance = order.balance;
+    balance.covariance = balance.covariance || term.whitening.size() == 0;
+    const MotionSpan& span = spans_[term.window.span];
+    evaluators_[worker].evaluate(span, term.window, point, balance, term.balance);
+    if (balance.covariance) {
+      term.whitening = whiteningFor(term.balance);
+    }
+  });
+}
+
+TermSum MotionTerms::balance(const Eigen::VectorXd& x) {
   TermSum sum;
   startSum(x.size(), sum);
-  const MotionPoint point(*problem_.model, places_, x);
-  for (std::size_t n = 0; n < windows_.size(); n += order.every) {
-    addWindow(point, order, windows_[n], sum);
+  const Eigen::VectorXd apart = x - linearized_at_;
+  Eigen::MatrixXd jacobian;
+  for (std::size_t n = 0; n < windows_.size(); n += every_) {
+    WindowTerm& term = windows_[n];
+    const auto whitening = term.whitening.triangularView<Eigen::Lower>();
+    term.residual = whitening * (term.balance.residual + term.balance.jacobian * apart);
+    term.square = term.residual.squaredNorm() / static_cast<double>(valuesPerWindow());
+    if (!term.serves()) {
+      continue;
+    }
+    const double weight = weightOf(term.square / window_scale_);
+    jacobian = whitening * term.balance.jacobian;
+    sum.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), weight);
+    sum.gradient.noalias() += weight * (jacobian.transpose() * term.residual);
+    sum.misfit += weight * term.residual.squaredNorm();
   }
   sum.information = Eigen::MatrixXd(sum.information.selfadjointView<Eigen::Lower>());
   return sum;
 }
 
-TermSum MotionTerms::orientation(const Eigen::VectorXd& x, const TermOrder& order) {
+void MotionTerms::linearizeOrientations() {
+  constexpr std::size_t kAtOnce = 200;
+  const std::size_t count = orientations_.size();
+  orientation_jacobians_.resize(static_cast<Eigen::Index>(orienting_.size()),
+                                3 * static_cast<Eigen::Index>(count));
+  const double whitening = 1.0 / noise_.orientation;
+  const auto threads = static_cast<unsigned>(evaluators_.size());
+  parallelFor((count + kAtOnce - 1) / kAtOnce, threads, [&](unsigned, std::size_t part) {
+    TrackerTerm tracker(*problem_.model, places_, linearized_at_);
+    for (std::size_t n = part * kAtOnce; n < std::min(count, (part + 1) * kAtOnce); ++n) {
+      OrientationTerm& term = orientations_[n];
+      term.is_known = tracker.evaluate(spans_[term.span], term.index);
+      if (!term.is_known) {
+        continue;
+      }
+      term.time = tracker.time();
+      term.linearized = whitening * tracker.residual();
+      auto columns = orientation_jacobians_.middleCols<3>(3 * static_cast<Eigen::Index>(n));
+      for (std::size_t c = 0; c < orienting_.size(); ++c) {
+        columns.row(static_cast<Eigen::Index>(c)) =
+            whitening * tracker.jacobian().col(orienting_[c]).transpose();
+      }
+    }
+  });
+}
+
+void MotionTerms::moveOrientations(const Eigen::VectorXd& x) {
+  const Eigen::VectorXd apart = (x - linearized_at_)(orienting_);
+  for (std::size_t n = 0; n < orientations_.size(); ++n) {
+    OrientationTerm& term = orientations_[n];
+    if (term.is_known) {
+      term.residual = term.linearized + orientationJacobian(n) * apart;
+      term.square = term.residual.squaredNorm() / 3.0;
+    }
+  }
+}
+
+TermSum MotionTerms::orientation(const Eigen::VectorXd& x) {
   TermSum sum;
   startSum(x.size(), sum);
-  TrackerTerm tracker(*problem_.model, places_, x);
+  moveOrientations(x);
   const auto count = static_cast<Eigen::Index>(orienting_.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(count);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, count);
-  const double whitening = 1.0 / noise_.orientation;
-  for (std::size_t n = 0; n < orientations_.size(); n += order.every) {
-    OrientationTerm& term = orientations_[n];
-    term.is_known = tracker.evaluate(spans_[term.span], term.index);
-    if (!term.is_known) {
-      continue;
-    }
-    term.time = tracker.time();
-    term.residual = whitening * tracker.residual();
-    term.square = term.residual.squaredNorm() / 3.0;
-    if (!term.active) {
+  for (std::size_t n = 0; n < orientations_.size(); ++n) {
+    const OrientationTerm& term = orientations_[n];
+    if (!term.serves()) {
       continue;
     }
     const double weight = weightOf(term.square / orientation_scale_);
-    for (Eigen::Index c = 0; c < count; ++c) {
-      jacobian.col(c) = whitening * tracker.jacobian().col(orienting_[static_cast<std::size_t>(c)]);
-    }
+    const auto jacobian = orientationJacobian(n);
     information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), weight);
     gradient.noalias() += weight * (jacobian.transpose() * term.residual);
     sum.misfit += weight * term.residual.squaredNorm();
@@ -162,6 +236,64 @@ TermSum MotionTerms::orientation(const Eigen::VectorXd& x, const TermOrder& orde
   sum.information(orienting_, orienting_) =
       Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
   sum.gradient(orienting_) = gradient;
+  return sum;
+}
+
+/// Every so manieth window, and the orientations within it.
+void MotionTerms::holdOut() {
+  const std::size_t every = options_.hold_out_every;
+  if (every < 2 || windows_.size() < options_.least_windows_to_hold_out) {
+    return;
+  }
+  for (std::size_t n = every / 2; n < windows_.size(); n += every) {
+    windows_[n].held_out = true;
+    const JointTrack& track = spans_[windows_[n].window.span].track;
+    const double begin = track.time(windows_[n].window.first);
+    const double end = track.time(windows_[n].window.last);
+    for (OrientationTerm& term : orientations_) {
+      const double time = spans_[term.span].orientation_times[term.index];
+      if (term.span == windows_[n].window.span && time >= begin && time <= end) {
+        term.held_out = true;
+        term.window = n;
+      }
+    }
+  }
+}
+
+TermSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& values) {
+  TermSum sum;
+  startSum(x.size(), sum);
+  values = 0;
+  const auto add = [&](const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual) {
+    sum.information.noalias() += jacobian.transpose() * jacobian;
+    sum.gradient.noalias() += jacobian.transpose() * residual;
+    sum.misfit += residual.squaredNorm();
+    values += static_cast<std::size_t>(residual.size());
+  };
+  const Eigen::VectorXd apart = x - linearized_at_;
+  moveOrientations(x);
+  std::map<std::size_t, OrientationSum> means;
+  for (std::size_t n = 0; n < orientations_.size(); ++n) {
+    const OrientationTerm& term = orientations_[n];
+    if (term.held_out && term.active && term.is_known) {
+      means[term.window].add(orientationJacobian(n), term.residual);
+    }
+  }
+  for (std::size_t n = 0; n < windows_.size(); ++n) {
+    const WindowTerm& term = windows_[n];
+    if (!term.held_out || !term.active) {
+      continue;
+    }
+    const auto whitening = term.whitening.triangularView<Eigen::Lower>();
+    add(whitening * term.balance.jacobian,
+        whitening * (term.balance.residual + term.balance.jacobian * apart));
+    const auto mean = means.find(n);
+    if (mean != means.end()) {
+      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3, x.size());
+      all(Eigen::all, orienting_) = mean->second.jacobian / std::sqrt(mean->second.count);
+      add(all, mean->second.residual / std::sqrt(mean->second.count));
+    }
+  }
   return sum;
 }
 

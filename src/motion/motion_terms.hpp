@@ -23,38 +23,51 @@ struct TermSum {
 /// One window in the estimation.
 struct WindowTerm {
   MotionWindow window;
-  Eigen::MatrixXd by_joints;    ///< covariance of its residuals
-  Eigen::MatrixXd by_currents;  ///< the same per A² of the currents' noise
+  WindowBalance balance;  ///< where it was linearised last
   Eigen::MatrixXd whitening;
-  Eigen::VectorXd residual;
-  double square = 0.0;  ///< squared whitened residual, over the number of residuals
+  Eigen::VectorXd residual;  ///< whitened
+  double square = 0.0;       ///< squared whitened residual, over the number of residuals
   bool active = true;
+  bool held_out = false;  ///< judges, and serves nothing else
+
+  bool serves() const { return active && !held_out; }
 };
 
 /// One orientation of the tracker.
 struct OrientationTerm {
   std::size_t span = 0;
   std::size_t index = 0;
-  Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linearized = Eigen::Vector3d::Zero();  ///< whitened residual, where it was last
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();    ///< whitened
   double time = 0.0;
   double square = 0.0;  ///< the same
   bool active = true;
   bool is_known = false;  ///< readings are there
+  bool held_out = false;
+  std::size_t window = 0;  ///< in which it is held out
+
+  bool serves() const { return is_known && active && !held_out; }
 };
 
-/// How terms are evaluated.
+/// How windows are linearised.
 struct TermOrder {
   BalanceOrder balance;
-  std::size_t every = 1;  ///< of so many terms one counts
+  std::size_t every = 1;     ///< of so many windows one counts
+  bool orientations = true;  ///< too
 };
 
-/// All that a recording tells at coordinates x.
+/// All that a recording tells at coordinates x. Terms are linearised at one place, which takes
+/// time, and then tell of the places around it, as often as weights are looked at anew.
 class MotionTerms {
  public:
   /// Keeps references.
   MotionTerms(const MotionProblem& problem, const MotionOptions& options);
 
   std::size_t windowCount() const { return windows_.size(); }
+  /// Of so many windows one is linearised.
+  std::size_t every() const { return every_; }
+  /// That serve and are linearised; at least 1.
+  std::size_t servingWindows() const;
   const std::vector<WindowTerm>& windows() const { return windows_; }
   std::vector<WindowTerm>& windows() { return windows_; }
   const std::vector<OrientationTerm>& orientations() const { return orientations_; }
@@ -75,11 +88,24 @@ class MotionTerms {
   /// Factors on the covariances by joints and by currents.
   void setNoiseFactors(double joints, double currents);
 
-  TermSum balance(const Eigen::VectorXd& x, const TermOrder& order);
-  TermSum orientation(const Eigen::VectorXd& x, const TermOrder& order);
+  void linearize(const Eigen::VectorXd& x, const TermOrder& order);
+  // Of the terms that serve, by the last linearisation.
+  TermSum balance(const Eigen::VectorXd& x);
+  TermSum orientation(const Eigen::VectorXd& x);
+  /// Of what is held out and active, without robust weights: the windows' balance, and the mean
+  /// orientation within each, so that white noise of the tracker does not hide the rest. `values`:
+  /// how many residuals.
+  TermSum heldOut(const Eigen::VectorXd& x, std::size_t& values);
 
  private:
-  void addWindow(const MotionPoint& point, const TermOrder& order, WindowTerm& term, TermSum& sum);
+  void holdOut();
+  Eigen::MatrixXd whiteningFor(const WindowBalance& balance) const;
+  void linearizeWindows(const TermOrder& order);
+  void linearizeOrientations();
+  void moveOrientations(const Eigen::VectorXd& x);
+  auto orientationJacobian(std::size_t n) const {
+    return orientation_jacobians_.middleCols<3>(3 * static_cast<Eigen::Index>(n)).transpose();
+  }
 
   const MotionProblem& problem_;
   const MotionOptions& options_;
@@ -94,8 +120,11 @@ class MotionTerms {
   double orientation_scale_ = 1.0;
   double joint_factor_ = 1.0;
   double current_factor_ = 1.0;
-  BalanceEvaluator evaluator_;
-  WindowBalance balance_;
+  Eigen::VectorXd linearized_at_;
+  std::size_t every_ = 1;  ///< window is linearised
+  /// By the coordinates that orientations tell of, transposed: three columns for each.
+  Eigen::MatrixXd orientation_jacobians_;
+  std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
 };
 
 /// W with WᵀW the inverse of a covariance.

@@ -81,10 +81,10 @@ NoiseFactors likelyFactors(const std::vector<WindowTerm>& windows,
   const std::size_t stride = std::max<std::size_t>(1, windows.size() / kEnough);
   for (std::size_t n = 0; n < windows.size(); n += stride) {
     const WindowTerm& term = windows[n];
-    if (term.active && term.whitening.size() > 0) {
+    if (term.serves() && term.whitening.size() > 0) {
       evidence.push_back({term.whitening.triangularView<Eigen::Lower>().solve(term.residual),
-                          term.by_joints,
-                          current_variance * term.by_currents});
+                          term.balance.by_joints,
+                          current_variance * term.balance.by_currents});
     }
   }
   NoiseFactors best;

@@ -133,10 +133,11 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
   const double speed = smoothSpeed(span.track, window_, reading);
   const double fading = 1.0 / std::hypot(speed, options_.friction_speed);
   const double friction = point.viscous() + point.coulomb() * fading;
+  // Products of three by three and three by some: too small for the general way.
   const Eigen::Matrix3Xd d_turn =
-      interval.turn_after * after.d_x + interval.turn_before * before.d_x;
-  const Eigen::Matrix3Xd d_momentum =
-      interval.momentum_after * after.d_x + interval.momentum_before * before.d_x;
+      interval.turn_after.lazyProduct(after.d_x) + interval.turn_before.lazyProduct(before.d_x);
+  const Eigen::Matrix3Xd d_momentum = interval.momentum_after.lazyProduct(after.d_x) +
+                                      interval.momentum_before.lazyProduct(before.d_x);
   const MotionPlaces& places = point.places();
   const auto add = [](Eigen::Index coordinate, const auto& derivative, auto column) {
     column.template segment<3>(3 * coordinate) += derivative;

@@ -1,14 +1,12 @@
 #include "spherical_actuator_calibration/study/calibration_study.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
 #include <numeric>
-#include <thread>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/parallel_for.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
@@ -144,39 +142,16 @@ std::vector<StudyTrial> runTrials(const StudyOptions& options,
   }
   const std::size_t count = first < end ? (end - first + stride - 1) / stride : 0;
   std::vector<StudyTrial> trials(count);
-  std::atomic<std::size_t> next{0};
   std::mutex mutex;  // of what follows
   std::size_t done = 0;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t n = next++; n < count; n = next++) {
-      try {
-        trials[n] = runTrial(options, first + n * stride);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        failure = std::current_exception();
-        next = count;
-        return;
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++done;
-      if (progress) {
-        progress(static_cast<double>(done) / static_cast<double>(count));
-      }
+  parallelFor(count, threads, [&](unsigned /*worker*/, std::size_t n) {
+    trials[n] = runTrial(options, first + n * stride);
+    const std::lock_guard<std::mutex> lock(mutex);
+    ++done;
+    if (progress) {
+      progress(static_cast<double>(done) / static_cast<double>(count));
     }
-  };
-  std::vector<std::thread> workers;
-  workers.reserve(threads);
-  for (unsigned n = 1; n < threads; ++n) {
-    workers.emplace_back(work);
-  }
-  work();
-  for (std::thread& worker : workers) {
-    worker.join();
-  }
-  if (failure) {
-    std::rethrow_exception(failure);
-  }
+  });
   return trials;
 }
 

@@ -75,6 +75,10 @@ void calibrate(const Actuator& nominal, const EffectSelection& effects, const ch
       summary.orientation_stddev,
       estimate.iterations,
       estimate.solve_time);
+  std::printf("held_out %zu chi_square %.6g probability %.6g\n",
+              summary.held_out.windows,
+              summary.held_out.reduced_chi_square,
+              summary.held_out.probability);
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
   }

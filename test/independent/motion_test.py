@@ -28,6 +28,8 @@ class Outcome:
                 self.parameters[name] = float(value), float(stddev), state == "identified"
             elif word == "left_out":
                 self.left_out[" ".join(rest[1:])] = int(rest[0])
+            elif word == "held_out":
+                self.held_out, self.probability = int(rest[0]), float(rest[rest.index("probability") + 1])
             elif word == "motion":
                 self.moves, self.converged = rest[0] == "moves", rest[2] == "0"
                 self.chi_square = float(rest[rest.index("chi_square") + 1])
@@ -101,6 +103,8 @@ class Motion(unittest.TestCase):
         self.assertLess(np.sqrt(np.mean((apart / stddevs) ** 2)), 1.6)
         self.assertGreater(outcome.chi_square, 0.8)
         self.assertLess(outcome.chi_square, 1.25)
+        self.assertGreaterEqual(outcome.held_out, 4)
+        self.assertGreater(outcome.probability, 1e-3)
 
     def test_finds_all_parameters_and_what_else_moves_the_rotor(self):
         outcome = calibrate(self.record(current_delay=-0.04, tracker_delay=0.05))
@@ -143,7 +147,8 @@ class Motion(unittest.TestCase):
             command = [os.environ["CALIBRATE_BAG"], "--actuator", NOMINAL, "--output", output, bag]
             result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
             self.assertEqual(result.returncode, 0, result.stdout)
-            self.assertIn("grade: not_validated", result.stdout)
+            self.assertIn("grade: usable", result.stdout)
+            self.assertIn("held-out", result.stdout)
             with open(output, encoding="utf-8") as file:
                 calibrated = yaml.safe_load(file)["actuator"]
         poles = self.unit.poles + self.errors[9 : 9 + 2 * len(self.unit.poles)].reshape(-1, 2)

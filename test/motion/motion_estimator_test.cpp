@@ -48,6 +48,15 @@ double valueOf(const CalibrationModel& model, const MotionEstimate& found, const
   return 0.0;
 }
 
+/// Windows that serve, judge, or are left out with a reason.
+std::size_t accountedFor(const MotionSummary& summary) {
+  std::size_t count = summary.used + summary.held_out.windows + summary.held_out.rejected;
+  for (const WindowsLeftOut& left_out : summary.left_out) {
+    count += left_out.count;
+  }
+  return count;
+}
+
 TEST(MotionEstimator, FindsTheUnitThatMoved) {
   MovingRotor moving = madeRotor();
   moving.current_delay = 0.03;
@@ -82,6 +91,35 @@ TEST(MotionEstimator, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
   const ParameterSpace& space = model.space();
   const Eigen::VectorXd apart = found.estimate.belief.x - space.coordinatesOf(moving.truth);
   EXPECT_LT(apart.head(space.effect()).cwiseAbs().maxCoeff(), 2e-4);
+}
+
+TEST(MotionEstimator, HoldsOutEveryTenthWindowOfALongRecording) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 10.6;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, moving.record());
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  const MotionSummary& summary = found.summary;
+  ASSERT_GE(summary.windows, 40U);
+  const HeldOutMotion& held_out = summary.held_out;
+  EXPECT_EQ(held_out.windows + held_out.rejected, (summary.windows + 4) / 10);
+  EXPECT_EQ(held_out.residuals.size(), held_out.windows);
+  EXPECT_EQ(accountedFor(summary), summary.windows);
+  // 250 of them a second.
+  EXPECT_NEAR(static_cast<double>(held_out.orientations),
+              62.5 * static_cast<double>(held_out.windows + held_out.rejected),
+              10.0);
+  for (const ObservationResidual& residual : held_out.residuals) {
+    EXPECT_EQ(residual.observation.sample % 10, 5U);
+  }
+}
+
+TEST(MotionEstimator, HoldsOutNothingOfAShortRecording) {
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, madeRotor().record());
+  EXPECT_LT(found.summary.windows, 40U);
+  EXPECT_EQ(found.summary.held_out.windows, 0U);
+  EXPECT_EQ(accountedFor(found.summary), found.summary.windows);
 }
 
 TEST(MotionEstimator, CutsWindowsAroundHoles) {

@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/motion_summary.hpp"
 
 namespace sac {
 
@@ -41,6 +42,10 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
                                   const EstimationOptions& options);
+
+/// What windows of motion that were held out tell, in the same words: a window is a sample with a
+/// torque, its mean error.
+HeldOutValidation validationOf(const HeldOutMotion& motion);
 
 /// Smaller probabilities mean that the held-out samples contradict the parameters.
 inline constexpr double kLeastProbability = 1e-3;

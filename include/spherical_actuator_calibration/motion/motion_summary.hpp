@@ -6,12 +6,29 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/estimation/estimate.hpp"
+
 namespace sac {
 
 /// Windows that did not serve, for one reason.
 struct WindowsLeftOut {
   std::string reason;
   std::size_t count = 0;
+};
+
+/// How windows that served nothing else agree with what was found.
+struct HeldOutMotion {
+  std::size_t windows = 0;
+  std::size_t rejected = 0;  ///< beside them: they contradict as outliers do
+  std::size_t orientations = 0;
+  double orientation_rms = 0.0;  ///< norm of the rotation error, with the tracker's noise [rad]
+  double torque_rms = 0.0;       ///< norm of the mean torque error of a window [N·m]
+  /// Squared misfit over the number of residuals, with the noise of the streams and the common
+  /// uncertainty of the parameters: 1 on average when both are as stated.
+  double reduced_chi_square = 0.0;
+  double probability = 1.0;  ///< of such a misfit, or a larger one, when they are
+  /// Of each window but the rejected ones; the index of the sample is that of the window.
+  std::vector<ObservationResidual> residuals;
 };
 
 /// What became of a recording of motion.
@@ -27,7 +44,8 @@ struct MotionSummary {
   Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();  ///< [rad]
   double current_stddev = 0.0;                             ///< [A]
   double orientation_stddev = 0.0;                         ///< per component [rad]
-  double window_chi_square = 0.0;                          ///< reduced, of the windows that served
+  HeldOutMotion held_out;
+  double window_chi_square = 0.0;       ///< reduced, of the windows that served
   double orientation_chi_square = 0.0;  ///< reduced, of means over windows: 1 without drift
 };
 
