@@ -24,14 +24,51 @@ std::string refusal(const CalibrationModel& model, const MotionRecording* record
   if (recording == nullptr || recording->empty()) {
     return "No motion is recorded: joint_states and coil_currents are needed together.";
   }
-  const Eigen::Index places = model.space().effects().size();
-  for (Eigen::Index e = 0; e < places; ++e) {
-    if (model.space().effects().at(e).acts_on == LaboratoryEffect::ActsOn::kMotion) {
-      return {};
+  return {};
+}
+
+/// Whether inertia, friction and delays are among the parameters.
+bool knowsMotion(const ParameterSpace& space) {
+  for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
+    if (space.effects().at(e).acts_on == LaboratoryEffect::ActsOn::kMotion) {
+      return true;
     }
   }
-  return "Inertia, friction and delays are not modelled: calibrate a recording of motion by "
-         "calibrate_bag, which adds them.";
+  return false;
+}
+
+/// Where the coordinates of a space are in one that has more effects.
+std::vector<Eigen::Index> placesIn(const ParameterSpace& wide, const ParameterSpace& narrow) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index p = 0, place = 0; p < narrow.size(); ++p, ++place) {
+    while (wide.name(place) != narrow.name(p)) {
+      ++place;
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+/// The state where some coordinates are, and the one of `others` elsewhere.
+CalibrationState widened(const CalibrationState& state,
+                         const std::vector<Eigen::Index>& places,
+                         CalibrationState others) {
+  others.belief.x(places) = state.belief.x;
+  others.belief.covariance(places, places) = state.belief.covariance;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    others.identified[static_cast<std::size_t>(places[n])] = state.identified[n];
+  }
+  return others;
+}
+
+CalibrationState narrowed(const CalibrationState& state, const std::vector<Eigen::Index>& places) {
+  CalibrationState result;
+  result.belief.x = state.belief.x(places);
+  result.belief.covariance = state.belief.covariance(places, places);
+  for (const Eigen::Index place : places) {
+    result.identified.push_back(state.identified[static_cast<std::size_t>(place)]);
+  }
+  return result;
 }
 
 /// Whether the data of a recording of motion can tell an effect at all.
@@ -160,24 +197,19 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
   return words;
 }
 
-}  // namespace
-
-CycleOutcome runMotionCycle(const CalibrationModel& model,
-                            const MotionRecording* recording,
-                            const CalibrationState& state,
-                            const CalibrationConfig& config) {
+/// With a model that knows motion.
+CycleOutcome runWithMotion(const CalibrationModel& model,
+                           const MotionRecording& recording,
+                           const CalibrationState& state,
+                           const CalibrationConfig& config) {
   CycleOutcome outcome{{}, state};
   CycleReport& report = outcome.report;
   report.cycle = Cycle::kMotion;
-  report.message = refusal(model, recording);
-  if (!report.message.empty()) {
-    return outcome;
-  }
   MotionProblem problem;
   problem.model = &model;
-  problem.recording = recording;
+  problem.recording = &recording;
   problem.prior = state.belief;
-  problem.free = requestedCoordinates(model.space(), *recording);
+  problem.free = requestedCoordinates(model.space(), recording);
   const MotionEstimate found = estimateMotion(problem, config.estimation, MotionOptions());
   const std::string words = failure(problem, found, config.estimation);
   report.motion = found.summary;
@@ -196,6 +228,31 @@ CycleOutcome runMotionCycle(const CalibrationModel& model,
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;
   }
+  return outcome;
+}
+
+}  // namespace
+
+CycleOutcome runMotionCycle(const CalibrationModel& model,
+                            const MotionRecording* recording,
+                            const CalibrationState& state,
+                            const CalibrationConfig& config) {
+  CycleOutcome refused{{}, state};
+  refused.report.cycle = Cycle::kMotion;
+  refused.report.message = refusal(model, recording);
+  if (!refused.report.message.empty()) {
+    return refused;
+  }
+  if (knowsMotion(model.space())) {
+    return runWithMotion(model, *recording, state, config);
+  }
+  const CalibrationModel wide(
+      ParameterSpace(model.space().nominal(), withMotionEffects(config.effects)));
+  const std::vector<Eigen::Index> places = placesIn(wide.space(), model.space());
+  const CalibrationState start =
+      widened(state, places, nominalState(wide.space(), config.tolerance));
+  CycleOutcome outcome = runWithMotion(wide, *recording, start, config);
+  outcome.state = narrowed(outcome.state, places);
   return outcome;
 }
 

@@ -7,6 +7,8 @@
 namespace sac {
 
 /// The cycle motion: all parameters from a recording of motion, where there is one (doc/motion.md).
+/// Where the model does not know inertia, friction and delays, they are found and told, and are
+/// not part of the state.
 CycleOutcome runMotionCycle(const CalibrationModel& model,
                             const MotionRecording* recording,
                             const CalibrationState& state,

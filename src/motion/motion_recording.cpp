@@ -77,28 +77,42 @@ MotionRecording MotionRecorder::take() {
   return std::exchange(recording_, MotionRecording());
 }
 
-bool tellsMotion(const MotionRecording& recording) {
-  constexpr double kSpan = 0.1;      // [s] over which a rotor turns or rests
-  constexpr double kMoved = 0.01;    // [rad] in that time
-  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
-  std::size_t moving = 0;
-  std::size_t spans = 0;
-  Eigen::Index driven = 0;
-  Eigen::Index currents = 0;
-  for (const MotionStreams& streams : recording.spans) {
-    std::size_t begin = 0;
-    for (std::size_t n = 1; n < streams.joints.size(); ++n) {
-      if (secondsBetween(streams.joint_stamps[begin], streams.joint_stamps[n]) < kSpan) {
-        continue;
-      }
-      ++spans;
-      moving += (streams.joints[n] - streams.joints[begin]).norm() > kMoved ? 1 : 0;
-      begin = n;
+double movingTime(const MotionStreams& streams) {
+  constexpr double kSpan = 0.1;    // [s] over which a rotor turns or rests
+  constexpr double kMoved = 0.01;  // [rad] in that time
+  double time = 0.0;
+  std::size_t begin = 0;
+  for (std::size_t n = 1; n < streams.joints.size(); ++n) {
+    const double passed = secondsBetween(streams.joint_stamps[begin], streams.joint_stamps[n]);
+    if (passed < kSpan) {
+      continue;
     }
-    currents += streams.currents.rows();
-    driven += (streams.currents.cwiseAbs().rowwise().maxCoeff().array() > kCurrent).count();
+    time += (streams.joints[n] - streams.joints[begin]).norm() > kMoved ? passed : 0.0;
+    begin = n;
   }
-  return spans > 0 && 2 * moving > spans && 2 * driven > currents;
+  return time;
+}
+
+double drivenShare(const MotionStreams& streams) {
+  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
+  if (streams.currents.size() == 0) {
+    return 0.0;
+  }
+  const auto driven = (streams.currents.cwiseAbs().rowwise().maxCoeff().array() > kCurrent).count();
+  return static_cast<double>(driven) / static_cast<double>(streams.currents.rows());
+}
+
+bool tellsMotion(const MotionRecording& recording) {
+  double moving = 0.0;
+  double all = 0.0;
+  double driven = 0.0;
+  for (const MotionStreams& streams : recording.spans) {
+    const double time = secondsBetween(streams.joint_stamps.front(), streams.joint_stamps.back());
+    moving += movingTime(streams);
+    driven += time * drivenShare(streams);
+    all += time;
+  }
+  return all > 0.0 && 2.0 * moving > all && 2.0 * driven > all;
 }
 
 }  // namespace sac

@@ -152,7 +152,10 @@ std::int64_t insert(const SQLite::Database& database,
   const std::int64_t id = database.getLastInsertRowid();
   insertErrors(database, id, report);
   insertEstimates(database, id, report);
-  insertResiduals(database, id, report);
+  // Windows of motion are no samples.
+  if (report.cycle != Cycle::kMotion) {
+    insertResiduals(database, id, report);
+  }
   return id;
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "moving_rotor.hpp"
+#include "support/moving_rotor.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 
 namespace sac {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "moving_rotor.hpp"
+#include "support/moving_rotor.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "support/numeric_jacobian.hpp"
 

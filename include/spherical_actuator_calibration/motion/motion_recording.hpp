@@ -29,6 +29,11 @@ struct MotionRecording {
   bool empty() const { return spans.empty(); }
 };
 
+/// For how long the joints turn [s].
+double movingTime(const MotionStreams& streams);
+/// Share of the currents with some coil on.
+double drivenShare(const MotionStreams& streams);
+
 /// Whether a rotor moves with currents, so that the recording is one of motion rather than dwells:
 /// it turns for most of the time, and nothing else would tell the torque.
 bool tellsMotion(const MotionRecording& recording);

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
@@ -41,6 +43,11 @@ class LiveSession {
   bool removeSample(std::uint32_t id, const std::string& date);
   /// The same for all samples; returns how many there were.
   std::size_t clearSamples(const std::string& date);
+
+  /// What the cycle motion is run on; null: nothing. It is not stored.
+  void setMotion(std::shared_ptr<const MotionRecording> motion) {
+    session_.setMotion(std::move(motion));
+  }
 
   /// Runs a cycle and stores its report. When it succeeded its parameters are a new revision, in
   /// force.

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include <ros/console.h>
@@ -79,6 +80,7 @@ void CalibrationNode::advertiseServices() {
   advertise("calibrate_poles", &CalibrationNode::calibratePoles);
   advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
   advertise("refine", &CalibrationNode::refine);
+  advertise("calibrate_motion", &CalibrationNode::calibrateMotion);
   advertise("validate", &CalibrationNode::validate);
   advertise("diagnose", &CalibrationNode::explainSamples);
   advertise("check", &CalibrationNode::checkParameters);
@@ -156,6 +158,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
                                    std_srvs::Trigger::Response& response) {
   answer(response, [&] {
     const std::size_t count = session_.clearSamples(utcDate());
+    intake_.forgetMotion();
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
   });
@@ -183,6 +186,19 @@ bool CalibrationNode::calibrateCoil(msg::Calibrate::Request& request,
 bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
                              msg::Calibrate::Response& response) {
   run({Cycle::kRefine}, response);
+  return true;
+}
+
+bool CalibrationNode::calibrateMotion(msg::Calibrate::Request& /*request*/,
+                                      msg::Calibrate::Response& response) {
+  const auto motion = std::make_shared<const MotionRecording>(intake_.motion());
+  {
+    const std::lock_guard<std::mutex> lock(session_mutex_);
+    session_.setMotion(motion);
+  }
+  run({Cycle::kMotion}, response);
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  session_.setMotion(nullptr);
   return true;
 }
 

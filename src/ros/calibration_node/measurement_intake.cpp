@@ -34,6 +34,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
     : builder_(config.samples, modelledCoils(nominal)),
+      motion_(modelledCoils(nominal)),
       reader_(nominal, config.frames),
       joints_("joint_states", kLimits),
       orientations_("measured_orientation", kLimits),
@@ -131,6 +132,16 @@ std::optional<Stamp> MeasurementIntake::newest() const {
   return builder_.newest();
 }
 
+MotionRecording MeasurementIntake::motion() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return motion_.recording();
+}
+
+void MeasurementIntake::forgetMotion() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  motion_.forget();
+}
+
 void MeasurementIntake::addDiagnostics(NodeDiagnostics& diagnostics) {
   for (StreamMonitor* monitor : {&joints_, &orientations_, &torques_, &currents_}) {
     diagnostics.add(*monitor);
@@ -154,12 +165,15 @@ void MeasurementIntake::buildInOrder() {
 void MeasurementIntake::build(const AnyMeasurement& measurement) {
   const SampleBuilderReport& report = builder_.report();
   if (const auto* joints = std::get_if<JointMeasurement>(&measurement)) {
+    motion_.add(*joints);
     build(*joints, report.joints, joints_);
   } else if (const auto* orientation = std::get_if<OrientationMeasurement>(&measurement)) {
+    motion_.add(*orientation);
     build(*orientation, report.orientations, orientations_);
   } else if (const auto* torque = std::get_if<TorqueMeasurement>(&measurement)) {
     build(*torque, report.torques, torques_);
   } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
+    motion_.add(*current);
     build(*current, report.currents, currents_);
   }
 }

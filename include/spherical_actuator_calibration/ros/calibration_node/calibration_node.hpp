@@ -64,6 +64,7 @@ class CalibrationNode {
   bool calibratePoles(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool calibrateCoil(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool calibrateMotion(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   void run(const CycleRequest& request, msg::Calibrate::Response& response);

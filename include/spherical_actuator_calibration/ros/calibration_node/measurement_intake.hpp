@@ -13,6 +13,7 @@
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/motion/motion_memory.hpp"
 #include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
@@ -43,6 +44,10 @@ class MeasurementIntake {
   /// why they do not: see SampleBuilder::capture(). Never kWaiting.
   CaptureProgress waitForCapture(double duration) const;
 
+  /// How the rotor moved with currents lately: see MotionMemory.
+  MotionRecording motion();
+  void forgetMotion();
+
   /// Adds one diagnostic task per stream, and one for the dwells.
   void addDiagnostics(NodeDiagnostics& diagnostics);
 
@@ -69,6 +74,7 @@ class MeasurementIntake {
   mutable std::mutex mutex_;  ///< of all down to finished_
   StreamMerger merger_;
   SampleBuilder builder_;
+  MotionMemory motion_;
   std::uint64_t received_before_ = 0;  ///< when samples were last taken
   double last_received_ = 0.0;         ///< noted then, by a clock that never jumps [s]
   bool finished_ = true;               ///< nothing came since finish()

@@ -1,0 +1,98 @@
+#include "spherical_actuator_calibration/motion/motion_memory.hpp"
+
+#include <utility>
+
+namespace sac {
+namespace {
+
+/// Of a stretch: both its ends lose a window [s].
+constexpr double kStretch = 30.0;
+
+constexpr std::size_t kJointBytes = sizeof(Eigen::Vector3d) + sizeof(Stamp);
+constexpr std::size_t kOrientationBytes = sizeof(Eigen::Quaterniond) + sizeof(Stamp);
+
+std::size_t currentBytes(std::size_t coils) {
+  return coils * sizeof(float) + sizeof(Stamp);
+}
+
+std::size_t bytesOf(const MotionStreams& streams) {
+  return streams.joints.size() * kJointBytes + streams.orientations.size() * kOrientationBytes +
+         streams.current_stamps.size() *
+             currentBytes(static_cast<std::size_t>(streams.currents.cols()));
+}
+
+/// Whether windows can be cut of it: dwells, and a fixture that turns a rotor without currents, are
+/// of no use here.
+bool isOfUse(const MotionStreams& streams) {
+  constexpr double kLeastTime = 1.0;  // [s]
+  return movingTime(streams) >= kLeastTime && drivenShare(streams) >= 0.1;
+}
+
+}  // namespace
+
+MotionMemory::MotionMemory(std::size_t coils, std::size_t most_bytes)
+    : coils_(coils), most_bytes_(most_bytes), recorder_(coils) {}
+
+void MotionMemory::add(const JointMeasurement& measurement) {
+  const double age = begin_ ? secondsBetween(*begin_, measurement.stamp) : 0.0;
+  // A clock that was set back, or a recording that is played once more, begins another one.
+  if (age > kStretch || age < 0.0) {
+    endStretch();
+  }
+  begin_ = begin_ ? begin_ : measurement.stamp;
+  take(kJointBytes);
+  recorder_.add(measurement);
+}
+
+void MotionMemory::add(const CurrentMeasurement& measurement) {
+  take(currentBytes(coils_));
+  recorder_.add(measurement);
+}
+
+void MotionMemory::add(const OrientationMeasurement& measurement) {
+  take(kOrientationBytes);
+  recorder_.add(measurement);
+}
+
+/// One stream may flood while the joints are silent: no stretch becomes larger than half of all.
+void MotionMemory::take(std::size_t bytes) {
+  bytes_ += bytes;
+  if (2 * bytes_ > most_bytes_) {
+    endStretch();
+  }
+}
+
+void MotionMemory::endStretch() {
+  MotionRecording ended = recorder_.take();
+  begin_.reset();
+  bytes_ = 0;
+  for (MotionStreams& streams : ended.spans) {
+    if (isOfUse(streams)) {
+      stretches_.push_back(std::move(streams));
+    }
+  }
+  std::size_t bytes = 0;
+  for (auto stretch = stretches_.rbegin(); stretch != stretches_.rend(); ++stretch) {
+    bytes += bytesOf(*stretch);
+    if (bytes > most_bytes_) {
+      stretches_.erase(stretches_.begin(), stretch.base());
+      return;
+    }
+  }
+}
+
+MotionRecording MotionMemory::recording() {
+  endStretch();
+  MotionRecording recording;
+  recording.spans.assign(stretches_.begin(), stretches_.end());
+  return recording;
+}
+
+void MotionMemory::forget() {
+  recorder_ = MotionRecorder(coils_);
+  begin_.reset();
+  bytes_ = 0;
+  stretches_.clear();
+}
+
+}  // namespace sac

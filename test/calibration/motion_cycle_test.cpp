@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "support/moving_rotor.hpp"
+
+namespace sac {
+namespace {
+
+bool isTold(const CycleReport& report, const std::string& name) {
+  return std::any_of(
+      report.estimates.begin(), report.estimates.end(), [&](const ParameterEstimate& one) {
+        return one.name == name && one.observable;
+      });
+}
+
+class MotionCycleTest : public ::testing::Test {
+ protected:
+  MotionCycleTest() {
+    scenarios::Generator generator(3);
+    moving_.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+  }
+
+  MovingRotor moving_;
+  CalibrationSession session_{{scenarios::paperNominal()}, {}, CalibrationConfig{}};
+};
+
+// As in a running laboratory, where dwells and motion are calibrated by one session.
+TEST_F(MotionCycleTest, NeedsNoModelOfWhatOnlyMotionTells) {
+  session_.setMotion(std::make_shared<const MotionRecording>(moving_.record()));
+  const ParameterSpace& space = session_.model().space();
+  ASSERT_EQ(space.size(), space.effect());
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  const CalibrationState& state = session_.state();
+  ASSERT_EQ(state.belief.x.size(), space.size());
+  const Eigen::VectorXd apart = state.belief.x - space.coordinatesOf(moving_.truth);
+  EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_EQ(std::count(state.identified.begin(), state.identified.end(), true), space.size());
+  EXPECT_LT(state.belief.covariance.diagonal().maxCoeff(), 1e-6);
+  EXPECT_TRUE(isTold(report, "rotor_inertia/xx"));
+  EXPECT_TRUE(isTold(report, "tracker_delay"));
+}
+
+TEST_F(MotionCycleTest, WithoutMotionChangesNothing) {
+  const CycleReport report = session_.run({Cycle::kMotion});
+  EXPECT_FALSE(report.success);
+  EXPECT_NE(report.message.find("No motion is recorded"), std::string::npos) << report.message;
+  EXPECT_TRUE(session_.state().belief.x.isZero(0.0));
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,101 @@
+#include "spherical_actuator_calibration/motion/motion_memory.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kCoils = 2;
+constexpr double kRate = 100.0;  // [Hz]
+
+class MotionMemoryTest : public ::testing::Test {
+ protected:
+  /// So many seconds with a turning rotor or a resting one, with or without currents.
+  void pass(double seconds, bool moves, bool is_driven) {
+    for (int n = 0; n < static_cast<int>(seconds * kRate); ++n) {
+      now_ += 1.0 / kRate;
+      spin_ += moves ? 0.5 / kRate : 0.0;
+      const auto stamp = static_cast<Stamp>(std::llround(now_ * 1e9));
+      memory_.add(JointMeasurement{stamp, Eigen::Vector3d(0.1, 0.0, spin_)});
+      memory_.add(CurrentMeasurement{stamp, Eigen::Vector2d::Constant(is_driven ? 0.5 : 0.0)});
+      memory_.add(OrientationMeasurement{stamp, Eigen::Quaterniond::Identity()});
+    }
+  }
+  static double secondsOf(const MotionRecording& recording) {
+    double seconds = 0.0;
+    for (const MotionStreams& streams : recording.spans) {
+      seconds += static_cast<double>(streams.joints.size()) / kRate;
+    }
+    return seconds;
+  }
+
+  double now_ = 1000.0;
+  double spin_ = 0.0;
+  MotionMemory memory_{kCoils, 1'000'000};
+};
+
+TEST_F(MotionMemoryTest, KeepsWhatMovedWithCurrents) {
+  pass(5.0, true, true);
+  const MotionRecording recording = memory_.recording();
+  ASSERT_EQ(recording.spans.size(), 1U);
+  EXPECT_EQ(recording.spans[0].currents.rows(), 500);
+  EXPECT_EQ(recording.spans[0].orientations.size(), 500U);
+  EXPECT_EQ(memory_.recording().spans.size(), 1U);  // to ask does not take it away
+  memory_.forget();
+  EXPECT_TRUE(memory_.recording().empty());
+}
+
+TEST_F(MotionMemoryTest, KeepsNeitherDwellsNorAFixtureThatTurnsTheRotor) {
+  pass(40.0, false, true);
+  pass(40.0, true, false);
+  EXPECT_TRUE(memory_.recording().empty());
+}
+
+TEST_F(MotionMemoryTest, KeepsAShortMotionBetweenLongRests) {
+  pass(20.0, false, false);
+  pass(6.0, true, true);
+  pass(40.0, false, false);
+  const MotionRecording recording = memory_.recording();
+  EXPECT_GE(secondsOf(recording), 6.0);
+  EXPECT_LE(secondsOf(recording), 61.0);
+}
+
+TEST_F(MotionMemoryTest, ForgetsTheOldestFirst) {
+  pass(300.0, true, true);
+  const MotionRecording recording = memory_.recording();
+  // A hundredth of a second takes 96 bytes: a million of them are 104 s.
+  EXPECT_LE(secondsOf(recording), 105.0);
+  EXPECT_GE(secondsOf(recording), 60.0);
+  const double last = 1e-9 * static_cast<double>(recording.spans.back().joint_stamps.back());
+  EXPECT_NEAR(last, now_, 0.02);
+}
+
+// Memory is what it is about; what came before the flood is kept.
+TEST_F(MotionMemoryTest, HoldsOutAgainstAFloodOfOneStream) {
+  pass(10.0, true, true);
+  for (Stamp n = 1; n < 1'000'000; ++n) {
+    memory_.add(CurrentMeasurement{2'000'000'000'000 + n, Eigen::Vector2d::Ones()});
+  }
+  pass(10.0, true, true);
+  const MotionRecording recording = memory_.recording();
+  std::size_t currents = 0;
+  for (const MotionStreams& streams : recording.spans) {
+    currents += streams.current_stamps.size();
+  }
+  EXPECT_LE(currents, 1'000'000U / 16U);
+  EXPECT_GE(secondsOf(recording), 10.0);
+}
+
+TEST_F(MotionMemoryTest, BeginsAnewWhereTheClockIsSetBack) {
+  pass(5.0, true, true);
+  now_ -= 100.0;
+  pass(5.0, true, true);
+  const MotionRecording recording = memory_.recording();
+  ASSERT_EQ(recording.spans.size(), 2U);
+  EXPECT_NEAR(secondsOf(recording), 10.0, 0.05);
+}
+
+}  // namespace
+}  // namespace sac
