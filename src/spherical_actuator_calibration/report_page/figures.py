@@ -9,15 +9,15 @@ import io
 import math
 
 import matplotlib
+import matplotlib.figure
+import matplotlib.ticker
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.patches import Rectangle
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402: the backend comes first
-from matplotlib.patches import Rectangle  # noqa: E402
-
-from .numbers import SHOWN, significant, with_unit  # noqa: E402
+from .numbers import SHOWN, significant, with_unit
 
 SIZE = (4.7, 3.0)  # [inch]
+PIXELS_PER_INCH = 150  # of what is drawn as pixels
 INK = "#1f2933"
 BLUE = "#1d6fb8"
 TEAL = "#0f8a7e"
@@ -66,9 +66,10 @@ class Figure:
         self.alt = title
         self.source = ""
         self._name = name
-        self._context = plt.rc_context({**STYLE, "svg.hashsalt": name})
+        self._context = matplotlib.rc_context({**STYLE, "svg.hashsalt": name})
         self._context.__enter__()
-        self.figure, axes = plt.subplots(rows, 1, figsize=size, squeeze=False, sharex=rows > 1, layout="constrained")
+        self.figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
+        axes = self.figure.subplots(rows, 1, squeeze=False, sharex=rows > 1)
         self.panels = list(axes[:, 0])
         self.axes = self.panels[0]
         self.axes.set_title(title)
@@ -79,10 +80,12 @@ class Figure:
     def __exit__(self, kind, error, trace):
         if kind is None:
             content = io.BytesIO()
+            canvas = FigureCanvasSVG(self.figure)
+            self.figure.dpi = PIXELS_PER_INCH
+            # Figure.savefig() would draw everything twice, to lay it out first.
             # Without date and creator the same report gives the same bytes.
-            self.figure.savefig(content, format="svg", metadata={"Date": None, "Creator": None}, dpi=150)
+            canvas.print_svg(content, metadata={"Date": None, "Creator": None})
             self.source = "data:image/svg+xml;base64," + base64.b64encode(content.getvalue()).decode("ascii")
-        plt.close(self.figure)
         self._context.__exit__(kind, error, trace)
 
 
