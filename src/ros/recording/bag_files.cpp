@@ -1,17 +1,13 @@
 #include "bag_files.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
 
-#include <rosbag/exceptions.h>
-#include <rosbag/query.h>
-#include <rosbag/view.h>
-
-#include "bag_verifier.hpp"
-#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
@@ -36,43 +32,49 @@ void requireReadableFile(const std::string& path) {
   }
 }
 
+/// Topics in the order of their first connections. Precondition: the index is there.
 void readTopics(BagFile& file) {
-  rosbag::View all(file.bag);
-  file.begin = all.getBeginTime();
-  file.end = all.getEndTime();
-  std::set<std::string> seen;
-  for (const rosbag::ConnectionInfo* connection : all.getConnections()) {
-    if (!seen.insert(connection->topic).second) {
-      continue;
+  std::map<std::uint32_t, ChunkPart> spans;
+  for (const BagChunk& chunk : file.index.chunks) {
+    for (const ChunkPart& part : chunk.parts) {
+      ChunkPart& span = spans.try_emplace(part.connection, part).first->second;
+      span.begin = std::min(span.begin, part.begin);
+      span.end = std::max(span.end, part.end);
     }
-    rosbag::View topic(file.bag, rosbag::TopicQuery(connection->topic));
-    if (topic.begin() == topic.end()) {
-      continue;
+  }
+  for (const auto& [number, span] : spans) {
+    const BagConnection& connection = file.index.connections.at(number);
+    const auto known =
+        std::find_if(file.topics.begin(), file.topics.end(), [&](const BagTopic& topic) {
+          return topic.name == connection.topic;
+        });
+    if (known == file.topics.end()) {
+      file.topics.push_back(
+          {connection.topic, connection.datatype, connection.md5sum, span.begin, span.end});
+    } else {
+      known->begin = std::min(known->begin, span.begin);
+      known->end = std::max(known->end, span.end);
     }
-    file.topics.push_back({connection->topic,
-                           connection->datatype,
-                           connection->md5sum,
-                           topic.getBeginTime(),
-                           topic.getEndTime()});
+    const bool is_first = number == spans.begin()->first;
+    file.begin = is_first ? span.begin : std::min(file.begin, span.begin);
+    file.end = is_first ? span.end : std::max(file.end, span.end);
   }
 }
 
 std::unique_ptr<BagFile> openBag(const std::string& path) {
   requireReadableFile(path);
-  auto file = std::make_unique<BagFile>();
-  file->path = path;
+  std::unique_ptr<BagFile> file;
   try {
-    verifyBag(path);
-    file->bag.open(path, rosbag::bagmode::Read);
-    readTopics(*file);
-  } catch (const rosbag::BagUnindexedException&) {
+    file = std::make_unique<BagFile>(path);
+    file->index = readBagIndex(file->bytes);
+  } catch (const std::exception& error) {
+    throw unreadableBag(path, error);
+  }
+  if (!file->index.is_complete) {
     throw DataError(path + ": the recording was not closed and has no index; run `rosbag reindex " +
                     path + "` and try again.");
-  } catch (const std::exception& error) {
-    // rosbag reports damage by several exceptions, some of them of the standard library.
-    throw DataError(path + ": cannot be read as a bag (" + error.what() +
-                    "); copy it again, or rescue what is in it by `rosbag reindex " + path + "`.");
   }
+  readTopics(*file);
   if (file->topics.empty()) {
     throw DataError(path + ": the bag holds no messages; record again.");
   }
@@ -95,6 +97,11 @@ bool isSideBySide(const BagFile& file, const BagFile& other, const std::string& 
 }
 
 }  // namespace
+
+DataError unreadableBag(const std::string& path, const std::exception& reason) {
+  return DataError(path + ": cannot be read as a bag (" + reason.what() +
+                   "); copy it again, or rescue what is in it by `rosbag reindex " + path + "`.");
+}
 
 std::vector<std::unique_ptr<BagFile>> openBags(const std::vector<std::string>& paths) {
   std::vector<std::unique_ptr<BagFile>> bags;

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <ros/time.h>
-#include <rosbag/bag.h>
+
+#include "bag_index.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 
 namespace sac {
 
@@ -20,12 +23,18 @@ struct BagTopic {
 
 /// A bag that is open for reading.
 struct BagFile {
+  explicit BagFile(const std::string& name) : path(name), bytes(name) {}
+
   std::string path;
-  rosbag::Bag bag;
+  FileBytes bytes;
+  BagIndex index;
   std::vector<BagTopic> topics;
   ros::Time begin;  ///< of all topics
   ros::Time end;    ///< of all topics
 };
+
+/// Says what to do about a bag that cannot be read for a reason.
+DataError unreadableBag(const std::string& path, const std::exception& reason);
 
 /// Opens bags and reads their indexes. Throws DataError, naming the file and what to do about it,
 /// for a file that is missing, no bag, not indexed, damaged or without messages.

@@ -8,7 +8,8 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
+
+#include <boost/container/small_vector.hpp>
 
 namespace sac {
 
@@ -63,7 +64,7 @@ class BagFields {
   BagOp op() const { return static_cast<BagOp>(number<std::uint8_t>("op")); }
 
  private:
-  std::vector<std::pair<std::string_view, std::string_view>> fields_;
+  boost::container::small_vector<std::pair<std::string_view, std::string_view>, 8> fields_;
 };
 
 /// A record within bytes that are in memory.

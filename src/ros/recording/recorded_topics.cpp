@@ -132,21 +132,20 @@ void RecordedTopics::requireStreams(const BagGroup& group) const {
   }
 }
 
-TopicRole TopicLookup::role(const rosbag::MessageInstance& message) {
-  const std::string* topic = &message.getTopic();
+TopicRole TopicLookup::role(const BagConnection& connection) {
   for (const auto& [known, role] : known_) {
-    if (known == topic) {
+    if (known == &connection) {
       return role;
     }
   }
   for (std::size_t k = 0; k < kTopicRoles; ++k) {
     const auto role = static_cast<TopicRole>(k);
-    if (topics_.name(role) == *topic) {
-      known_.emplace_back(topic, role);
+    if (topics_.name(role) == connection.topic) {
+      known_.emplace_back(&connection, role);
       return role;
     }
   }
-  throw DataError("The topic " + *topic + " is none of the actuator's.");
+  throw DataError("The topic " + connection.topic + " is none of the actuator's.");
 }
 
 std::string pathsOf(const BagGroup& group) {

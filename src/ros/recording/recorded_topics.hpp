@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <rosbag/message_instance.h>
-
 #include "bag_files.hpp"
 
 namespace sac {
@@ -45,18 +43,18 @@ class RecordedTopics {
 inline constexpr char kEarlierSampleMd5[] = "98178712bd5d9155a3f4f20d78530a4b";
 inline constexpr std::size_t kLaterSampleBytes = 40;
 
-/// Finds the role of messages without comparing names: messages of one connection share the string
-/// with the name of their topic. Valid as long as the bags are open.
+/// Finds the role of messages without comparing names, by their connections. Valid as long as the
+/// bags are open.
 class TopicLookup {
  public:
   explicit TopicLookup(const RecordedTopics& topics) : topics_(topics) {}
 
   /// Throws DataError when the topic has no role.
-  TopicRole role(const rosbag::MessageInstance& message);
+  TopicRole role(const BagConnection& connection);
 
  private:
   const RecordedTopics& topics_;
-  std::vector<std::pair<const std::string*, TopicRole>> known_;
+  std::vector<std::pair<const BagConnection*, TopicRole>> known_;
 };
 
 /// "a.bag, b.bag"

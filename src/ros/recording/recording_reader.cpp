@@ -6,10 +6,8 @@
 #include <iterator>
 #include <memory>
 
-#include <rosbag/query.h>
-#include <rosbag/view.h>
-
 #include "bag_files.hpp"
+#include "bag_reader.hpp"
 #include "recorded_samples.hpp"
 #include "recorded_topics.hpp"
 #include "recorded_unit.hpp"
@@ -115,18 +113,16 @@ class Reader {
   }
 
   void readMessages(const BagGroup& group, const std::vector<TopicRole>& roles, const Step& step) {
-    rosbag::View view;
-    for (const BagFile* file : group) {
-      view.addQuery(file->bag, rosbag::TopicQuery(topics_.names(roles)));
-    }
-    const ros::Time begin = view.getBeginTime();
-    const double duration = secondsBetween(begin, view.getEndTime());
+    BagReader reader(group, topics_.names(roles));
+    const ros::Time begin = reader.begin();
+    const double duration = secondsBetween(begin, reader.end());
     TopicLookup lookup(topics_);
     std::uint64_t count = 0;
-    for (const rosbag::MessageInstance& message : view) {
-      readMessage(lookup.role(message), message);
+    BagMessage message;
+    while (reader.next(message)) {
+      readMessage(lookup.role(*message.connection), message);
       if (++count % kProgressStep == 0) {
-        tellProgress(step, secondsBetween(begin, message.getTime()) / duration);
+        tellProgress(step, secondsBetween(begin, message.time) / duration);
       }
     }
     tellProgress(step, 1.0);
@@ -139,21 +135,23 @@ class Reader {
     }
   }
 
-  void readMessage(TopicRole role, const rosbag::MessageInstance& message) {
+  void readMessage(TopicRole role, const BagMessage& message) {
     switch (role) {
       case TopicRole::kJointStates:
-        return streams_.add(decoder_.decode(message, joint_state_));
+        return streams_.add(decoder_.decode(message.data, joint_state_));
       case TopicRole::kOrientation:
-        return streams_.add(decoder_.decode(message, orientation_));
+        return streams_.add(decoder_.decode(message.data, orientation_));
       case TopicRole::kTorque:
-        return streams_.add(decoder_.decode(message, torque_));
+        return streams_.add(decoder_.decode(message.data, torque_));
       case TopicRole::kCurrents:
-        return streams_.add(decoder_.decode(message, currents_));
+        return streams_.add(decoder_.decode(message.data, currents_));
       case TopicRole::kSamples:
         return recorded_samples_.add(decoder_.decode(
-            message, sample_, message.getMD5Sum() == kEarlierSampleMd5 ? kLaterSampleBytes : 0));
+            message.data,
+            sample_,
+            message.connection->md5sum == kEarlierSampleMd5 ? kLaterSampleBytes : 0));
       case TopicRole::kParameters:
-        return requireSameUnit(decoder_.decode(message, parameters_));
+        return requireSameUnit(decoder_.decode(message.data, parameters_));
     }
   }
 
@@ -165,8 +163,9 @@ class Reader {
   void checkIdentity(const BagGroup& bags) {
     for (BagFile* file : bags) {
       guarded({file}, [&] {
-        rosbag::View view(file->bag, rosbag::TopicQuery(topics_.name(TopicRole::kParameters)));
-        for (const rosbag::MessageInstance& message : view) {
+        BagReader reader({file}, {topics_.name(TopicRole::kParameters)});
+        BagMessage message;
+        while (reader.next(message)) {
           reading_ = file->path;
           readMessage(TopicRole::kParameters, message);
         }

@@ -43,8 +43,8 @@ struct Recording {
 
 /// Reads the samples of one actuator out of recordings: from the topic `samples`, or from the raw
 /// streams by a SampleBuilder. Bags are read in the order of their begin; those recorded side by
-/// side are read as one. Beside rosbag's index and what is wanted of motion, memory does not grow
-/// with their length.
+/// side are read as one. Beside what is wanted of motion, memory grows with the number of their
+/// chunks, not of their messages.
 ///
 /// Throws DataError, naming the file, for bags that cannot be read, that miss topics, are of
 /// another actuator, unit or number of coils, or whose measurements are all in another frame.

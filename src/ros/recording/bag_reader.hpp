@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <ros/time.h>
+
+#include "bag_files.hpp"
+
+namespace sac {
+
+/// One message as it was recorded.
+struct BagMessage {
+  const BagConnection* connection = nullptr;
+  ros::Time time;         ///< when it was recorded
+  std::string_view data;  ///< serialised; valid until the next message is read
+};
+
+/// Hands out messages of chosen topics in the order in which rosbag::View would, also those of the
+/// same time, but reads each chunk once and keeps no index of all messages: memory does not grow
+/// with their number, but with that of chunks. Chunks that overlap in time are unpacked at the same
+/// time, as long as they are few.
+class BagReader {
+ public:
+  /// The bags outlive the reader.
+  /// `most_unpacked`: bytes of chunks that are kept unpacked beside the one at hand. The default is
+  /// some forty chunks as rosbag makes them.
+  BagReader(const BagGroup& bags,
+            const std::vector<std::string>& topics,
+            std::size_t most_unpacked = kMostUnpacked);
+  ~BagReader();
+  BagReader(const BagReader&) = delete;
+  BagReader& operator=(const BagReader&) = delete;
+
+  /// Of the chosen messages; zero where there is none.
+  ros::Time begin() const { return begin_; }
+  ros::Time end() const { return end_; }
+
+  /// Reads the next message; false after the last one. Throws DataError, naming the file, when it
+  /// cannot be read.
+  bool next(BagMessage& message);
+
+ private:
+  static constexpr std::size_t kMostUnpacked = std::size_t{32} << 20U;
+
+  struct Chunk;
+  struct Part;
+  struct Stream;
+
+  void addBag(const BagFile& file, const std::vector<std::string>& topics);
+  void sort();
+  void unpack(Chunk& chunk);
+  void read(Part& part, BagMessage& message);
+
+  std::size_t most_unpacked_;
+  std::vector<std::unique_ptr<Chunk>> chunks_;
+  std::vector<std::unique_ptr<Stream>> streams_;
+  std::vector<Stream*> running_;  ///< those that are not over, the next one last
+  std::list<Chunk*> unpacked_;    ///< the one used last comes first
+  bool has_begun_ = false;
+  ros::Time begin_;
+  ros::Time end_;
+};
+
+}  // namespace sac

@@ -1,0 +1,141 @@
+#include "bag_reader.hpp"
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <geometry_msgs/Vector3Stamped.h>
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "support/error_message.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sac {
+namespace {
+
+/// A message as somebody got it: time and topic of its record, and its bytes.
+using Handed = std::tuple<std::uint64_t, std::string, std::string>;
+
+const std::vector<std::string> kTopics = {"/a", "/b", "/c"};
+
+class BagReaderTest : public testing::Test {
+ protected:
+  struct Recording {
+    rosbag::compression::CompressionType compression = rosbag::compression::Uncompressed;
+    int messages = 2000;
+    int disorder = 0;  ///< of the times of records [ms]
+    std::uint64_t seed = 1;
+  };
+
+  /// Several messages at the same time, of different topics and of the same; chunks of some dozens.
+  std::string record(const std::string& name, const Recording& recording) const {
+    const std::string path = folder_.path(name);
+    rosbag::Bag bag(path, rosbag::bagmode::Write);
+    bag.setCompression(recording.compression);
+    bag.setChunkThreshold(4096);
+    std::mt19937_64 generator(recording.seed);
+    std::uniform_int_distribution<int> late(0, recording.disorder);
+    std::uniform_int_distribution<std::size_t> topic(0, kTopics.size());
+    for (int n = 0; n < recording.messages; ++n) {
+      geometry_msgs::Vector3Stamped message;
+      message.header.seq = static_cast<std::uint32_t>(n);
+      message.header.frame_id = name;
+      const std::size_t k = topic(generator);
+      const std::int64_t milliseconds = 1000 + n / 4 + late(generator);
+      bag.write(k < kTopics.size() ? kTopics[k] : "/not_wanted",
+                ros::Time(1e-3 * static_cast<double>(milliseconds)),
+                message);
+    }
+    bag.close();
+    return path;
+  }
+
+  static std::vector<Handed> byView(const std::vector<std::string>& paths) {
+    std::vector<std::unique_ptr<rosbag::Bag>> bags;
+    rosbag::View view;
+    for (const std::string& path : paths) {
+      bags.push_back(std::make_unique<rosbag::Bag>(path));
+      view.addQuery(*bags.back(), rosbag::TopicQuery(kTopics));
+    }
+    std::vector<Handed> handed;
+    for (const rosbag::MessageInstance& message : view) {
+      std::string bytes(message.size(), '\0');
+      ros::serialization::OStream stream(
+          static_cast<std::uint8_t*>(static_cast<void*>(bytes.data())), message.size());
+      message.write(stream);
+      handed.emplace_back(message.getTime().toNSec(), message.getTopic(), bytes);
+    }
+    return handed;
+  }
+
+  static std::vector<Handed> byReader(const std::vector<std::string>& paths,
+                                      std::size_t most_unpacked = std::size_t{1} << 20U) {
+    const auto bags = openBags(paths);
+    BagGroup group;
+    for (const auto& bag : bags) {
+      group.push_back(bag.get());
+    }
+    BagReader reader(group, kTopics, most_unpacked);
+    std::vector<Handed> handed;
+    BagMessage message;
+    while (reader.next(message)) {
+      handed.emplace_back(message.time.toNSec(), message.connection->topic, message.data);
+    }
+    EXPECT_FALSE(reader.next(message));
+    EXPECT_EQ(reader.begin().toNSec(), std::get<0>(handed.front()));
+    EXPECT_EQ(reader.end().toNSec(), std::get<0>(handed.back()));
+    return handed;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BagReaderTest, HandsOutWhatRosbagDoes) {
+  for (const auto compression :
+       {rosbag::compression::Uncompressed, rosbag::compression::BZ2, rosbag::compression::LZ4}) {
+    const std::string bag = record("session.bag", {compression});
+    EXPECT_GT(byReader({bag}).size(), 1000U);
+    EXPECT_TRUE(byReader({bag}) == byView({bag}));
+  }
+}
+
+TEST_F(BagReaderTest, ChunksMayOverlapInTime) {
+  for (const int disorder : {5, 100, 2000}) {
+    const std::string bag = record("session.bag", {rosbag::compression::LZ4, 2000, disorder, 2});
+    EXPECT_TRUE(byReader({bag}) == byView({bag})) << disorder;
+    EXPECT_TRUE(byReader({bag}, 0) == byView({bag})) << disorder << ", one chunk at a time";
+  }
+}
+
+TEST_F(BagReaderTest, BagsSideBySideAreReadAsOne) {
+  std::vector<std::string> bags;
+  for (const int n : {3, 4, 5, 6, 7, 8, 9}) {
+    Recording recording;
+    recording.messages = 100 * n;
+    recording.disorder = 10 * n;
+    recording.seed = static_cast<std::uint64_t>(n);
+    bags.push_back(record("part_" + std::to_string(n) + ".bag", recording));
+  }
+  EXPECT_TRUE(byReader(bags) == byView(bags));
+}
+
+TEST_F(BagReaderTest, AnIndexThatPointsElsewhereIsTold) {
+  const std::string bag = record("session.bag", {});
+  const auto bags = openBags({bag});
+  const BagChunk& chunk = bags.front()->index.chunks.at(1);
+  // The offset of the first message in the index, which follows the chunk.
+  const FileRecord header = headerOfFile(bags.front()->bytes, chunk.position, kLargestChunk);
+  const FileRecord index = recordOfFile(bags.front()->bytes, header.end, kLargestChunk);
+  std::string bytes = contentOf(bag);
+  bytes[index.end - index.data().size() + 8] ^= 1;
+  const std::string damaged = folder_.write("damaged.bag", bytes);
+  const std::string message = errorMessage<DataError>([&] { byReader({damaged}); });
+  EXPECT_NE(message.find(damaged + ": cannot be read as a bag"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace sac
