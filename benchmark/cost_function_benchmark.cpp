@@ -5,6 +5,7 @@
 
 #include "cycle_scenarios.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 #include "support/autodiff_costs.hpp"
 
 namespace sac::benchmarks {
@@ -36,13 +37,17 @@ void evaluateAll(benchmark::State& state,
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(costs.size()));
 }
 
-/// The same of the model itself, by all coordinates. `evaluate(n, jacobian)` returns a residual.
+/// The same of the model itself, by all coordinates. `evaluate(point, n, jacobian)` returns a
+/// residual.
 template <typename Evaluate>
-void evaluateModel(benchmark::State& state, const Evaluate& evaluate) {
+void evaluateModel(benchmark::State& state,
+                   const CycleScenario& scenario,
+                   const Evaluate& evaluate) {
   ResidualJacobian jacobian;
   for (auto _ : state) {
+    const ModelPoint point(scenario.model, scenario.state.belief.x);
     for (std::size_t n = 0; n < kSamples; ++n) {
-      benchmark::DoNotOptimize(evaluate(n, jacobian));
+      benchmark::DoNotOptimize(evaluate(point, n, jacobian));
       benchmark::DoNotOptimize(jacobian.data());
     }
   }
@@ -51,10 +56,10 @@ void evaluateModel(benchmark::State& state, const Evaluate& evaluate) {
 
 void orientationAnalytic(benchmark::State& state) {
   const CycleScenario scenario = cycleScenario(Cycle::kJoint, kSamples);
-  const Eigen::VectorXd& x = scenario.state.belief.x;
-  evaluateModel(state, [&](std::size_t n, ResidualJacobian& jacobian) {
-    return scenario.model.orientationResidual(scenario.samples[n], x, &jacobian);
-  });
+  evaluateModel(
+      state, scenario, [&](const ModelPoint& point, std::size_t n, ResidualJacobian& jacobian) {
+        return point.orientationResidual(scenario.samples[n], &jacobian);
+      });
 }
 
 void orientationAutodiff(benchmark::State& state) {
@@ -78,10 +83,10 @@ std::vector<std::vector<Excitation>> excitationsOf(const CycleScenario& scenario
 void torqueAnalytic(benchmark::State& state) {
   const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
   const std::vector<std::vector<Excitation>> excitations = excitationsOf(scenario);
-  const Eigen::VectorXd& x = scenario.state.belief.x;
-  evaluateModel(state, [&](std::size_t n, ResidualJacobian& jacobian) {
-    return scenario.model.torqueResidual(scenario.samples[n], excitations[n], x, &jacobian);
-  });
+  evaluateModel(
+      state, scenario, [&](const ModelPoint& point, std::size_t n, ResidualJacobian& jacobian) {
+        return point.torqueResidual(scenario.samples[n], excitations[n], &jacobian);
+      });
 }
 
 void torqueAutodiff(benchmark::State& state) {

@@ -24,9 +24,10 @@ void sumUp(const CalibrationSession& session, ModelFit& fit) {
   problem.observations = selectObservations(session.samples(), {Cycle::kRefine}, options);
   problem.prior = session.state().belief;
   const ObservationEvaluator evaluator(problem, options);
+  const ModelPoint point = evaluator.at(problem.prior.x);
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    evaluator.linearize(n, problem.prior.x, linear);
+    evaluator.linearize(n, point, linear);
     fit.chi_square += linear.residual.dot(evaluator.noise(n, linear).llt().solve(linear.residual));
     fit.values += 3;
   }

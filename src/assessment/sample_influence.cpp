@@ -25,9 +25,10 @@ std::vector<Used> usedObservations(const EstimationProblem& problem,
   const ObservationEvaluator evaluator(problem, options);
   const std::vector<bool> held = chosen.others();
   std::vector<Used> used;
+  const ModelPoint point = evaluator.at(x);
   LinearizedObservation linear;
   for (const std::size_t n : keptObservations(problem, report)) {
-    evaluator.linearize(n, x, linear);
+    evaluator.linearize(n, point, linear);
     used.push_back({n, {}});
     whiten(
         linear, whiteningOf(evaluator.covariance(n, linear, held)), chosen, used.back().whitened);

@@ -118,11 +118,12 @@ Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
   dwell.variance.resize(rows);
   dwell.readings.resize(rows, 3);
   dwell.held = Eigen::MatrixXd::Zero(rows, rows);
+  const ModelPoint point = evaluator.at(belief_.x);
   LinearizedObservation linear;
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const std::size_t n = observations[k];
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
-    evaluator.linearize(n, belief_.x, linear);
+    evaluator.linearize(n, point, linear);
     dwell.jacobian.middleRows<3>(row) = linear.jacobian;
     dwell.loading.middleRows<3>(row) = evaluator.sharedErrors(n, linear);
     dwell.variance.segment<3>(row).setConstant(evaluator.ownVariance(n));

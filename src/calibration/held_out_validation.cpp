@@ -99,6 +99,7 @@ class HeldOutJudge {
         state_(state),
         options_(options),
         evaluator_(problem, options),
+        point_(evaluator_.at(state.belief.x)),
         shared_(groupByDwell(problem, options)),
         all_(ChosenCoordinates::all(problem.model->space().size())),
         misfit_(all_.size()) {}
@@ -120,7 +121,7 @@ class HeldOutJudge {
   void take(std::size_t n, HeldOutValidation& result) {
     const auto [index, quantity] = problem_.observations[n];
     const Sample& sample = (*problem_.samples)[index];
-    evaluator_.linearize(n, state_.belief.x, linear_);
+    evaluator_.linearize(n, point_, linear_);
     if (isJudged(problem_.observations[n],
                  sample,
                  problem_.model->space(),
@@ -166,6 +167,7 @@ class HeldOutJudge {
   const CalibrationState& state_;
   const EstimationOptions& options_;
   ObservationEvaluator evaluator_;
+  ModelPoint point_;  ///< the model at the state
   SharedErrorModel shared_;
   ChosenCoordinates all_;
   InformationSum misfit_;

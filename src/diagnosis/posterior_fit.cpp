@@ -133,6 +133,7 @@ class Fit {
     problem.prior = prior;
     problem.observations = observationsOf(mended.samples);
     const ObservationEvaluator evaluator(problem, config_.estimation);
+    const ModelPoint point = evaluator.at(x);
     out.observations.resize(problem.observations.size());
     out.noise.clear();
     out.log_noise = 0.0;
@@ -140,10 +141,10 @@ class Fit {
     for (std::size_t n = 0; n < problem.observations.size(); ++n) {
       LinearizedObservation& linear = out.observations[n];
       if (!with_jacobian) {
-        linear.residual = evaluator.residual(n, x);
+        linear.residual = evaluator.residual(n, point);
         continue;
       }
-      evaluator.linearize(n, x, linear);
+      evaluator.linearize(n, point, linear);
       Eigen::Matrix3d noise = evaluator.noise(n, linear);
       const Sample& sample = mended.samples[problem.observations[n].sample];
       const double allowance = problem.observations[n].quantity == Quantity::kOrientation

@@ -26,6 +26,7 @@ class Conclusion {
       : solution_(solution),
         result_(estimate),
         observations_(*solution.observations),
+        point_(observations_.evaluator().at(solution.x())),
         chosen_(solution.x().size(), solution.estimated),
         held_(chosen_.others()) {}
 
@@ -56,6 +57,7 @@ class Conclusion {
   const Solution& solution_;
   Estimate& result_;
   const WeightedObservations& observations_;
+  ModelPoint point_;  ///< the model at the solution
   ChosenCoordinates chosen_;
   std::vector<bool> held_;
   double chi_square_ = 0.0;         ///< of the active observations at the solution
@@ -242,7 +244,7 @@ Eigen::Matrix3d Conclusion::sharedWithHeld(std::size_t observation,
 void Conclusion::listResiduals() {
   result_.residuals.reserve(observations_.size());
   for (std::size_t n = 0; n < observations_.size(); ++n) {
-    observations_.evaluator().linearize(n, solution_.x(), linear_);
+    observations_.evaluator().linearize(n, point_, linear_);
     ObservationResidual entry;
     entry.observation = solution_.problem->observations[n];
     entry.residual = linear_.residual;
@@ -260,12 +262,13 @@ double Conclusion::errorAt(const Eigen::VectorXd& x, ErrorMeasure measure) const
     const double chi_square = x == solution_.x() ? chi_square_ : observations_.chiSquare(x);
     return std::sqrt(chi_square / values);
   }
+  const ModelPoint point = observations_.evaluator().at(x);
   double sum = 0.0;
   for (std::size_t n = 0; n < observations_.size(); ++n) {
     if (!observations_.active()[n]) {
       continue;
     }
-    const Eigen::Vector3d residual = observations_.evaluator().residual(n, x);
+    const Eigen::Vector3d residual = observations_.evaluator().residual(n, point);
     sum += measure == ErrorMeasure::kOrientation ? residual.norm() : residual.squaredNorm();
   }
   const double mean = sum / static_cast<double>(observations_.activeCount());

@@ -71,35 +71,37 @@ class Objective {
   }
 
   double cost(const Eigen::VectorXd& x) const {
+    const ModelPoint point = input_.evaluator->at(x);
     double cost = priorResidual(x).squaredNorm();
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
       if (input_.active[n] && !shares(n)) {
-        cost += loss(whitenedResidual(n, x).squaredNorm()).value;
+        cost += loss(whitenedResidual(n, point).squaredNorm()).value;
       }
     }
     std::vector<DwellMember> members;
     for (std::size_t d = 0; d < dwells(); ++d) {
-      collect(d, members, [&](std::size_t n) { return whitenedResidual(n, x); });
+      collect(d, members, [&](std::size_t n) { return whitenedResidual(n, point); });
       cost += weigh(members);
     }
     return cost;
   }
 
   NormalEquations normalEquations(const Eigen::VectorXd& x) const {
+    const ModelPoint point = input_.evaluator->at(x);
     InformationSum sum(free_.size());
     NormalEquations result;
     LinearizedObservation linear;
     WhitenedObservation whitened;
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
       if (input_.active[n] && !shares(n)) {
-        input_.evaluator->linearize(n, x, linear);
+        input_.evaluator->linearize(n, point, linear);
         whiten(linear, (*input_.whitening)[n], free_, whitened);
         const LossValue value = loss(whitened.residual.squaredNorm());
         result.cost += value.value;
         sum.add(whitened, value.weight);
       }
     }
-    addDwells(x, sum, result.cost);
+    addDwells(point, sum, result.cost);
     result.information = sum.information();
     result.gradient = sum.gradient();
     if (prior_.rows() > 0) {
@@ -129,8 +131,8 @@ class Objective {
   std::size_t dwells() const { return input_.shared == nullptr ? 0 : input_.shared->dwells.size(); }
   bool shares(std::size_t n) const { return input_.shared != nullptr && input_.shared->shares[n]; }
   LossValue loss(double s) const { return lossAt(input_.loss, input_.loss_transition, s); }
-  Eigen::Vector3d whitenedResidual(std::size_t n, const Eigen::VectorXd& x) const {
-    return (*input_.whitening)[n] * input_.evaluator->residual(n, x);
+  Eigen::Vector3d whitenedResidual(std::size_t n, const ModelPoint& point) const {
+    return (*input_.whitening)[n] * input_.evaluator->residual(n, point);
   }
 
   template <typename Residual>
@@ -173,7 +175,7 @@ class Objective {
     return cost;
   }
 
-  void addDwells(const Eigen::VectorXd& x, InformationSum& sum, double& cost) const {
+  void addDwells(const ModelPoint& point, InformationSum& sum, double& cost) const {
     LinearizedObservation linear;
     std::vector<DwellMember> members;
     std::vector<WhitenedObservation> whitened;
@@ -181,7 +183,7 @@ class Objective {
     for (std::size_t d = 0; d < dwells(); ++d) {
       whitened.clear();
       collect(d, members, [&](std::size_t n) {
-        input_.evaluator->linearize(n, x, linear);
+        input_.evaluator->linearize(n, point, linear);
         whitened.emplace_back();
         whiten(linear, (*input_.whitening)[n], free_, whitened.back());
         return whitened.back().residual;

@@ -26,22 +26,22 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
 }
 
 Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
-                                               const Eigen::VectorXd& x) const {
-  return evaluate(observation, x, nullptr);
+                                               const ModelPoint& point) const {
+  return evaluate(observation, point, nullptr);
 }
 
 Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
-                                               const Eigen::VectorXd& x,
+                                               const ModelPoint& point,
                                                ResidualJacobian* jacobian) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   return what.quantity == Quantity::kOrientation
-             ? problem_.model->orientationResidual(sample, x, jacobian)
-             : problem_.model->torqueResidual(sample, excitations_[observation], x, jacobian);
+             ? point.orientationResidual(sample, jacobian)
+             : point.torqueResidual(sample, excitations_[observation], jacobian);
 }
 
 void ObservationEvaluator::linearize(std::size_t observation,
-                                     const Eigen::VectorXd& x,
+                                     const ModelPoint& point,
                                      LinearizedObservation& out) const {
   const ParameterSpace& space = problem_.model->space();
   const bool is_torque = problem_.observations[observation].quantity == Quantity::kTorque;
@@ -56,7 +56,7 @@ void ObservationEvaluator::linearize(std::size_t observation,
     take(space.coil(excitation.coil), space.coil(excitation.coil) + ParameterSpace::kPerAxis);
   }
   take(space.effect(), space.size());
-  out.residual = evaluate(observation, x, &out.jacobian);
+  out.residual = evaluate(observation, point, &out.jacobian);
 }
 
 double ObservationEvaluator::stddev(std::size_t observation) const {

@@ -31,6 +31,7 @@ class Collector {
   explicit Collector(const Solution& solution)
       : solution_(solution),
         observations_(*solution.observations),
+        point_(observations_.evaluator().at(solution.x())),
         chosen_(solution.x().size(), solution.estimated),
         every_(ChosenCoordinates::all(solution.x().size())),
         held_(chosen_.others()) {}
@@ -44,6 +45,7 @@ class Collector {
 
   const Solution& solution_;
   const WeightedObservations& observations_;
+  ModelPoint point_;
   ChosenCoordinates chosen_;
   ChosenCoordinates every_;
   std::vector<bool> held_;
@@ -82,7 +84,7 @@ ObservedInformation Collector::run() {
 
 void Collector::addObservation(std::size_t observation, Sums& sums) {
   const ObservationEvaluator& evaluator = observations_.evaluator();
-  evaluator.linearize(observation, solution_.x(), linear_);
+  evaluator.linearize(observation, point_, linear_);
   const Eigen::Matrix3d& W = observations_.whitening()[observation];
   whiten(linear_, W, every_, whitened_);
   if (evaluator.heldCovariance(linear_, held_).isZero(0.0)) {
@@ -103,7 +105,7 @@ void Collector::addDwell(const std::vector<std::size_t>& dwell, DwellSum& sum, S
   bool more_than_noise = false;
   for (const std::size_t n : dwell) {
     if (observations_.active()[n]) {
-      observations_.evaluator().linearize(n, solution_.x(), linear_);
+      observations_.evaluator().linearize(n, point_, linear_);
       whiten(linear_, observations_.whitening()[n], every_, whitened_);
       sum.add(whitened_, observations_.shared().loading[n]);
       more_than_noise =
@@ -129,7 +131,7 @@ Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, con
       continue;
     }
     const ObservationEvaluator& evaluator = observations_.evaluator();
-    evaluator.linearize(n, solution_.x(), linear_);
+    evaluator.linearize(n, point_, linear_);
     const Eigen::Matrix3d& W = observations_.whitening()[n];
     const SharedLoading& G = observations_.shared().loading[n];
     const Eigen::Matrix3d own_noise = evaluator.ownNoise(n, linear_);

@@ -18,12 +18,13 @@ bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::ve
   if (weighed_at_.size() > 0 && weighed_at_ == x && weighed_with_ == held) {
     return false;
   }
+  const ModelPoint point = evaluator_.at(x);
   weighed_at_ = x;
   weighed_with_ = held;
   bool changed = false;
   LinearizedObservation linear;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    evaluator_.linearize(n, x, linear);
+    evaluator_.linearize(n, point, linear);
     const Eigen::Matrix3d noise =
         shared_.shares[n] ? evaluator_.ownNoise(n, linear) : evaluator_.noise(n, linear);
     const Eigen::Matrix3d whitening = whiteningOf(noise + evaluator_.heldCovariance(linear, held));
@@ -53,24 +54,25 @@ bool WeightedObservations::setActive(std::size_t observation, bool active) {
 }
 
 std::vector<double> WeightedObservations::squares(const Eigen::VectorXd& x, double limit) const {
+  const ModelPoint point = evaluator_.at(x);
   std::vector<double> squares(whitening_.size());
   for (std::size_t n = 0; n < squares.size(); ++n) {
-    squares[n] = shared_.shares[n] ? 0.0 : whitenedResidual(n, x).squaredNorm();
+    squares[n] = shared_.shares[n] ? 0.0 : whitenedResidual(n, point).squaredNorm();
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    squaresOfDwell(dwell, x, limit, squares);
+    squaresOfDwell(dwell, point, limit, squares);
   }
   return squares;
 }
 
 void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
-                                          const Eigen::VectorXd& x,
+                                          const ModelPoint& point,
                                           double limit,
                                           std::vector<double>& squares) const {
   DwellElimination elimination;
   std::vector<Eigen::Vector3d> residuals;
   for (const std::size_t n : dwell) {
-    residuals.push_back(whitenedResidual(n, x));
+    residuals.push_back(whitenedResidual(n, point));
     elimination.add(shared_.loading[n], residuals.back());
   }
   std::vector<bool> kept(dwell.size(), true);
@@ -99,34 +101,36 @@ void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
 }
 
 DwellElimination WeightedObservations::eliminated(const std::vector<std::size_t>& dwell,
-                                                  const Eigen::VectorXd& x) const {
+                                                  const ModelPoint& point) const {
   DwellElimination elimination;
   for (const std::size_t n : dwell) {
     if (active_[n]) {
-      elimination.add(shared_.loading[n], whitenedResidual(n, x));
+      elimination.add(shared_.loading[n], whitenedResidual(n, point));
     }
   }
   return elimination;
 }
 
 double WeightedObservations::chiSquare(const Eigen::VectorXd& x) const {
+  const ModelPoint point = evaluator_.at(x);
   double sum = 0.0;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    sum += active_[n] && !shared_.shares[n] ? whitenedResidual(n, x).squaredNorm() : 0.0;
+    sum += active_[n] && !shared_.shares[n] ? whitenedResidual(n, point).squaredNorm() : 0.0;
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    sum += eliminated(dwell, x).squaredMisfit();
+    sum += eliminated(dwell, point).squaredMisfit();
   }
   return sum;
 }
 
 std::vector<Eigen::Vector3d> WeightedObservations::residuals(const Eigen::VectorXd& x) const {
+  const ModelPoint point = evaluator_.at(x);
   std::vector<Eigen::Vector3d> residuals(whitening_.size());
   for (std::size_t n = 0; n < residuals.size(); ++n) {
-    residuals[n] = whitenedResidual(n, x);
+    residuals[n] = whitenedResidual(n, point);
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    const SharedErrors errors = eliminated(dwell, x).errors();
+    const SharedErrors errors = eliminated(dwell, point).errors();
     for (const std::size_t n : dwell) {
       residuals[n] -= shared_.loading[n] * errors;
     }
@@ -137,6 +141,7 @@ std::vector<Eigen::Vector3d> WeightedObservations::residuals(const Eigen::Vector
 Eigen::MatrixXd WeightedObservations::information(const Eigen::VectorXd& x,
                                                   const std::vector<Eigen::Index>& coordinates,
                                                   Which which) const {
+  const ModelPoint point = evaluator_.at(x);
   const ChosenCoordinates chosen(x.size(), coordinates);
   InformationSum sum(chosen.size());
   LinearizedObservation linear;
@@ -144,7 +149,7 @@ Eigen::MatrixXd WeightedObservations::information(const Eigen::VectorXd& x,
   const auto serves = [&](std::size_t n) { return which == Which::kAll || active_[n]; };
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
     if (serves(n) && !shared_.shares[n]) {
-      evaluator_.linearize(n, x, linear);
+      evaluator_.linearize(n, point, linear);
       whiten(linear, whitening_[n], chosen, whitened);
       sum.add(whitened);
     }
@@ -154,7 +159,7 @@ Eigen::MatrixXd WeightedObservations::information(const Eigen::VectorXd& x,
     dwell_sum.begin();
     for (const std::size_t n : dwell) {
       if (serves(n)) {
-        evaluator_.linearize(n, x, linear);
+        evaluator_.linearize(n, point, linear);
         whiten(linear, whitening_[n], chosen, whitened);
         dwell_sum.add(whitened, shared_.loading[n]);
       }

@@ -68,13 +68,12 @@ class WeightedObservations {
 
  private:
   void squaresOfDwell(const std::vector<std::size_t>& dwell,
-                      const Eigen::VectorXd& x,
+                      const ModelPoint& point,
                       double limit,
                       std::vector<double>& squares) const;
-  DwellElimination eliminated(const std::vector<std::size_t>& dwell,
-                              const Eigen::VectorXd& x) const;
-  Eigen::Vector3d whitenedResidual(std::size_t observation, const Eigen::VectorXd& x) const {
-    return whitening_[observation] * evaluator_.residual(observation, x);
+  DwellElimination eliminated(const std::vector<std::size_t>& dwell, const ModelPoint& point) const;
+  Eigen::Vector3d whitenedResidual(std::size_t observation, const ModelPoint& point) const {
+    return whitening_[observation] * evaluator_.residual(observation, point);
   }
 
   ObservationEvaluator evaluator_;

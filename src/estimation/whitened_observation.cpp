@@ -59,7 +59,9 @@ void whiten(const LinearizedObservation& linear,
             WhitenedObservation& out) {
   out.residual = whitening * linear.residual;
   out.columns.clear();
-  out.jacobian.resize(3, static_cast<Eigen::Index>(linear.columns.size()));
+  if (out.jacobian.cols() < static_cast<Eigen::Index>(linear.columns.size())) {
+    out.jacobian.resize(3, static_cast<Eigen::Index>(linear.columns.size()));
+  }
   for (const Eigen::Index p : linear.columns) {
     const Eigen::Index place = chosen.place(p);
     // Most poles are out of reach of a coil: their columns are zero.
@@ -69,7 +71,6 @@ void whiten(const LinearizedObservation& linear,
       out.columns.push_back(place);
     }
   }
-  out.jacobian.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(out.columns.size()));
 }
 
 InformationSum::InformationSum(Eigen::Index size)

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
@@ -27,12 +28,13 @@ class Linearizer {
       : chosen_(problem.model->space().size(), coordinates),
         held_(chosen_.others()),
         estimation_(estimationProblem(problem, samples)),
-        evaluator_(estimation_, problem.estimation) {}
+        evaluator_(estimation_, problem.estimation),
+        point_(evaluator_.at(estimation_.prior.x)) {}
 
   const std::vector<Observation>& observations() const { return estimation_.observations; }
 
   WhitenedObservation linearize(std::size_t observation) {
-    evaluator_.linearize(observation, estimation_.prior.x, linear_);
+    evaluator_.linearize(observation, point_, linear_);
     const Eigen::Matrix3d whitening =
         whiteningOf(evaluator_.covariance(observation, linear_, held_));
     WhitenedObservation result;
@@ -55,6 +57,7 @@ class Linearizer {
   std::vector<bool> held_;  ///< per coordinate: not estimated
   EstimationProblem estimation_;
   ObservationEvaluator evaluator_;
+  ModelPoint point_;
   LinearizedObservation linear_;
 };
 

@@ -21,10 +21,11 @@ Eigen::MatrixXd cramerRaoBound(const CalibrationModel& model,
   const ObservationEvaluator evaluator(problem, options);
   const ChosenCoordinates chosen(truth.size(), free);
   InformationSum sum(chosen.size());
+  const ModelPoint point = evaluator.at(truth);
   LinearizedObservation linear;
   WhitenedObservation whitened;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    evaluator.linearize(n, truth, linear);
+    evaluator.linearize(n, point, linear);
     whiten(linear, whiteningOf(evaluator.noise(n, linear)), chosen, whitened);
     sum.add(whitened);
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/random_purpose.hpp"

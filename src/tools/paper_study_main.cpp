@@ -10,6 +10,7 @@
 
 #include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"

@@ -45,10 +45,13 @@ TEST(LaboratoryEffects, JacobiansOfAllAgreeWithNumericOnes) {
     for (double& value : x) {
       value = scenarios::uniformNoise(0.02, generator).x();
     }
-    evaluator.linearize(n, x, linear);
-    EXPECT_LT((linear.residual - evaluator.residual(n, x)).norm(), 1e-14);
+    evaluator.linearize(n, evaluator.at(x), linear);
+    EXPECT_LT((linear.residual - evaluator.residual(n, evaluator.at(x))).norm(), 1e-14);
     const Eigen::MatrixXd numeric = numericJacobian(
-        [&](const Eigen::VectorXd& at) { return Eigen::VectorXd(evaluator.residual(n, at)); }, x);
+        [&](const Eigen::VectorXd& at) {
+          return Eigen::VectorXd(evaluator.residual(n, evaluator.at(at)));
+        },
+        x);
     EXPECT_LT((linear.jacobian - numeric).cwiseAbs().maxCoeff(), 2e-7) << n;
     const std::set<Eigen::Index> columns(linear.columns.begin(), linear.columns.end());
     for (Eigen::Index p = 0; p < size; ++p) {

@@ -50,11 +50,12 @@ class LeastSquares : public ::testing::Test {
     constexpr double kRounding = std::numeric_limits<double>::epsilon();
     const ChosenCoordinates chosen(x.size(), input_.free);
     InformationSum sum(chosen.size());
+    const ModelPoint point = evaluator_->at(x);
     LinearizedObservation linear;
     WhitenedObservation whitened;
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
       if (input_.active[n]) {
-        evaluator_->linearize(n, x, linear);
+        evaluator_->linearize(n, point, linear);
         whiten(linear, whitening_[n], chosen, whitened);
         sum.add(whitened);
       }

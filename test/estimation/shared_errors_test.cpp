@@ -141,7 +141,7 @@ TEST(SharedErrors, WhatIsSharedAndWhatIsOwnAreAllOfTheNoise) {
   const EstimationOptions options;
   const ObservationEvaluator evaluator(problem, options);
   LinearizedObservation linear;
-  evaluator.linearize(0, problem.prior.x, linear);
+  evaluator.linearize(0, evaluator.at(problem.prior.x), linear);
   const Eigen::Matrix<double, 3, 6> shared = evaluator.sharedErrors(0, linear);
   const Eigen::Matrix3d noise = evaluator.noise(0, linear);
   EXPECT_LT((evaluator.ownNoise(0, linear) + shared * shared.transpose() - noise).norm(),

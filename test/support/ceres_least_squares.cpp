@@ -45,7 +45,8 @@ class ObservationCost final : public Cost {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const Eigen::Matrix3d& W = (*input_.whitening)[observation_];
     LinearizedObservation linear;
-    input_.evaluator->linearize(observation_, coordinatesAt(input_, blocks[0]), linear);
+    const ModelPoint point = input_.evaluator->at(coordinatesAt(input_, blocks[0]));
+    input_.evaluator->linearize(observation_, point, linear);
     Eigen::Map<Eigen::Vector3d> whitened(residuals);
     whitened = W * linear.residual;
     write((W * linear.jacobian).eval(), jacobians);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 
@@ -25,11 +26,14 @@ class ObservationEvaluator {
     return excitations_[observation];
   }
 
-  Eigen::Vector3d residual(std::size_t observation, const Eigen::VectorXd& x) const;
+  /// The model at coordinates, for the calls below.
+  ModelPoint at(const Eigen::VectorXd& x) const { return {*problem_.model, x}; }
+
+  Eigen::Vector3d residual(std::size_t observation, const ModelPoint& point) const;
 
   /// Fills `out`, whose storage is reused.
   void linearize(std::size_t observation,
-                 const Eigen::VectorXd& x,
+                 const ModelPoint& point,
                  LinearizedObservation& out) const;
 
   /// Covariance of an observation from the sensors' noise alone, joint sensors included.
@@ -56,7 +60,7 @@ class ObservationEvaluator {
 
  private:
   Eigen::Vector3d evaluate(std::size_t observation,
-                           const Eigen::VectorXd& x,
+                           const ModelPoint& point,
                            ResidualJacobian* jacobian) const;
   double stddev(std::size_t observation) const;
 

@@ -37,7 +37,8 @@ Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance);
 struct WhitenedObservation {
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();
   std::vector<Eigen::Index> columns;  ///< places among the chosen coordinates, ascending
-  Eigen::Matrix3Xd jacobian;          ///< of these columns; the others are zero
+  /// Of these columns; the others are zero. Storage that is reused may have more behind them.
+  Eigen::Matrix3Xd jacobian;
 
   /// M Jᵀ (rows × 3) for a matrix of F columns.
   Eigen::Matrix<double, Eigen::Dynamic, 3> timesTransposed(const Eigen::MatrixXd& M) const;

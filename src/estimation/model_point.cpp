@@ -1,0 +1,308 @@
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
+
+#include <array>
+#include <optional>
+
+#include <boost/container/small_vector.hpp>
+
+#include "effects_at.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
+
+namespace sac {
+namespace {
+
+/// Joint axes and offsets at the coordinates, with ∂axis/∂(u, v) of each. Corrections of readings
+/// and the orientation map act apart from them, on what the sensors read.
+struct JointPoint {
+  JointGeometry geometry;
+  std::array<Eigen::Matrix<double, 3, 2>, kJoints> d_axis;
+};
+
+JointPoint jointPoint(const ParameterSpace& space, const Eigen::VectorXd& x) {
+  JointPoint point;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const Eigen::Index at = space.joint(k);
+    const auto column = static_cast<Eigen::Index>(k);
+    Eigen::Vector3d axis;
+    space.jointChart(k).evaluate(x[at + 1], x[at + 2], axis, point.d_axis[k]);
+    point.geometry.axes.col(column) = axis;
+    point.geometry.offsets[column] = space.nominal().joints[k].offset + x[at];
+  }
+  return point;
+}
+
+/// A pole or coil axis, rotor or stator frame, with ∂axis/∂(u, v).
+struct AxisPoint {
+  Eigen::Vector3d axis;
+  Eigen::Matrix<double, 3, 2> d_axis;
+};
+
+AxisPoint axisPoint(const AxisChart& chart, const double* uv) {
+  AxisPoint point;
+  chart.evaluate(uv[0], uv[1], point.axis, point.d_axis);
+  return point;
+}
+
+/// A rotation by the effects, e^{v̂}, and ∂v/∂their values.
+struct EffectRotation {
+  explicit EffectRotation(const Eigen::Matrix3Xd& columns, const Eigen::VectorXd& values)
+      : d_vector(columns), vector(columns * values), rotation(rotationExp(vector)) {}
+
+  Eigen::Matrix3Xd d_vector;
+  Eigen::Vector3d vector;
+  Eigen::Matrix3d rotation;
+};
+
+/// left · ∂ξ/∂(offset, u, v of each joint) into the columns of the joints.
+void writeJointJacobian(const JointPoint& point,
+                        const JointLinearization& linear,
+                        const Eigen::Matrix3d& left,
+                        ResidualJacobian& jacobian) {
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const auto first = ParameterSpace::kPerJoint * static_cast<Eigen::Index>(k);
+    jacobian.col(first) = left * linear.d_offset.col(static_cast<Eigen::Index>(k));
+    jacobian.middleCols<2>(first + 1) = left * (linear.d_axis[k] * point.d_axis[k]);
+  }
+}
+
+/// left · ∂ξ/∂offset of each joint. An error of a reading acts as an offset of that joint does.
+Eigen::Matrix3d offsetColumns(const JointLinearization& linear, const Eigen::Matrix3d& left) {
+  Eigen::Matrix3d columns;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    columns.col(k) = left * linear.d_offset.col(k);
+  }
+  return columns;
+}
+
+/// One excited coil while the torques of its pairs are summed up.
+struct CoilTerm {
+  std::size_t coil = 0;
+  double current = 0.0;  ///< times the nominal gain [A]
+  const AxisPoint* axis = nullptr;
+  Eigen::Vector3d coil_rotor;
+  Eigen::Matrix3d d_coil = Eigen::Matrix3d::Zero();  ///< ∂T/∂s
+};
+
+using CoilTerms = boost::container::small_vector<CoilTerm, 8>;
+
+}  // namespace
+
+struct ModelPoint::Parts {
+  Parts(const CalibrationModel& model, const Eigen::VectorXd& x);
+
+  Eigen::Matrix3d nominalTurn(const Eigen::Vector3d& reading) const;
+  Eigen::Vector3d corrected(const Eigen::Vector3d& reading, const Eigen::Matrix3Xd& columns) const;
+  CoilTerms coilTerms(const std::vector<Excitation>& excitations,
+                      const Eigen::Matrix3d& R_rotor_stator) const;
+  Eigen::Vector3d pairTorques(const CoilTerms& terms) const;
+  Eigen::Vector3d linearizePairTorques(CoilTerms& terms,
+                                       ResidualJacobian& jacobian,
+                                       Eigen::Matrix3Xd& d_effects) const;
+  Eigen::Vector3d torqueInRotor(const Eigen::Vector3d& measured, Eigen::Matrix3Xd* d_effects) const;
+
+  /// Torque per ampere of a pair by its strength, that of the coil apart.
+  double poleStrength(std::size_t pole, std::size_t coil) const {
+    const PoleAxis& nominal = space.nominal().poles[pole];
+    return nominal.polarity * nominal.gain * effects.strength(pole, coil);
+  }
+
+  const ParameterSpace& space;
+  JointGeometry nominal_joints;
+  JointPoint joints;
+  std::vector<AxisPoint> poles;  ///< rotor frame
+  std::vector<AxisPoint> coils;  ///< stator frame
+  EffectsAt effects;
+  EffectRotation tracker;
+  EffectRotation marker;
+  EffectRotation torque_frame;  ///< of the force/torque sensor in the rotor
+  std::optional<TorqueCurve> changed_curve;
+  const TorqueCurve* curve = nullptr;  ///< null: no torque model
+};
+
+ModelPoint::Parts::Parts(const CalibrationModel& model, const Eigen::VectorXd& x)
+    : space(model.space()),
+      nominal_joints(jointGeometry(space.nominal())),
+      joints(jointPoint(space, x)),
+      effects(space, x),
+      tracker(effects.trackerColumns(), effects.values()),
+      marker(effects.markerColumns(), effects.values()),
+      torque_frame(effects.torqueFrameColumns(), effects.values()) {
+  poles.reserve(space.poles());
+  for (std::size_t i = 0; i < space.poles(); ++i) {
+    poles.push_back(axisPoint(space.poleChart(i), x.data() + space.pole(i)));
+  }
+  coils.reserve(space.coils());
+  for (std::size_t j = 0; j < space.coils(); ++j) {
+    coils.push_back(axisPoint(space.coilChart(j), x.data() + space.coil(j)));
+  }
+  if (model.hasTorqueModel()) {
+    changed_curve = effects.changedCurve();
+    curve = changed_curve ? &*changed_curve : &model.curve();
+  }
+}
+
+/// What turns the rotor beside the joints of the nominal actuator.
+Eigen::Matrix3d ModelPoint::Parts::nominalTurn(const Eigen::Vector3d& reading) const {
+  const auto& map = space.nominal().orientation_map;
+  return map ? rotationExp(map->mean(reading)) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
+/// Joint angles at a reading. `columns`: ∂ of them by the values of the effects.
+Eigen::Vector3d ModelPoint::Parts::corrected(const Eigen::Vector3d& reading,
+                                             const Eigen::Matrix3Xd& columns) const {
+  return correctedReading(nominal_joints, reading) + columns * effects.values();
+}
+
+CoilTerms ModelPoint::Parts::coilTerms(const std::vector<Excitation>& excitations,
+                                       const Eigen::Matrix3d& R_rotor_stator) const {
+  CoilTerms terms(excitations.size());
+  for (std::size_t e = 0; e < excitations.size(); ++e) {
+    CoilTerm& term = terms[e];
+    term.coil = excitations[e].coil;
+    term.axis = &coils[term.coil];
+    term.coil_rotor = R_rotor_stator * term.axis->axis;
+    term.current = excitations[e].current * space.nominal().coils[term.coil].gain;
+  }
+  return terms;
+}
+
+/// Model torque of all pole–coil pairs [N·m].
+Eigen::Vector3d ModelPoint::Parts::pairTorques(const CoilTerms& terms) const {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    for (const CoilTerm& term : terms) {
+      if (interacts(*curve, poles[i].axis, term.coil_rotor)) {
+        torque += term.current * poleStrength(i, term.coil) *
+                  pairTorque(*curve, poles[i].axis, term.coil_rotor);
+      }
+    }
+  }
+  return torque;
+}
+
+/// The same, with the columns of poles and of strengths in the residual's Jacobian and each term's
+/// ∂T/∂s. `d_effects`: 3×E, by values of the effects.
+Eigen::Vector3d ModelPoint::Parts::linearizePairTorques(CoilTerms& terms,
+                                                        ResidualJacobian& jacobian,
+                                                        Eigen::Matrix3Xd& d_effects) const {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    const auto& [pole_rotor, d_axis] = poles[i];
+    for (CoilTerm& term : terms) {
+      if (!interacts(*curve, pole_rotor, term.coil_rotor)) {
+        continue;
+      }
+      const double weight = term.current * poleStrength(i, term.coil);
+      const PairTorque pair = linearizePairTorque(*curve, pole_rotor, term.coil_rotor);
+      torque += weight * pair.torque;
+      term.d_coil += weight * pair.d_coil;
+      jacobian.middleCols<2>(space.pole(i)) -= weight * pair.d_pole * d_axis;
+      effects.subtractStrengthColumns(i, term.coil, weight * pair.torque, d_effects);
+      effects.subtractPairColumns(pole_rotor, term.coil_rotor, weight, d_effects);
+    }
+  }
+  return torque;
+}
+
+/// A measured torque in the rotor's frame, T_measured = e^{ẑ} T, and its ∂/∂values of the effects.
+Eigen::Vector3d ModelPoint::Parts::torqueInRotor(const Eigen::Vector3d& measured,
+                                                 Eigen::Matrix3Xd* d_effects) const {
+  if (effects.empty()) {
+    return measured;
+  }
+  const Eigen::Matrix3d back = torque_frame.rotation.transpose();
+  if (d_effects != nullptr) {
+    *d_effects += back * skew(measured) * leftJacobian(torque_frame.vector) * torque_frame.d_vector;
+  }
+  return back * measured;
+}
+
+ModelPoint::ModelPoint(const CalibrationModel& model, const Eigen::VectorXd& x)
+    : parts_(std::make_shared<const Parts>(model, x)) {}
+
+Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
+                                                ResidualJacobian* jacobian) const {
+  const Parts& at = *parts_;
+  const Eigen::Matrix3Xd d_reading = at.effects.readingColumns(sample.joint_position);
+  const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
+  const Eigen::Matrix3d R_left = at.tracker.rotation * at.nominalTurn(sample.joint_position);
+  if (jacobian == nullptr) {
+    const Eigen::Matrix3d R_predicted =
+        R_left * rotorOrientation(at.joints.geometry, q) * at.marker.rotation;
+    return rotationLog(sample.R_stator_rotor * R_predicted.transpose());
+  }
+  const JointLinearization linear = linearizeRotorOrientation(at.joints.geometry, q);
+  const Eigen::Matrix3d R_predicted = R_left * linear.R_stator_rotor * at.marker.rotation;
+  Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * R_predicted.transpose());
+  // R → e^{ξ̂}R turns e^{ŷ} into e^{ŷ}e^{−ξ̂}, and J_r(y) = J_l(−y).
+  const Eigen::Matrix3d d_stator = -leftJacobianInverse(-y);
+  const Eigen::Matrix3d d_rotation = d_stator * R_left;
+  jacobian->setZero(3, at.space.size());
+  writeJointJacobian(at.joints, linear, d_rotation, *jacobian);
+  if (!at.effects.empty()) {
+    const Eigen::Matrix3d d_rotor =
+        d_rotation * linear.R_stator_rotor * leftJacobian(at.marker.vector);
+    at.effects.write(offsetColumns(linear, d_rotation) * d_reading +
+                         d_stator * leftJacobian(at.tracker.vector) * at.tracker.d_vector +
+                         d_rotor * at.marker.d_vector,
+                     *jacobian);
+  }
+  return y;
+}
+
+Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
+                                           const std::vector<Excitation>& excitations,
+                                           ResidualJacobian* jacobian) const {
+  const Parts& at = *parts_;
+  const Eigen::Matrix3Xd d_reading = at.effects.readingColumns(sample.joint_position);
+  const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
+  const Eigen::Matrix3d R_turn = at.nominalTurn(sample.joint_position);
+  if (jacobian == nullptr) {
+    const Eigen::Matrix3d R_rotor_stator =
+        (R_turn * rotorOrientation(at.joints.geometry, q)).transpose();
+    return at.torqueInRotor(sample.torque, nullptr) -
+           at.pairTorques(at.coilTerms(excitations, R_rotor_stator)) -
+           at.effects.loadColumns(R_rotor_stator) * at.effects.values();
+  }
+  const JointLinearization linear = linearizeRotorOrientation(at.joints.geometry, q);
+  const Eigen::Matrix3d R_rotor_stator = (R_turn * linear.R_stator_rotor).transpose();
+  CoilTerms terms = at.coilTerms(excitations, R_rotor_stator);
+  const Eigen::Matrix3Xd d_load = at.effects.loadColumns(R_rotor_stator);
+  Eigen::Matrix3Xd d_effects = -d_load;
+  jacobian->setZero(3, at.space.size());
+  const Eigen::Vector3d torque =
+      at.linearizePairTorques(terms, *jacobian, d_effects) + d_load * at.effects.values();
+  const Eigen::Vector3d measured = at.torqueInRotor(sample.torque, &d_effects);
+  // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰ and ∂s/∂s⁰ = Rᵀ; the residual carries the minus sign.
+  Eigen::Matrix3d d_rotation = -at.effects.loadRotation(R_rotor_stator);
+  for (const CoilTerm& term : terms) {
+    const Eigen::Matrix3d d_stator = -term.d_coil * R_rotor_stator;
+    d_rotation += d_stator * skew(term.axis->axis);
+    jacobian->middleCols<2>(at.space.coil(term.coil)) = d_stator * term.axis->d_axis;
+  }
+  d_rotation = (d_rotation * R_turn).eval();
+  writeJointJacobian(at.joints, linear, d_rotation, *jacobian);
+  if (!at.effects.empty()) {
+    at.effects.write(d_effects + offsetColumns(linear, d_rotation) * d_reading, *jacobian);
+  }
+  return measured - torque;
+}
+
+// The model itself knows no points, so that it can be used without them: at single ones it is here.
+
+Eigen::Vector3d CalibrationModel::orientationResidual(const Sample& sample,
+                                                      const Eigen::VectorXd& x,
+                                                      ResidualJacobian* jacobian) const {
+  return ModelPoint(*this, x).orientationResidual(sample, jacobian);
+}
+
+Eigen::Vector3d CalibrationModel::torqueResidual(const Sample& sample,
+                                                 const std::vector<Excitation>& excitations,
+                                                 const Eigen::VectorXd& x,
+                                                 ResidualJacobian* jacobian) const {
+  return ModelPoint(*this, x).torqueResidual(sample, excitations, jacobian);
+}
+
+}  // namespace sac
