@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "information_factor.hpp"
 #include "observability.hpp"
 #include "observed_information.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -144,12 +145,9 @@ Eigen::MatrixXd Conclusion::priorCovariance() const {
 void Conclusion::findCovariance() {
   ObservedInformation information = observedInformation(solution_);
   weighed_ = std::move(information.weighed);
-  const Eigen::Index count = chosen_.size();
   result_.condition_number =
-      judgeInformation(information.data, solution_.options->unobservable_stddev)
-          .identified_condition_number;
-  inverse_ =
-      (information.data + priorInformation()).llt().solve(Eigen::MatrixXd::Identity(count, count));
+      identifiedConditionNumber(information.data, solution_.options->unobservable_stddev);
+  inverse_ = InformationFactor(information.data + priorInformation()).inverse();
   const Eigen::MatrixXd prior_covariance = priorCovariance();
   const Eigen::MatrixXd noise_covariance = information.is_noise_alone
                                                ? (inverse_ - prior_covariance).eval()

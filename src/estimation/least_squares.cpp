@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -271,10 +272,9 @@ class Descent {
   }
 
   std::optional<Eigen::VectorXd> dampedStep(const NormalEquations& normal) const {
-    Eigen::MatrixXd damped = normal.information;
-    damped.diagonal() += damping_ * normal.information.diagonal().cwiseMax(kLeastDiagonal);
-    const Eigen::LLT<Eigen::MatrixXd> factor(damped);
-    if (factor.info() != Eigen::Success) {
+    const InformationFactor factor(
+        normal.information, damping_ * normal.information.diagonal().cwiseMax(kLeastDiagonal));
+    if (!factor.isPositive()) {
       return std::nullopt;
     }
     Eigen::VectorXd step = -factor.solve(normal.gradient);

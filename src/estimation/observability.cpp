@@ -3,16 +3,18 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "extreme_eigenvalue.hpp"
+#include "information_factor.hpp"
 
 namespace sac {
 
 bool leavesNothingOpen(const Eigen::MatrixXd& information, double limit) {
   // All eigenvalues exceed 1/limit² where what they exceed it by has a Cholesky factor.
-  Eigen::MatrixXd excess = information;
-  excess.diagonal().array() -= 1.0 / (limit * limit);
-  return excess.llt().info() == Eigen::Success;
+  return InformationFactor(information,
+                           Eigen::VectorXd::Constant(information.rows(), -1.0 / (limit * limit)))
+      .isPositive();
 }
 
 Observability judgeInformation(const Eigen::MatrixXd& information, double limit) {
@@ -49,6 +51,20 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
   result.condition_number = smallest > 0.0 ? std::sqrt(eigen.eigenvalues()[n - 1] / smallest)
                                            : std::numeric_limits<double>::infinity();
   return result;
+}
+
+double identifiedConditionNumber(const Eigen::MatrixXd& information, double limit) {
+  const InformationFactor factor(information);
+  if (!factor.isPositive() || !factor.hasIslands() || !leavesNothingOpen(information, limit)) {
+    return judgeInformation(information, limit).identified_condition_number;
+  }
+  // The extreme eigenvalues alone: all of them cost the cube of the number of coordinates.
+  const double largest =
+      largestEigenvalue([&](const Eigen::VectorXd& v) { return Eigen::VectorXd(information * v); },
+                        information.rows());
+  const double of_inverse = largestEigenvalue(
+      [&](const Eigen::VectorXd& v) { return factor.solve(v); }, information.rows());
+  return std::sqrt(largest * of_inverse);
 }
 
 }  // namespace sac

@@ -29,4 +29,8 @@ bool leavesNothingOpen(const Eigen::MatrixXd& information, double limit);
 /// them when its squared components there sum to more than 1 %.
 Observability judgeInformation(const Eigen::MatrixXd& information, double limit);
 
+/// Observability::identified_condition_number alone; much cheaper where the matrix has islands, see
+/// InformationFactor.
+double identifiedConditionNumber(const Eigen::MatrixXd& information, double limit);
+
 }  // namespace sac

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace sac {
+
+/// Cholesky factor of an information matrix. Where there are many coordinates and most of them meet
+/// few others, as those of a coil meet only joints, poles and each other, it is made island by
+/// island: the islands are eliminated one after the other, and what is left of the coordinates that
+/// meet many, the border, is factorised as a whole (Schur complement). Its cost then grows with the
+/// number of islands, not with its cube. Few coordinates are one border.
+class InformationFactor {
+ public:
+  explicit InformationFactor(const Eigen::MatrixXd& information)
+      : InformationFactor(information, Eigen::VectorXd::Zero(information.rows())) {}
+  /// Of information + diag(`more`).
+  InformationFactor(const Eigen::MatrixXd& information, const Eigen::VectorXd& more);
+
+  /// False: the matrix is not positive definite, and there is no factor.
+  bool isPositive() const { return is_positive_; }
+  /// False: the matrix was factorised as a whole.
+  bool hasIslands() const { return !islands_.empty(); }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::MatrixXd inverse() const;
+
+ private:
+  /// Coordinates that meet each other and the border, but no others.
+  struct Island {
+    std::vector<Eigen::Index> places;
+    Eigen::MatrixXd inverse;    ///< of its own block D
+    Eigen::MatrixXd to_border;  ///< D⁻¹B
+  };
+
+  bool findIslands(const Eigen::MatrixXd& information);
+  bool factorise(const Eigen::MatrixXd& information, const Eigen::VectorXd& more);
+  void takeIsland(const Eigen::MatrixXd& information, std::size_t first);
+
+  std::vector<Eigen::Index> border_;
+  std::vector<Island> islands_;
+  std::vector<int> state_;  ///< per coordinate, while islands are found
+  Eigen::LLT<Eigen::MatrixXd> rest_;
+  bool is_positive_ = false;
+};
+
+}  // namespace sac
