@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "samples_per_coil.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
@@ -51,26 +52,6 @@ CycleRequest parseCycle(const std::string& word) {
   return {name == "poles" ? Cycle::kPoles : Cycle::kCoil, parseCoil(word.substr(colon + 1), word)};
 }
 
-/// Samples that identify each coil: those with a torque and no other coil excited.
-std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
-                                        const std::vector<Sample>& samples,
-                                        const EstimationOptions& options) {
-  std::vector<std::size_t> counts(model.hasTorqueModel() ? model.space().coils() : 0, 0);
-  if (counts.empty()) {
-    return counts;
-  }
-  for (const Sample& sample : samples) {
-    if (sample.validation || !sample.has_torque) {
-      continue;
-    }
-    const std::vector<Excitation> excited = excitedCoils(sample, options.current_threshold);
-    if (excited.size() == 1) {
-      ++counts.at(excited.front().coil);
-    }
-  }
-  return counts;
-}
-
 /// Samples that serve, of one pose at most so many, up to `enough` in all. Poses differ by the
 /// least motion in some joint.
 template <typename Serves>
@@ -108,6 +89,25 @@ bool hasTorque(const Sample& sample) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
+                                        const std::vector<Sample>& samples,
+                                        const EstimationOptions& options) {
+  std::vector<std::size_t> counts(model.hasTorqueModel() ? model.space().coils() : 0, 0);
+  if (counts.empty()) {
+    return counts;
+  }
+  for (const Sample& sample : samples) {
+    if (sample.validation || !sample.has_torque) {
+      continue;
+    }
+    const std::vector<Excitation> excited = excitedCoils(sample, options.current_threshold);
+    if (excited.size() == 1) {
+      ++counts.at(excited.front().coil);
+    }
+  }
+  return counts;
+}
 
 std::vector<CycleRequest> parseCycles(const std::string& text) {
   std::vector<CycleRequest> requests;

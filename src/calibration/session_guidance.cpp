@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 
+#include "samples_per_coil.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -38,7 +40,11 @@ class Guide {
         const std::vector<Sample>& samples,
         const SessionProgress& progress,
         const EstimationOptions& options)
-      : model_(model), samples_(samples), progress_(progress), options_(options) {}
+      : model_(model),
+        samples_(samples),
+        progress_(progress),
+        options_(options),
+        samples_per_coil_(samplesPerCoil(model, samples, options)) {}
 
   std::string step() const {
     if (!progress_.joint_done) {
@@ -59,16 +65,13 @@ class Guide {
   }
 
  private:
-  std::size_t serving(const CycleRequest& request) const {
-    return selectObservations(samples_, request, options_).size();
-  }
-
   std::size_t advised(Cycle cycle) const { return demandOf(cycle, model_.space().poles()).advised; }
 
   std::string jointStep() const {
     const std::size_t held = progress_.joint.samples;
     if (progress_.joint.isSeenWell()) {
-      return "Call calibrate_joint: " + number(serving({Cycle::kJoint})) +
+      return "Call calibrate_joint: " +
+             number(selectObservations(samples_, {Cycle::kJoint}, options_).size()) +
              " samples have an orientation.";
     }
     return "Move the rotor to a new pose with each joint turned, let it rest, and call capture: " +
@@ -77,21 +80,13 @@ class Guide {
 
   /// Coil that was excited alone most often; the first when none was.
   std::size_t referenceCoil() const {
-    std::size_t best = 0;
-    std::size_t most = 0;
-    for (std::size_t coil = 0; coil < model_.space().coils(); ++coil) {
-      const std::size_t held = serving({Cycle::kPoles, coil});
-      if (held > most) {
-        best = coil;
-        most = held;
-      }
-    }
-    return best;
+    const auto most = std::max_element(samples_per_coil_.begin(), samples_per_coil_.end());
+    return static_cast<std::size_t>(std::distance(samples_per_coil_.begin(), most));
   }
 
   std::string polesStep() const {
     const std::size_t coil = referenceCoil();
-    const std::size_t held = serving({Cycle::kPoles, coil});
+    const std::size_t held = samples_per_coil_.at(coil);
     if (held >= advised(Cycle::kPoles)) {
       return "Call calibrate_poles with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
@@ -111,7 +106,7 @@ class Guide {
   }
 
   std::string coilStep(std::size_t coil) const {
-    const std::size_t held = serving({Cycle::kCoil, coil});
+    const std::size_t held = samples_per_coil_.at(coil);
     if (held >= advised(Cycle::kCoil)) {
       return "Call calibrate_coil with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
@@ -135,6 +130,7 @@ class Guide {
   const std::vector<Sample>& samples_;
   const SessionProgress& progress_;
   const EstimationOptions& options_;
+  std::vector<std::size_t> samples_per_coil_;
 };
 
 std::uint32_t count(std::size_t value) {
