@@ -20,7 +20,7 @@ namespace {
 /// A message as somebody got it: time and topic of its record, and its bytes.
 using Handed = std::tuple<std::uint64_t, std::string, std::string>;
 
-const std::vector<std::string> kTopics = {"/a", "/b", "/c"};
+const std::vector<std::string> wanted_topics = {"/a", "/b", "/c"};
 
 class BagReaderTest : public testing::Test {
  protected:
@@ -39,14 +39,14 @@ class BagReaderTest : public testing::Test {
     bag.setChunkThreshold(4096);
     std::mt19937_64 generator(recording.seed);
     std::uniform_int_distribution<int> late(0, recording.disorder);
-    std::uniform_int_distribution<std::size_t> topic(0, kTopics.size());
+    std::uniform_int_distribution<std::size_t> topic(0, wanted_topics.size());
     for (int n = 0; n < recording.messages; ++n) {
       geometry_msgs::Vector3Stamped message;
       message.header.seq = static_cast<std::uint32_t>(n);
       message.header.frame_id = name;
       const std::size_t k = topic(generator);
       const std::int64_t milliseconds = 1000 + n / 4 + late(generator);
-      bag.write(k < kTopics.size() ? kTopics[k] : "/not_wanted",
+      bag.write(k < wanted_topics.size() ? wanted_topics[k] : "/not_wanted",
                 ros::Time(1e-3 * static_cast<double>(milliseconds)),
                 message);
     }
@@ -59,7 +59,7 @@ class BagReaderTest : public testing::Test {
     rosbag::View view;
     for (const std::string& path : paths) {
       bags.push_back(std::make_unique<rosbag::Bag>(path));
-      view.addQuery(*bags.back(), rosbag::TopicQuery(kTopics));
+      view.addQuery(*bags.back(), rosbag::TopicQuery(wanted_topics));
     }
     std::vector<Handed> handed;
     for (const rosbag::MessageInstance& message : view) {
@@ -79,7 +79,7 @@ class BagReaderTest : public testing::Test {
     for (const auto& bag : bags) {
       group.push_back(bag.get());
     }
-    BagReader reader(group, kTopics, most_unpacked);
+    BagReader reader(group, wanted_topics, most_unpacked);
     std::vector<Handed> handed;
     BagMessage message;
     while (reader.next(message)) {
