@@ -6,6 +6,7 @@ matplotlib.use("Agg")
 
 # pylint: disable=wrong-import-position
 from matplotlib import pyplot
+from matplotlib.ticker import MaxNLocator
 
 from .comparison import HIGH, LOW, MAXIMUM, MEDIAN, MINIMUM, noise_rows, printed_deviations
 
@@ -20,7 +21,14 @@ def new(xlabel, ylabel):
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
+    if xlabel != "time [s]":
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     return figure, axes
+
+
+def put_legend(axes):
+    """Above the picture, where it covers nothing."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, ncols=3, fontsize="small")
 
 
 def band(axes, x, spreads, label, color):
@@ -37,7 +45,7 @@ def convergence(spreads, ylabel, paper):
     for n, (x, y) in enumerate(paper):
         axes.plot(x, y, "x", color=PAPER, label="the paper" if n == 0 else None)
     axes.set_yscale("log")
-    axes.legend(frameon=False)
+    put_legend(axes)
     return figure
 
 
@@ -49,9 +57,9 @@ def figure_6(study, published):
     band(axes, range(count), ours["axis_deviation_newton"][:count], "Gauss–Newton", OURS)
     printed = printed_deviations(published)
     # The table's last digit is 1e-6.
-    axes.plot(range(1, len(printed) + 1), [max(p, 1e-6) for p in printed], "x", color=PAPER, label="Table 4")
+    axes.plot(range(1, len(printed) + 1), [max(p, 1e-6) for p in printed], "x", color=PAPER, label="Table 4, to its last digit")
     axes.set_yscale("log")
-    axes.legend(frameon=False)
+    put_legend(axes)
     return figure
 
 
@@ -64,12 +72,12 @@ def figure_7(study, published):
 def figure_8(study, _published):
     rows = [row for row in study["level_1_noise"] if row["orientations"] > 3]
     x = [row["orientations"] for row in rows]
-    figure, axes = new("orientations", "[rad]")
+    figure, axes = new("orientations", "ε₁, noise, error [rad]")
     band(axes, x, [row["epsilon_1"] for row in rows], "ε₁ after calibration", OURS)
     axes.plot(x, [row["added_noise"][MEDIAN] for row in rows], color="black", linestyle="--", label="added noise")
     axes.plot(x, [row["true_error"][MEDIAN] for row in rows], color=SECOND, label="true error elsewhere")
-    axes.set_ylim(0.0, 0.002)
-    axes.legend(frameon=False)
+    axes.set_ylim(bottom=0.0)
+    put_legend(axes)
     return figure
 
 
@@ -89,7 +97,7 @@ def against_measurements(situation, key, ylabel, factor=1.0):
         rows = noise_rows(situation, orientations)
         x = [row["measurements"] for row in rows]
         band(axes, x, [[factor * v for v in row[key]] for row in rows], f"{orientations} orientations", color)
-    axes.legend(frameon=False)
+    put_legend(axes)
     return figure
 
 
@@ -126,14 +134,14 @@ def figure_14(study, published):
         load = ", loaded" if run["loaded"] else ""
         axes.plot(
             run["time"],
-            [max(1e-7, error) for error in run["rotation_error"]],
+            [max(SMALLEST, error) for error in run["rotation_error"]],
             color=colors[run["model"]],
             linestyle="--" if run["loaded"] else "-",
             label=run["model"].replace("_", " ") + load,
         )
     axes.axhline(published["figure_14"]["max_error_before"], color="black", linewidth=0.6)
     axes.set_yscale("log")
-    axes.legend(frameon=False, ncols=2)
+    put_legend(axes)
     return figure
 
 
