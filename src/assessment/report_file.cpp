@@ -227,6 +227,21 @@ void writeCoverage(YamlWriter& writer, const CalibrationSession& session) {
   writer.entry(2, "coils", counts(coverage.coils));
 }
 
+/// Unit vectors of the joints' axes: in the reference pose, in the frame of the description.
+void writeJointAxes(YamlWriter& writer, const CalibrationSession& session) {
+  const ParameterSpace& space = session.model().space();
+  const Actuator identified = space.actuatorAt(session.state().belief.x);
+  std::vector<std::string> lines;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    YamlLine line;
+    line.add("name", yamlText(space.nominal().joints[k].name));
+    line.add("nominal", yamlNumbers(space.nominal().joints[k].axis));
+    line.add("identified", yamlNumbers(identified.joints[k].axis));
+    lines.push_back(line.text());
+  }
+  writer.list(1, "joint_axes", lines);
+}
+
 void writeWorkspace(YamlWriter& writer, const CalibrationSession& session) {
   const WorkspaceMap map = workspaceMap(session.model(), session.state().belief);
   writer.map(1, "workspace");
@@ -339,6 +354,7 @@ std::string renderReport(const CalibrationSession& session,
     writeValidation(writer, *validation);
   }
   writeParameters(writer, session);
+  writeJointAxes(writer, session);
   writeCoverage(writer, session);
   writeWorkspace(writer, session);
   writeInfluences(writer, influences);

@@ -28,6 +28,8 @@ PROBE = """<script>addEventListener('load', () => {
     scroll: document.documentElement.scrollWidth,
     height: document.documentElement.scrollHeight,
     overflowing: all.filter(wide).map((node) => node.outerHTML.slice(0, 80)),
+    cut: Array.from(document.querySelectorAll('.scroll')).filter((box) => box.scrollWidth > box.clientWidth + 1)
+      .map((box) => box.getAttribute('aria-label')),
     broken: Array.from(document.images).filter((picture) => !picture.naturalWidth).length,
     smallest: Math.min(...Array.from(document.querySelectorAll('p, li, td, dd'), (node) =>
       parseFloat(getComputedStyle(node).fontSize))),
@@ -75,6 +77,7 @@ class ReportLayout(unittest.TestCase):
                 self.assertEqual(measures["inner"], width)
                 self.assertLessEqual(measures["scroll"], width)
                 self.assertEqual(measures["overflowing"], [])
+                self.assertEqual(measures["cut"], [])
                 self.assertEqual(measures["broken"], 0)
                 self.assertGreaterEqual(measures["smallest"], 12.0)
                 self.assertGreater(measures["height"], 3000)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The page of a report: complete, self-contained, and harmless whatever names it is given."""
 
+import base64
 import html.parser
 import os
 import re
@@ -104,6 +105,50 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(len(set(descriptions)), len(descriptions))
         for description in descriptions:
             self.assertGreater(len(description), 40)
+
+    def test_every_axis_has_numbers(self):
+        for attributes in self.page.of("img"):
+            picture = base64.b64decode(attributes["src"].split(",", 1)[1]).decode("utf-8")
+            parts = re.split(r'<g id="matplotlib\.axis_(\d+)"', picture)
+            counts = {number: len(re.findall("<text", part.split('<g id="axes')[0])) for number, part in zip(parts[1::2], parts[2::2])}
+            self.assertTrue(counts, attributes["alt"])
+            for number, texts in counts.items():
+                # Two numbers and the name of the axis; of a column for colours and of shared axes, less.
+                if number == "2":
+                    self.assertGreaterEqual(texts, 3, attributes["alt"])
+
+    def test_a_short_logarithmic_axis_has_numbers(self):
+        figures = dict(self.figures)
+        cycle = dict(self.figures["cycles"][0], cycle="refine", error_unit="1", error_history=[0.97, 0.91])
+        figures["cycles"] = [cycle]
+        picture = next(item for item in self.render(figures, "short").of("img") if item["alt"].startswith("Refinement"))
+        svg = base64.b64decode(picture["src"].split(",", 1)[1]).decode("utf-8")
+        axis = svg.split('<g id="matplotlib.axis_2"')[1]
+        numbers = [float(text) for text in re.findall(r">([0-9.]+)</text>", axis)]
+        self.assertGreaterEqual(len(numbers), 2, numbers)
+
+    def test_tells_errors_before_and_after_and_axes_as_vectors(self):
+        self.assertIn("Orientations, before → after", self.page.text)
+        for axis in self.figures["joint_axes"]:
+            cells = self.page.row(axis["name"])
+            shown = [float(value.replace("−", "-")) for value in cells[2].split(", ")]
+            self.assertAlmostEqual(sum(value * value for value in shown), 1.0, delta=1e-4)
+            for value, exact in zip(shown, axis["identified"]):
+                self.assertAlmostEqual(value, exact, delta=1e-5)
+
+    def test_tells_what_changed_since_the_last_calibration(self):
+        moved = self.figures["parameters"][0]
+        earlier = [dict(item) for item in self.figures["parameters"]]
+        earlier[0]["value"] += 10.0 * moved["stddev"]
+        for revision, parameters in ((3, earlier), (7, self.figures["parameters"])):
+            folder = os.path.join(self.folder.name, f"report_revision_{revision}")
+            os.makedirs(folder)
+            figures = dict(self.figures, revision=revision, parameters=parameters)
+            page = self.render(figures, os.path.join(folder, "report"))
+        self.assertIn("revision 3: 1 of", " ".join(page.text.split()))
+        rows = [row for row in page.rows if row[0] == moved["name"] and len(row) == 3]
+        self.assertAlmostEqual(float(rows[0][2]), 10.0 / 2.0**0.5, delta=0.01)
+        self.assertNotIn("Since the last calibration", self.page.text)
 
     def test_no_parameter_is_without_uncertainty(self):
         for parameter in self.figures["parameters"]:

@@ -18,16 +18,23 @@ QUANTITIES = ("orientation", "torque")
 MOST_INFLUENTIAL = 8
 
 
+def cross_and_dot(one, other):
+    """Vector product and scalar product of two vectors."""
+    cross = [one[i - 2] * other[i - 1] - one[i - 1] * other[i - 2] for i in range(3)]
+    return cross, sum(a * b for a, b in zip(one, other))
+
+
 def name_of(cycle):
     """A cycle as people call it."""
     return CYCLES.get(cycle["cycle"], cycle["cycle"].capitalize()).format(cycle["coil"])
 
 
 class Report:
-    """The report.yaml of one calibration."""
+    """The report.yaml of one calibration, and an earlier one of the same unit, where there is one."""
 
-    def __init__(self, report):
+    def __init__(self, report, previous=None):
         self._report = report
+        self._previous = previous
         self._cycles = report["cycles"]
         self._parameters = report["parameters"]
         self._influences = report["influences"]
@@ -81,6 +88,7 @@ class Report:
         """The few numbers that matter most."""
         identified = sum(item["identified"] for item in self._parameters)
         cards = [("Identified", f"{identified} of {len(self._parameters)}", "parameters")]
+        cards += self._errors_before_and_after()
         last = self._last_success()
         if last:
             cards.append(("Orientation error", with_unit(last["orientation_uncertainty"], "rad", 2), "expected, 1 σ"))
@@ -91,6 +99,53 @@ class Report:
         if validation:
             cards.append(("Held-out χ²", validation["chi_square"], f"probability {validation['probability']}"))
         return cards
+
+    def _errors_before_and_after(self):
+        """Of the first cycles of orientations and torques that succeeded: by the drawing, and calibrated."""
+        cards = []
+        for kinds, title in ((("joint", "motion"), "Orientations"), (("poles",), "Torques")):
+            cycle = next((one for one in self._cycles if one["success"] and one["cycle"] in kinds), None)
+            if cycle and cycle["error_history"] and cycle["error_unit"] != "1":
+                change = change_of(cycle["error_history"][0], cycle["error_history"][-1], cycle["error_unit"])
+                cards.append((f"{title}, before → after", change, f"error, cycle {name_of(cycle).lower()}"))
+        return cards
+
+    def joint_axes(self):
+        """Rows of the joints' unit vectors: nominal, identified, and the angle between."""
+        rows = []
+        for axis in self._report.get("joint_axes", []):
+            cross, cosine = cross_and_dot(axis["nominal"], axis["identified"])
+            angle = math.atan2(math.sqrt(sum(value * value for value in cross)), cosine)
+            vectors = [", ".join(f"{value:.5f}".replace("-", "−") for value in axis[key]) for key in ("nominal", "identified")]
+            rows.append({"name": axis["name"], "nominal": vectors[0], "identified": vectors[1], "angle": with_unit(angle, "rad")})
+        return rows
+
+    # ---- since the last calibration ------------------------------------------------------------------
+
+    def since_last(self):
+        """What changed since an earlier report of this unit: date, count, rows; None without one."""
+        if self._previous is None or self._previous["serial"] != self._report["serial"]:
+            return None
+        before = {item["name"]: item for item in self._previous["parameters"] if item["identified"]}
+        moved = []
+        for item in self._parameters:
+            other = before.get(item["name"])
+            if other and item["identified"]:
+                change = item["value"] - other["value"]
+                stddev = math.hypot(item["stddev"], other["stddev"])
+                moved.append((abs(change) / stddev if stddev > 0.0 else math.inf if change else 0.0, item, change))
+        moved.sort(key=lambda entry: (-entry[0], entry[1]["name"]))
+        return {
+            "date": self._previous["date"].replace("T", " ").replace("Z", " UTC"),
+            "revision": self._previous.get("revision"),
+            "compared": len(moved),
+            "beyond": sum(ratio > 3.0 for ratio, _, _ in moved),
+            "rows": [
+                {"name": item["name"], "change": signed(1e3 * change), "ratio": significant(ratio)}
+                for ratio, item, change in moved[:MOST_INFLUENTIAL]
+                if ratio > 0.0
+            ],
+        }
 
     # ---- parameters ----------------------------------------------------------------------------------
 
@@ -171,6 +226,12 @@ class Report:
                 influential = [item["id"] for item in self._most_influential() if item["quantity"] == quantity]
                 pictures.append(figures.residuals_of(quantity, residuals, influential))
                 pictures.append(figures.standardized_of(quantity, residuals, influential))
+        positions = {sample["id"]: sample["joint_position"] for sample in self._report["samples"]}
+        for quantity in QUANTITIES:
+            residuals = [item for item in self._residuals(quantity) if item["id"] in positions]
+            if residuals:
+                joints = self._report["coverage"]["joints"]
+                pictures.append(figures.residuals_by_joint(quantity, residuals, positions, joints))
         return pictures
 
     def residual_cycle(self):

@@ -61,7 +61,7 @@ STYLE = {
 class Figure:
     """One picture while it is drawn: with Figure(title) as figure: figure.axes.plot(...)"""
 
-    def __init__(self, name, title, rows=1, size=SIZE):
+    def __init__(self, name, title, rows=1, size=SIZE, sharex=True):
         self.title = title
         self.alt = title
         self.source = ""
@@ -69,7 +69,7 @@ class Figure:
         self._context = matplotlib.rc_context({**STYLE, "svg.hashsalt": name})
         self._context.__enter__()
         self.figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
-        axes = self.figure.subplots(rows, 1, squeeze=False, sharex=rows > 1)
+        axes = self.figure.subplots(rows, 1, squeeze=False, sharex=sharex)
         self.panels = list(axes[:, 0])
         self.axes = self.panels[0]
         self.axes.set_title(title)
@@ -93,11 +93,16 @@ def _whole_numbers(axis):
     axis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True, nbins=8))
 
 
-def _plain_logarithm(axes):
-    """A logarithmic axis with 0.1, 1, 10 rather than powers."""
+def _plain_logarithm(axes, values):
+    """A logarithmic axis with 0.1, 1, 10 rather than powers, and with numbers between where it is short."""
     axes.set_yscale("log")
+    positive = [value for value in values if value > 0.0]
+    is_short = positive and max(positive) < 100.0 * min(positive)
+    axes.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if is_short else (1.0,)))
     axes.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: significant(value, 2)))
     axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    if is_short:
+        axes.set_ylim(0.7 * min(positive), 1.4 * max(positive))
 
 
 CYCLE_TITLES = {
@@ -122,7 +127,7 @@ def convergence(kind, error_unit, cycles):
             errors = [max(factor * error, 1e-12) for error in cycle["error_history"]]
             colour = BLUE if cycle["success"] else RED
             axes.plot(errors, marker="o", color=colour, alpha=0.9 if len(cycles) < 3 else 0.45)
-        _plain_logarithm(axes)
+        _plain_logarithm(axes, [max(factor * e, 1e-12) for cycle in cycles for e in cycle["error_history"]])
         axes.set_xlabel("iteration")
         axes.set_ylabel(f"error [{unit}]" if unit else "error [1]")
         _whole_numbers(axes.xaxis)
@@ -142,7 +147,7 @@ def _from_zero(axes, values):
 def _logarithmic_if_wide(axes, values):
     ordered = sorted(value for value in values if value > 0.0)
     if ordered and ordered[-1] > 20.0 * ordered[len(ordered) // 2]:
-        _plain_logarithm(axes)
+        _plain_logarithm(axes, ordered)
     else:
         _from_zero(axes, ordered)
 
@@ -204,6 +209,27 @@ def standardized_of(quantity, residuals, influential):
         figure.alt = (
             f"Standardised {quantity} residual of each sample; {100 * share:.0f} % of those used lie below the dashed "
             f"line at {USUAL_STANDARDIZED:.2f}, where 95 % should."
+        )
+    return figure
+
+
+def residuals_by_joint(quantity, residuals, positions, joints):
+    """Residual norms over each joint angle: what depends on an angle is a fault of the model, not noise."""
+    factor, unit = SHOWN[residuals[0]["unit"]]
+    chosen = [item for item in residuals if not item["rejected"] and item["id"] in positions]
+    values = [factor * item["residual"] for item in chosen]
+    as_pixels = len(chosen) > MOST_VECTORS
+    title = f"{quantity.capitalize()} residuals by joint angle"
+    with Figure(f"by_joint_{quantity}", title, rows=len(joints), size=(4.7, 5.4), sharex=False) as figure:
+        for place, (axes, joint) in enumerate(zip(figure.panels, joints)):
+            angles = [positions[item["id"]][place] for item in chosen]
+            axes.plot(angles, values, ".", color=COLOURS[quantity], rasterized=as_pixels)
+            _from_zero(axes, values)
+            axes.set_xlabel(f"{joint['name']} [rad]")
+            axes.set_ylabel(f"[{unit}]")
+        figure.alt = (
+            f"{quantity.capitalize()} residual of {len(chosen)} samples over the angle of "
+            f"{', '.join(joint['name'] for joint in joints)}, at most {significant(max(values, default=0.0))} {unit}."
         )
     return figure
 

@@ -9,8 +9,8 @@ from .content import Report
 TEMPLATE = "report_template.html"
 
 
-def render_page(report):
-    """HTML of the page, one file that needs no other."""
+def render_page(report, previous=None):
+    """HTML of the page, one file that needs no other; with what changed since a previous report of the unit."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(os.path.dirname(os.path.abspath(__file__))),
         # Names come from descriptions and recordings: nothing in them is markup.
@@ -19,4 +19,4 @@ def render_page(report):
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(TEMPLATE).render(report=Report(report))
+    return environment.get_template(TEMPLATE).render(report=Report(report, previous))
