@@ -7,6 +7,8 @@
 
 #include "marker_shapes.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
@@ -24,6 +26,10 @@ constexpr double kNominalLength = 0.030;  ///< looks out where both axes agree
 constexpr double kGlowMargin = 0.0015;
 constexpr double kDot = 0.006;
 constexpr double kDotGap = 0.008;
+constexpr double kNumberGap = 0.006;     ///< between an arrow's end and its number
+constexpr double kNumberHeight = 0.009;  ///< of a capital letter
+constexpr double kLegendHeight = 0.006;
+constexpr double kLegendDistance = 0.045;  ///< beyond the shaft's end and the dots
 
 constexpr double kFullGlow = 2.0;          // [A]
 constexpr double kSmallestGlow = 0.02;     // of the full one
@@ -31,6 +37,7 @@ constexpr double kLargestHalfAngle = 1.2;  // [rad]
 constexpr double kBadResidual = 3.0;
 constexpr double kSameDirection = 0.02;  // [rad]
 
+constexpr MarkerColor kInk = {0.1F, 0.12F, 0.15F, 1.0F};
 constexpr MarkerColor kGrey = {0.55F, 0.55F, 0.55F, 0.9F};
 constexpr MarkerColor kNorth = {0.85F, 0.15F, 0.15F, 1.0F};
 constexpr MarkerColor kSouth = {0.15F, 0.3F, 0.85F, 1.0F};
@@ -115,6 +122,7 @@ class Drawing {
     addCoils();
     addGhost();
     addSamples();
+    addLegend();
     return array_;
   }
 
@@ -167,6 +175,15 @@ class Drawing {
     Marker drawn = emptyMarker(group.frame, "nominal " + group.name + "s", id, kGrey);
     drawArrow(drawn, nominal, group.nominal_from, group.nominal_to, kThinShaft);
     array_.markers.push_back(drawn);
+
+    // Numbers of messages and advice, which count from 1.
+    Marker number = emptyMarker(group.frame, group.name + " numbers", id, kInk);
+    const double outside = std::max({group.to, group.from, group.nominal_from, group.nominal_to});
+    drawText(number,
+             (outside + kNumberGap) * axis,
+             std::to_string(numberOf(static_cast<std::size_t>(index))),
+             kNumberHeight);
+    array_.markers.push_back(number);
 
     Marker cone = emptyMarker(group.frame, group.name + " uncertainty", id, kUncertain);
     const auto place = static_cast<std::size_t>(index);
@@ -243,6 +260,24 @@ class Drawing {
       dots.action = Marker::DELETE;
     }
     array_.markers.push_back(dots);
+  }
+
+  /// What the colours mean, above everything.
+  void addLegend() {
+    Marker legend = emptyMarker(scene_.frames.stator, "legend", 0, kInk);
+    const std::string times = "x " + shortNumber(scene_.magnification);
+    drawText(legend,
+             (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
+             "red, blue: north, south poles; copper: coils; yellow: its current flows\n"
+             "thick arrow: identified axis, its error " +
+                 times +
+                 "; thin grey: as drawn\n"
+                 "violet cone: 1 sigma " +
+                 times +
+                 "; faint rotor: where the drawing says it is\n"
+                 "dots: samples; green fit, red do not, black are rejected, grey await a cycle",
+             kLegendHeight);
+    array_.markers.push_back(legend);
   }
 
   const CalibrationScene& scene_;

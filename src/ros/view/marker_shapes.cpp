@@ -62,6 +62,18 @@ void drawCylinder(
   marker.scale.z = length;
 }
 
+void drawText(Marker& marker,
+              const Eigen::Vector3d& place,
+              const std::string& text,
+              double height) {
+  marker.type = Marker::TEXT_VIEW_FACING;
+  marker.pose.position = pointToRos(place);
+  marker.text = text;
+  marker.scale.x = height;
+  marker.scale.y = height;
+  marker.scale.z = height;
+}
+
 void drawCone(
     Marker& marker, const Eigen::Vector3d& axis, double from, double to, double half_angle) {
   constexpr int kSegments = 24;

@@ -49,4 +49,10 @@ void drawCone(visualization_msgs::Marker& marker,
               double to,
               double half_angle);
 
+/// Words that face the camera, their middle at `place` [m], a capital letter `height` tall [m].
+void drawText(visualization_msgs::Marker& marker,
+              const Eigen::Vector3d& place,
+              const std::string& text,
+              double height);
+
 }  // namespace sac

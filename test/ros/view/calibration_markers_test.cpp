@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -193,6 +194,21 @@ TEST(CalibrationMarkers, ADotForEachOrientationThatWasSampled) {
   EXPECT_NEAR(dots.points[at].x / dots.points[at].z, 0.75, 1e-3);
   // The worst of the three that stand together.
   EXPECT_GT(dots.colors[at].r, 2.0F * dots.colors[at].g);
+}
+
+TEST(CalibrationMarkers, NumbersCountAsMessagesDo) {
+  const visualization_msgs::MarkerArray array = calibrationMarkers(paperScene());
+  EXPECT_EQ(markerOf(array, "pole numbers", 7).text, "8");
+  const Marker& number = markerOf(array, "coil numbers", 0);
+  EXPECT_EQ(number.text, "1");
+  // Outside of everything that stands on its axis.
+  const auto distance = [](const geometry_msgs::Point& point) {
+    return Eigen::Vector3d(point.x, point.y, point.z).norm();
+  };
+  for (const geometry_msgs::Point& end : markerOf(array, "coils", 0).points) {
+    EXPECT_GT(distance(number.pose.position), distance(end));
+  }
+  EXPECT_NE(markerOf(array, "legend", 0).text.find("coils"), std::string::npos);
 }
 
 TEST(CalibrationMarkers, IdsAreUniqueAndShapesAreFinite) {
