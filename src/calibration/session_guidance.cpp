@@ -47,24 +47,44 @@ class Guide {
         samples_per_coil_(samplesPerCoil(model, samples, options)) {}
 
   std::string step() const {
+    if (!progress_.plan_step.empty()) {
+      return progress_.plan_step;
+    }
+    if (progress_.saved && samples_.empty()) {
+      return "The parameters in force are saved, and no sample is in use: there is nothing to do. "
+             "To calibrate anew, capture at new poses.";
+    }
     if (!progress_.joint_done) {
       return jointStep();
     }
-    if (model_.hasTorqueModel()) {
-      if (!progress_.poles_done) {
-        return polesStep();
-      }
-      if (const auto coil = firstOpenCoil()) {
-        return coilStep(*coil);
-      }
-      if (!progress_.refined) {
-        return "Call refine: it identifies all parameters at once, to the best accuracy.";
-      }
+    return model_.hasTorqueModel() ? torqueStep() : closingStep();
+  }
+
+ private:
+  std::string torqueStep() const {
+    if (!progress_.refined && (isSeenEverywhere() || isIdentifiedOnce())) {
+      return "Call refine: it identifies all parameters at once, to the best accuracy.";
+    }
+    if (!progress_.poles_done) {
+      return polesStep();
+    }
+    if (const auto coil = firstOpenCoil()) {
+      return coilStep(*coil);
     }
     return closingStep();
   }
 
- private:
+  bool isIdentifiedOnce() const { return progress_.poles_done && !firstOpenCoil(); }
+
+  /// The torques tell of every pole and coil, without enough of a coil alone for its own cycle:
+  /// those of a planned session, which no paper's protocol is to follow.
+  bool isSeenEverywhere() const {
+    const auto is_seen = [](const Coverage& one) { return one.samples > 0; };
+    return samples_per_coil_.at(referenceCoil()) < advised(Cycle::kPoles) &&
+           std::all_of(progress_.poles.begin(), progress_.poles.end(), is_seen) &&
+           std::all_of(progress_.coils.begin(), progress_.coils.end(), is_seen);
+  }
+
   std::size_t advised(Cycle cycle) const { return demandOf(cycle, model_.space().poles()).advised; }
 
   std::string jointStep() const {
@@ -117,6 +137,14 @@ class Guide {
   }
 
   std::string closingStep() const {
+    if (progress_.contradicted) {
+      return "Do not use the parameters: held-out samples contradict them. Call diagnose, look at "
+             "the rejected samples, then calibrate with more poses and call validate again.";
+    }
+    if (progress_.saved && progress_.validation_samples == 0) {
+      return "The calibration is saved, and nothing judges it: capture a few poses with validation "
+             "set and call validate.";
+    }
     if (progress_.saved) {
       return "Nothing is left to do: the calibration is complete and saved.";
     }

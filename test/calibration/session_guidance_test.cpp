@@ -54,6 +54,49 @@ TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
   EXPECT_EQ(nextStep(session, progress), "Call validate, and save when it agrees.");
   progress.saved = true;
   EXPECT_NE(nextStep(session, progress).find("Nothing is left to do"), std::string::npos);
+  progress.validation_samples = 0;
+  EXPECT_NE(nextStep(session, progress).find("nothing judges it"), std::string::npos);
+}
+
+TEST(SessionGuidance, WhatIsContradictedIsNeverDone) {
+  CalibrationSession session = paperSession();
+  for (const CycleRequest& request : progressOf(session).next_cycles) {
+    ASSERT_TRUE(session.run(request).success);
+  }
+  SessionProgress progress = progressOf(session);
+  progress.refined = true;
+  progress.contradicted = true;
+  for (const bool saved : {false, true}) {
+    progress.saved = saved;
+    EXPECT_EQ(nextStep(session, progress).rfind("Do not use the parameters", 0), 0U);
+  }
+}
+
+TEST(SessionGuidance, WithoutSamplesWhatWasSavedStays) {
+  const CalibrationSession session({scenarios::paperNominal()}, {}, {});
+  SessionProgress progress = progressOf(session);
+  progress.saved = true;
+  EXPECT_NE(nextStep(session, progress).find("no sample is in use"), std::string::npos);
+  progress.saved = false;
+  EXPECT_EQ(nextStep(session, progress).rfind("Move the rotor", 0), 0U);
+}
+
+TEST(SessionGuidance, APlanGoesFirst) {
+  const CalibrationSession session = paperSession();
+  SessionProgress progress = progressOf(session);
+  progress.plan_step = "Go on with the plan.";
+  EXPECT_EQ(nextStep(session, progress), "Go on with the plan.");
+}
+
+TEST(SessionGuidance, SamplesOfAPlanAreRefinedAtOnce) {
+  scenarios::Generator generator(1);
+  std::vector<Sample> samples = scenarios::paperSession(
+      scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator);
+  // 12 torques of coil 1 alone, where its own cycle wants 24, and all those of the other coils.
+  samples.erase(samples.begin() + 22, samples.begin() + 40);
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  EXPECT_EQ(nextStep(session).substr(0, 12), "Call refine:") << nextStep(session);
 }
 
 TEST(SessionGuidance, CountsWhatIsMissing) {

@@ -35,9 +35,12 @@ struct SessionProgress {
   std::vector<bool> coil_done;                ///< per coil
   bool refined = false;                       ///< by the refinement, since the last other cycle
   bool saved = false;                         ///< the parameters in force are in a file
+  bool contradicted = false;                  ///< held-out samples disagree with what is in force
+  std::string plan_step;  ///< next pose of the plan that is followed, see planStep(); empty: none
 };
 
-/// What samples and parameters tell of the progress; `refined` and `saved` are not in them.
+/// What samples and parameters tell of the progress; `refined`, `saved`, `contradicted` and
+/// `plan_step` are not in them.
 SessionProgress progressOf(const CalibrationModel& model,
                            const std::vector<Sample>& samples,
                            const CalibrationState& state,

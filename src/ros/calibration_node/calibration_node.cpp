@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
@@ -159,6 +160,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
   answer(response, [&] {
     const std::size_t count = session_.clearSamples(utcDate());
     intake_.forgetMotion();
+    plan_.clear();
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
   });
@@ -215,6 +217,9 @@ void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response&
     topics_.publishReport(response.report);
     if (report.success) {
       topics_.publishParameters(session_);
+      if (request.cycle == Cycle::kRefine) {
+        plan_.clear();
+      }
     }
     publishStatus();
     if (!report.success) {
@@ -257,7 +262,11 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
           held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
     }
     problem.held = &held;
-    response = planToRos(sac::planPoses(problem, plan_options));
+    const PosePlan plan = sac::planPoses(problem, plan_options);
+    response = planToRos(plan);
+    const std::lock_guard<std::mutex> lock(session_mutex_);
+    plan_ = plan.poses;
+    publishStatus();
   } catch (const std::exception& error) {
     response.success = 0;
     response.message = printable(error.what());
@@ -370,8 +379,13 @@ Sample CalibrationNode::store(const Sample& sample) {
 void CalibrationNode::publishStatus() {
   try {
     SessionProgress progress = session_.progress();
+    const CalibrationSession& calibration = session_.calibration();
+    const GradedCalibration graded = gradeCalibration(calibration);
     progress.saved = files_.isSaved(session_.revision().number);
-    topics_.publishStatus(session_, progress, gradeCalibration(session_.calibration()));
+    progress.contradicted = graded.grade == Grade::kContradicted;
+    progress.plan_step =
+        planStep(plan_, calibration.samples(), calibration.config().estimation.current_threshold);
+    topics_.publishStatus(session_, progress, graded);
   } catch (const std::exception& error) {
     last_error_ = error.what();
     ROS_ERROR_STREAM("The status cannot be published: " << error.what());

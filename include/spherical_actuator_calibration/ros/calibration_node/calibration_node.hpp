@@ -21,6 +21,7 @@
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
@@ -106,6 +107,7 @@ class CalibrationNode {
   LiveSession session_;
   std::deque<Sample> waiting_;  ///< captured by itself, not stored yet: the disk did not take it
   std::string last_error_;
+  std::vector<PlannedPose> plan_;  ///< that was asked for last, until it is done or out of use
   CalibrationTopics topics_;
 
   std::atomic<bool> auto_capture_;

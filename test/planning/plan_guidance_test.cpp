@@ -1,0 +1,50 @@
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace sac {
+namespace {
+
+constexpr double kThreshold = 0.05;  // [A]
+
+Sample sampleAt(const Eigen::Vector3d& joints, const std::vector<double>& currents) {
+  Sample sample;
+  sample.joint_position = joints;
+  sample.current = Eigen::Map<const Eigen::VectorXd>(currents.data(), 3);
+  return sample;
+}
+
+TEST(PlanGuidance, LeadsFromPoseToPose) {
+  const Eigen::Vector3d first(0.1, -0.2, 1.5);
+  const Eigen::Vector3d second(0.0, 0.3, 0.0);
+  const std::vector<PlannedPose> plan = {{first, {0, 2}}, {second, {}}};
+  std::vector<Sample> samples;
+  EXPECT_EQ(planStep(plan, samples, kThreshold),
+            "Go on with the plan, 0 of 2 poses are measured: turn the rotor to joints 0.10, -0.20, "
+            "1.50 rad (6, -11, 86 deg) and capture without current, then with coil 1 and 3 excited "
+            "in turn.");
+  samples.push_back(sampleAt(first, {2.0, 0.0, 0.0}));
+  EXPECT_NE(planStep(plan, samples, kThreshold).find("then with coil 3 excited."),
+            std::string::npos);
+  samples.push_back(sampleAt(first + Eigen::Vector3d(0.0, 0.05, 0.0), {0.0, 0.0, 2.0}));
+  EXPECT_EQ(planStep(plan, samples, kThreshold),
+            "Go on with the plan, 1 of 2 poses are measured: turn the rotor to joints 0.00, 0.30, "
+            "0.00 rad (0, 17, 0 deg) and capture.");
+  samples.push_back(sampleAt(second, {0.0, 0.0, 0.0}));
+  EXPECT_EQ(planStep(plan, samples, kThreshold), "");
+}
+
+TEST(PlanGuidance, HeldOutAndDistantSamplesCarryOutNothing) {
+  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}}};
+  Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
+  held_out.validation = true;
+  const Sample distant = sampleAt(Eigen::Vector3d(0.0, 0.0, 0.2), {0.0, 0.0, 0.0});
+  EXPECT_NE(planStep(plan, {held_out, distant}, kThreshold), "");
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""What the node tells the operator to do next, where it is easily wrong."""
+
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NAMESPACE, NODE, PACKAGE, CalibrationClient, CalibrationNode, wait_for
+from emulated_streams import EmulatedStreams
+from spherical_actuator_calibration.srv import PlanPoses
+
+DURATION = 0.3  # [s] of a capture
+POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.2, 0.2, -2.0), (-0.1, -0.2, 0.5))
+HELD_OUT = ((0.1, 0.1, 0.4), (-0.1, 0.2, -0.6), (0.15, -0.1, 1.4), (-0.2, -0.1, 2.4))
+
+
+def turned(message):
+    """An orientation that is far off: the marker was hit."""
+    message.quaternion.x += 0.05
+
+
+class NextStep(unittest.TestCase):
+    """With an actuator that is a joint alone, so that one cycle is the whole calibration."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        actuator = rospy.get_param(f"{NAMESPACE}/actuator")
+        for key in ("poles", "coils", "torque_curve"):
+            actuator.pop(key, None)
+        rospy.set_param(f"{NAMESPACE}/actuator", actuator)
+        self.client = CalibrationClient()
+        self.node = CalibrationNode(folder.name + "/calibration", report_page=False)
+        self.addCleanup(self.node.stop)
+        self.client.start(self.node)
+        self.streams = EmulatedStreams()
+        self.addCleanup(self.streams.stop)
+
+    def says(self, part):
+        wait_for(lambda: part in self.client.latest("status").next_step, part, deadline=30.0)
+
+    def capture(self, pose, validation=False):
+        """Until a sample of this pose is held: on a busy computer streams may be late."""
+        self.streams.move_to(pose)
+
+        def is_captured():
+            answer = self.client.call("capture", duration=DURATION, validation=validation)
+            if answer.success and max(abs(a - b) for a, b in zip(answer.sample.joint_position, pose)) > 1e-2:
+                self.client.call("remove_sample", id=answer.sample.id)
+                return False
+            return answer.success
+
+        wait_for(is_captured, f"a sample at {pose}")
+
+    def calibrate(self):
+        for pose in POSES:
+            self.capture(pose)
+        answer = self.client.call("calibrate_joint", coil=0)
+        self.assertTrue(answer.success, answer.message)
+
+    def test_many_captures_at_one_pose(self):
+        for _ in range(10):
+            self.capture(POSES[0])
+        self.says("3 of 10 are held")
+        self.assertNotIn("Call calibrate_joint", self.client.latest("status").next_step)
+
+    def test_a_plan_is_followed(self):
+        rospy.wait_for_service(NODE + "/plan_poses")
+        plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)(cycle="joint", max_poses=4)
+        self.assertTrue(plan.success, plan.message)
+        for number, pose in enumerate(plan.poses):
+            self.says(f"Go on with the plan, {number} of {len(plan.poses)} poses are measured")
+            self.says(f"joints {pose.joint_position[0]:.2f},")
+            self.capture(pose.joint_position)
+        wait_for(lambda: "plan" not in self.client.latest("status").next_step, "the end of the plan")
+
+    def test_forgotten_samples(self):
+        self.calibrate()
+        self.says("validation set")
+        self.assertTrue(self.client.call("save").success)
+        self.says("nothing judges it")
+        self.assertTrue(self.client.call("clear_samples").success)
+        self.says("no sample is in use")
+
+    def test_a_failed_validation(self):
+        self.calibrate()
+        self.streams.spoil["measured_orientation"] = turned
+        for pose in HELD_OUT:
+            self.capture(pose, validation=True)
+        self.assertFalse(self.client.call("validate", coil=0).success)
+        self.says("Do not use the parameters")
+        saved = self.client.call("save")
+        self.assertTrue(saved.success, saved.message)
+        self.assertIn("Grade: contradicted", saved.message)
+        self.says("Do not use the parameters")
+
+
+if __name__ == "__main__":
+    rospy.init_node("next_step")
+    rostest.rosrun(PACKAGE, "next_step", NextStep, sys.argv)
