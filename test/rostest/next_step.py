@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What the node tells the operator to do next, where it is easily wrong."""
 
+import math
 import sys
 import tempfile
 import unittest
@@ -17,8 +18,11 @@ HELD_OUT = ((0.1, 0.1, 0.4), (-0.1, 0.2, -0.6), (0.15, -0.1, 1.4), (-0.2, -0.1, 
 
 
 def turned(message):
-    """An orientation that is far off: the marker was hit."""
-    message.quaternion.x += 0.05
+    """An orientation that is far off, by 0.1 rad about x: the marker was hit."""
+    q = message.quaternion
+    sine, cosine = math.sin(0.05), math.cos(0.05)
+    x, y, z, w = q.x, q.y, q.z, q.w
+    q.x, q.y, q.z, q.w = cosine * x + sine * w, cosine * y - sine * z, cosine * z + sine * y, cosine * w - sine * x
 
 
 class NextStep(unittest.TestCase):
