@@ -5,6 +5,7 @@
 #include <QHeaderView>
 #include <QMessageBox>
 #include <QTabWidget>
+#include <QTime>
 #include <QVBoxLayout>
 
 #include <pluginlib/class_list_macros.hpp>
@@ -25,6 +26,14 @@ constexpr int kTicksOfHealth = 5;  // looks between two pictures of the health
 constexpr int kNarrowest = 380;    // [px]
 constexpr std::size_t kStreams = 4;
 constexpr double kLongestCapture = 60.0;  // [s]
+constexpr qint64 kFreshAnswer = 60000;    // [ms] in which an answer is of now
+constexpr const char* kLegend =
+    "<small>streams: <span style='color:#1b9e4b'>●</span> good <span "
+    "style='color:#d98200'>●</span> "
+    "look at it <span style='color:#c62828'>●</span> fault <span style='color:#9a9fa6'>●</span> "
+    "silent; samples: <span style='color:#f09628'>■</span> too few "
+    "<span style='color:#3c78c8'>■</span> enough <span style='color:#289646'>■</span> identified"
+    "</small>";
 constexpr int kMostCoils = 999;
 constexpr int kMostRevisions = 1000000;
 
@@ -104,6 +113,9 @@ void CalibrationPanel::build() {
   layout->addWidget(trouble_);
   bars_ = new CoverageBars;
   layout->addWidget(bars_);
+  auto* legend = wrappingLabel();
+  legend->setText(kLegend);
+  layout->addWidget(legend);
   layout->addLayout(makeCaptureRow());
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
@@ -278,9 +290,12 @@ void CalibrationPanel::showCalibration() {
 void CalibrationPanel::showAnswer() {
   const std::optional<ServiceAnswer> answer = caller_.takeAnswer();
   if (!answer) {
+    showAge();
     return;
   }
-  answer_->setText(QString::fromStdString(answer->message));
+  answer_->setText(QTime::currentTime().toString("hh:mm:ss") + ", " + called_ + ": " +
+                   QString::fromStdString(answer->message));
+  since_.start();
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
   setCallsEnabled(true);
   if (auto_capture_asked_) {
@@ -288,6 +303,15 @@ void CalibrationPanel::showAnswer() {
       auto_capture_->setChecked(!*auto_capture_asked_);
     }
     auto_capture_asked_.reset();
+  }
+}
+
+void CalibrationPanel::showAge() {
+  if (caller_.isBusy()) {
+    answer_->setText(QString("%1 runs, %2 s …").arg(called_).arg(since_.elapsed() / 1000));
+  } else if (since_.isValid() && since_.elapsed() > kFreshAnswer) {
+    answer_->setStyleSheet("color: #80868d;");
+    since_.invalidate();
   }
 }
 
@@ -303,10 +327,12 @@ void CalibrationPanel::call(const std::string& service, const typename Service::
   if (caller_.isBusy()) {
     return;
   }
-  answer_->setText("…");
+  called_ = QString::fromStdString(service);
+  since_.start();
   answer_->setStyleSheet("");
   setCallsEnabled(false);
   caller_.call<Service>(node_.resolveName("calibration/" + service), request);
+  showAge();
 }
 
 void CalibrationPanel::capture() {

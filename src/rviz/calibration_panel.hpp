@@ -2,6 +2,7 @@
 
 #include <QCheckBox>
 #include <QDoubleSpinBox>
+#include <QElapsedTimer>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -52,6 +53,8 @@ class CalibrationPanel : public rviz::Panel {
   void showHealth();
   void showCalibration();
   void showAnswer();
+  /// How long a call runs; an answer of long ago turns grey.
+  void showAge();
 
   void setCallsEnabled(bool enabled);
   void capture();
@@ -83,6 +86,8 @@ class CalibrationPanel : public rviz::Panel {
   QSpinBox* coil_ = nullptr;
   QSpinBox* revision_ = nullptr;
   QLabel* answer_ = nullptr;
+  QString called_;       ///< service of the running or the last call
+  QElapsedTimer since_;  ///< its begin, or its answer
   QLabel* grade_ = nullptr;
   QTableWidget* parameters_ = nullptr;
   QTableWidget* estimates_ = nullptr;
