@@ -28,8 +28,8 @@ constexpr double kDot = 0.006;
 constexpr double kDotGap = 0.008;
 constexpr double kNumberGap = 0.006;     ///< between an arrow's end and its number
 constexpr double kNumberHeight = 0.009;  ///< of a capital letter
-constexpr double kLegendHeight = 0.006;
-constexpr double kLegendDistance = 0.045;  ///< beyond the shaft's end and the dots
+constexpr double kLegendHeight = 0.005;
+constexpr double kLegendDistance = 0.028;  ///< beyond the shaft's end and the dots
 
 constexpr double kFullGlow = 2.0;          // [A]
 constexpr double kSmallestGlow = 0.02;     // of the full one
@@ -268,14 +268,10 @@ class Drawing {
     const std::string times = "x " + shortNumber(scene_.magnification);
     drawText(legend,
              (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
-             "red, blue: north, south poles; copper: coils; yellow: its current flows\n"
-             "thick arrow: identified axis, its error " +
-                 times +
-                 "; thin grey: as drawn\n"
-                 "violet cone: 1 sigma " +
-                 times +
-                 "; faint rotor: where the drawing says it is\n"
-                 "dots: samples; green fit, red do not, black are rejected, grey await a cycle",
+             "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
+             "faint rotor: as drawn\nthick arrow: identified axis, its error " +
+                 times + "; violet cone: 1 sigma " + times +
+                 "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle",
              kLegendHeight);
     array_.markers.push_back(legend);
   }
