@@ -59,6 +59,21 @@ class DwellSampler {
     return samples;
   }
 
+  std::vector<StampInterval> stretches() const {
+    if (buffers_.currents.within(dwell_).size() == 0) {
+      return {rest_};
+    }
+    std::vector<StampInterval> stretches;
+    for (const CurrentSegment& segment :
+         segmentsOfConstantCurrent(buffers_.currents, dwell_, options_)) {
+      const StampInterval steady = steadyPart(segment);
+      if (isWorthwhile(segment, steady)) {
+        stretches.push_back(steady);
+      }
+    }
+    return stretches;
+  }
+
   std::optional<Sample> sampleOf(const StampInterval& span) {
     std::optional<std::size_t> wanted;
     if (buffers_.currents.within(dwell_).size() == 0) {
@@ -67,7 +82,7 @@ class DwellSampler {
     }
     for (const CurrentSegment& segment :
          segmentsOfConstantCurrent(buffers_.currents, dwell_, options_)) {
-      if (segment.span.begin <= span.begin && span.end <= segment.span.end) {
+      if (holds(segment, span)) {
         wanted = candidates_.size();
         collect(segment, span);
       } else if (!segment.excited && isWorthwhile(segment, steadyPart(segment))) {
@@ -125,6 +140,16 @@ class DwellSampler {
                      segment.span.begin + ticksFromSeconds(options_.settle_after_current_change)),
             std::min(rest_.end,
                      segment.span.end - ticksFromSeconds(options_.guard_before_current_change))};
+  }
+
+  /// Whether all currents of the span belong to the segment. The last one of the dwell may have
+  /// been measured shortly before the end of the span.
+  bool holds(const CurrentSegment& segment, const StampInterval& span) const {
+    const StreamBuffer::Range range = buffers_.currents.within(dwell_);
+    const bool is_last = buffers_.currents.stamp(range.last - 1) == segment.span.end;
+    return segment.span.begin <= span.begin &&
+           (span.end <= segment.span.end ||
+            (is_last && secondsBetween(segment.span.end, span.end) <= options_.largest_gap));
   }
 
   /// Whether the segment is to give a sample, or else a reason. Not the ramps between patterns, and
@@ -249,6 +274,13 @@ std::vector<Sample> samplesOfDwell(const MeasurementBuffers& buffers,
                                    const SampleBuilderOptions& options,
                                    SampleBuilderReport& report) {
   return DwellSampler(buffers, dwell, options, report).samples();
+}
+
+std::vector<StampInterval> stretchesOfDwell(const MeasurementBuffers& buffers,
+                                            const StampInterval& dwell,
+                                            const SampleBuilderOptions& options) {
+  SampleBuilderReport report;
+  return DwellSampler(buffers, dwell, options, report).stretches();
 }
 
 std::optional<Sample> sampleOfSpan(const MeasurementBuffers& buffers,

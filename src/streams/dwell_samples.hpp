@@ -25,6 +25,11 @@ std::vector<Sample> samplesOfDwell(const MeasurementBuffers& buffers,
                                    const SampleBuilderOptions& options,
                                    SampleBuilderReport& report);
 
+/// The spans that samplesOfDwell() averages, oldest first; not all of them give a sample.
+std::vector<StampInterval> stretchesOfDwell(const MeasurementBuffers& buffers,
+                                            const StampInterval& dwell,
+                                            const SampleBuilderOptions& options);
+
 /// Sample of one span of constant current within a dwell, id 0, averaged over all of the span. The
 /// bias is taken from the zero-current spans of the dwell up to its end. Nothing, and an event with
 /// the reason, when the span gives none.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "current_segments.hpp"
 #include "dwell_samples.hpp"
+#include "repeated_samples.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
@@ -52,6 +54,12 @@ SampleBuilder::SampleBuilder(const SampleBuilderOptions& options, std::size_t co
       currents_{&report_.currents, &buffers_.currents, StampFilter(stampOptions(options)), {}},
       detector_(options) {}
 
+SampleBuilder::~SampleBuilder() = default;
+
+void SampleBuilder::repeat(const std::vector<Sample>& taken) {
+  repeated_ = taken.empty() ? nullptr : std::make_unique<RepeatedSamples>(taken, options_);
+}
+
 void SampleBuilder::add(const JointMeasurement& measurement) {
   if (!accept(joints_, measurement.stamp, defectOf(measurement.position))) {
     return;
@@ -93,6 +101,10 @@ void SampleBuilder::add(const CurrentMeasurement& measurement) {
 
 void SampleBuilder::finish() {
   endTimeBase();
+  if (repeated_) {
+    takeRepeated(std::numeric_limits<Stamp>::max(), std::nullopt);
+    repeated_.reset();
+  }
   for (Stream* stream : {&joints_, &orientations_, &torques_, &currents_}) {
     stream->filter.restart();
   }
@@ -122,8 +134,8 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   }
   const Stamp begin = std::max(from, settledSince(*dwell));
   const StampInterval span{begin, begin + ticksFromSeconds(duration)};
-  if (dwell->end < span.end + ticksFromSeconds(options_.guard_before_motion) ||
-      !allPassed(span.end)) {
+  const Stamp limit = span.end + ticksFromSeconds(options_.guard_before_motion);
+  if (dwell->end < limit || !allPassed(limit)) {
     return {unfinished,
             std::nullopt,
             "Rotor and currents were not steady for " + shortNumber(duration) + " s."};
@@ -181,11 +193,14 @@ bool SampleBuilder::allPassed(Stamp stamp) const {
          has_passed(currents_);
 }
 
+// What came after the guard is not looked at, though it may be there: how much of it is there is a
+// matter of chance.
 CaptureProgress SampleBuilder::captured(const StampInterval& span) const {
   SampleBuilderReport report;
   CaptureProgress progress;
-  progress.sample =
-      sampleOfSpan(buffers_, {detector_.present()->begin, *newest_}, span, options_, report);
+  const StampInterval rest{detector_.present()->begin,
+                           span.end + ticksFromSeconds(options_.guard_before_motion)};
+  progress.sample = sampleOfSpan(buffers_, rest, span, options_, report);
   progress.state =
       progress.sample ? CaptureProgress::State::kDone : CaptureProgress::State::kRefused;
   for (const DwellEvent& event : report.events) {
@@ -234,6 +249,9 @@ void SampleBuilder::endTimeBase() {
   while (!queued_.empty()) {
     evaluateFront();
   }
+  if (repeated_ && newest_) {
+    takeRepeated(*newest_, std::nullopt);
+  }
   newest_.reset();
   for (Stream* stream : {&joints_, &orientations_, &torques_, &currents_}) {
     stream->buffer->clear();
@@ -260,6 +278,11 @@ void SampleBuilder::evaluateReadyDwells() {
   while (!queued_.empty() && isReady(queued_.front())) {
     evaluateFront();
   }
+  // Where no rest is seen nothing else ends their waiting, and what they need must not pile up.
+  if (repeated_ && queued_.empty()) {
+    takeRepeated(*newest_ - stream_timeout_ - ticksFromSeconds(options_.largest_dwell),
+                 std::nullopt);
+  }
 }
 
 // Ready when no measurement of the dwell can be accepted any more, whatever arrives: then the
@@ -277,18 +300,30 @@ bool SampleBuilder::isReady(const StampInterval& dwell) const {
 
 void SampleBuilder::evaluateFront() {
   ++report_.dwells;
-  for (Sample& sample : samplesOfDwell(buffers_, queued_.front(), options_, report_)) {
-    sample.id = next_id_++;
-    samples_.push_back(std::move(sample));
+  const StampInterval dwell = queued_.front();
+  if (repeated_) {
+    takeRepeated(dwell.end, dwell);
+  } else {
+    for (Sample& sample : samplesOfDwell(buffers_, dwell, options_, report_)) {
+      sample.id = next_id_++;
+      samples_.push_back(std::move(sample));
+    }
   }
   queued_.pop_front();
 }
 
-Stamp SampleBuilder::oldestNeeded() const {
-  if (!queued_.empty()) {
-    return queued_.front().begin;
+void SampleBuilder::takeRepeated(Stamp until, const std::optional<StampInterval>& dwell) {
+  for (Sample& sample : repeated_->upTo(until, dwell, buffers_, report_)) {
+    samples_.push_back(std::move(sample));
   }
-  return detector_.earliestBegin().value_or(*newest_ - stream_timeout_);
+}
+
+Stamp SampleBuilder::oldestNeeded() const {
+  const Stamp oldest = !queued_.empty()
+                           ? queued_.front().begin
+                           : detector_.earliestBegin().value_or(*newest_ - stream_timeout_);
+  const bool is_repeating = repeated_ && !repeated_->empty();
+  return is_repeating ? std::min(oldest, repeated_->oldestNeeded()) : oldest;
 }
 
 }  // namespace sac

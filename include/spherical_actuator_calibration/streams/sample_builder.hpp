@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@
 #include "spherical_actuator_calibration/streams/stream_buffer.hpp"
 
 namespace sac {
+
+class RepeatedSamples;
 
 /// Where a capture on demand stands.
 struct CaptureProgress {
@@ -46,6 +49,14 @@ class SampleBuilder {
   SampleBuilder(const SampleBuilderOptions& options, std::size_t coils);
   SampleBuilder(const SampleBuilder&) = delete;
   SampleBuilder& operator=(const SampleBuilder&) = delete;
+  ~SampleBuilder();
+
+  /// Samples are made of the measurements that these were made of, until finish(): in a recording
+  /// of the streams they come out the same, with their ids. Other options than those of then act:
+  /// what does not rest or is not steady by them is left out. Without any, every dwell makes
+  /// samples again. To be called where no measurement was added since the begin or finish().
+  /// `taken` must tell their dwell.
+  void repeat(const std::vector<Sample>& taken);
 
   void add(const JointMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
@@ -57,8 +68,10 @@ class SampleBuilder {
   void finish();
 
   /// One sample of the present dwell, averaged over `duration` seconds from stamp `from` on, or
-  /// from where rotor and currents have settled. Ask again while it waits; it waits no longer than
-  /// the rotor may need to come to rest (kPatience) and refuses then. Changes nothing.
+  /// from where rotor and currents have settled. It depends on the measurements up to its end and
+  /// `guard_before_motion` only, so that repeat() finds it again. Ask again while it waits; it
+  /// waits no longer than the rotor may need to come to rest (kPatience) and refuses then. Changes
+  /// nothing.
   CaptureProgress capture(Stamp from, double duration) const;
   /// How long a capture waits for rest and for steady currents, in seconds of stamps.
   static constexpr double kPatience = 2.0;
@@ -93,6 +106,7 @@ class SampleBuilder {
   bool allPassed(Stamp stamp) const;
   CaptureProgress captured(const StampInterval& span) const;
   void evaluateFront();
+  void takeRepeated(Stamp until, const std::optional<StampInterval>& dwell);
   Stamp oldestNeeded() const;
 
   SampleBuilderOptions options_;
@@ -108,8 +122,9 @@ class SampleBuilder {
   Stream torques_;
   Stream currents_;
   DwellDetector detector_;
-  std::optional<Stamp> newest_;       ///< of all streams
-  std::deque<StampInterval> queued_;  ///< dwells that wait for the other streams
+  std::optional<Stamp> newest_;                ///< of all streams
+  std::deque<StampInterval> queued_;           ///< dwells that wait for the other streams
+  std::unique_ptr<RepeatedSamples> repeated_;  ///< where samples are made again
   std::vector<Sample> samples_;
   std::uint32_t next_id_ = 1;
 };
