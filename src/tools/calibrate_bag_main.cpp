@@ -8,6 +8,7 @@
 
 #include "calibrate_bag_diagnosis.hpp"
 #include "calibrate_bag_options.hpp"
+#include "calibrate_bag_setup.hpp"
 #include "calibration_text.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -127,7 +128,8 @@ MotionUse motionUse(const CalibrateBagOptions& options) {
   return is_asked ? MotionUse::kAlways : MotionUse::kNever;
 }
 
-Recording readBags(const CalibrateBagOptions& options,
+Recording readBags(const OpenRecordings& recordings,
+                   const CalibrateBagOptions& options,
                    const Actuator& nominal,
                    const CalibrationConfig& config) {
   RecordingOptions reading;
@@ -137,12 +139,13 @@ Recording readBags(const CalibrateBagOptions& options,
   reading.source = options.source;
   reading.motion = motionUse(options);
   reading.progress = terminalProgress("reading");
-  Recording recording = readRecordings(options.bags, nominal, reading);
+  Recording recording = readRecordings(recordings, nominal, reading);
   std::string names;
   for (const std::string& option : changedStreamOptions(config)) {
     names += (names.empty() ? "" : ", ") + option;
   }
-  if (!recording.report.has_streams && !names.empty()) {
+  // What was recorded with the samples acted on them.
+  if (options.config_path && !recording.report.has_streams && !names.empty()) {
     recording.report.notes.push_back("Samples are taken as they were recorded, so that " + names +
                                      " of the configuration has no effect: --from streams.");
   }
@@ -310,15 +313,16 @@ void writeReport(const std::string& report, const Files& files, OverwritePolicy 
 }
 
 int calibrateBag(const CalibrateBagOptions& options) {
-  const CalibratedDescription start = loadDescription(options.actuator_path);
-  CalibrationConfig config =
-      options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig{};
+  const OpenRecordings recordings(options.bags);
+  const CalibrateBagSetup setup = readSetup(options, recordings);
+  const CalibratedDescription& start = setup.start;
+  CalibrationConfig config = setup.config;
   const std::optional<Actuator> truth = truthOf(options, start.actuator);
   const Files files = prepareFiles(options, start.actuator);
   const CertificateIssuer issuer =
       options.issuer_path ? loadCertificateIssuer(*options.issuer_path) : CertificateIssuer{};
 
-  Recording recording = readBags(options, start.actuator, config);
+  Recording recording = readBags(recordings, options, start.actuator, config);
   const bool takes_motion = takesMotion(recording, options, start.actuator);
   if (takes_motion) {
     recording.report.missing.clear();

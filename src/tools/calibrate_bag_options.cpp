@@ -10,12 +10,13 @@ namespace sac {
 namespace {
 
 constexpr char kIntroduction[] =
-    "Usage: calibrate_bag --actuator A.yaml --output OUT.yaml [options] BAG...\n"
+    "Usage: calibrate_bag --output OUT.yaml [options] BAG...\n"
     "\n"
-    "Calibrates the actuator that the description names from recordings, read directly and "
-    "without\n"
-    "a master: from the topic samples where it was recorded, else (or with --from streams) from\n"
-    "joint_states, measured_orientation, measured_torque and coil_currents.\n"
+    "Calibrates an actuator from recordings, read directly and without a master: from the topic\n"
+    "samples where it was recorded, else (or with --from streams) from joint_states,\n"
+    "measured_orientation, measured_torque and coil_currents. What the calibration node was "
+    "started\n"
+    "with is in its recordings; other ones need --actuator.\n"
     "Mistakes of wiring that the samples speak for are told, and no cycle runs before they are "
     "mended.\n"
     "Exit status: 0 all cycles succeeded; 1 a cycle failed or a parameter is not observable (the\n"
@@ -35,7 +36,10 @@ SampleSource parseSource(const std::string& text) {
   if (text == "streams") {
     return SampleSource::kStreams;
   }
-  throw ConfigError("--from: \"" + text + "\" is neither samples nor streams.");
+  if (text == "dwells") {
+    return SampleSource::kDwells;
+  }
+  throw ConfigError("--from: \"" + text + "\" is none of: samples, streams, dwells.");
 }
 
 /// What cannot be told from one option alone.
@@ -76,15 +80,23 @@ struct Words {
 };
 
 void addInputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
-  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
-  line.add(
-      "config", options.config_path, "YAML", "configuration; config/calibration.yaml shows all");
+  line.add("actuator",
+           options.actuator_path,
+           "YAML",
+           "actuator description; without it the one of the recorded session");
+  line.add("config",
+           options.config_path,
+           "YAML",
+           "configuration, config/calibration.yaml shows all; without it the one of the recorded "
+           "session, or the defaults");
   line.add("ns", options.ns, "NAME", "namespace of the recorded topics");
   line.add("from",
            words.source,
-           "samples|streams",
-           "what to calibrate from; without it samples where they were recorded. The sections "
-           "dwell, currents, means and streams of the configuration act on streams only");
+           "samples|streams|dwells",
+           "what to calibrate from; without it samples where they were recorded. streams: the "
+           "stretches of the streams that these were averaged over, which gives the same result; "
+           "dwells: every rest of the rotor. The sections dwell, currents, means and streams of "
+           "the configuration act on streams and dwells only");
   line.add(
       "cycles",
       words.cycles,

@@ -13,8 +13,8 @@ namespace sac {
 
 /// What the command line of calibrate_bag asks for.
 struct CalibrateBagOptions {
-  std::string actuator_path;
-  std::optional<std::string> config_path;
+  std::optional<std::string> actuator_path;  ///< nothing: as recorded
+  std::optional<std::string> config_path;    ///< nothing: as recorded, or the defaults
   std::string ns = "/actuator";
   std::vector<std::string> bags;
   SampleSource source = SampleSource::kSamplesWhereRecorded;

@@ -20,6 +20,7 @@
 #include "spherical_actuator_calibration/ros/conversion/checked_message.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
+#include "spherical_actuator_calibration/ros/recording/recorded_setup.hpp"
 #include "spherical_actuator_calibration/ros/recording/recorded_streams.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
@@ -123,8 +124,17 @@ void readMessages(const std::uint8_t* data, std::size_t size) {
 
 void readRecording(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file(data, size);
+  // With the samples that were recorded, and made again of the streams.
+  RecordingOptions again;
+  again.source = SampleSource::kStreams;
+  for (const RecordingOptions& options : {RecordingOptions{}, again}) {
+    try {
+      readRecordings({file.path()}, nominal(), options);
+    } catch (const Error&) {
+    }
+  }
   try {
-    readRecordings({file.path()}, nominal(), {});
+    recordedSetup(OpenRecordings({file.path()}), "actuator", {});
   } catch (const Error&) {
   }
 }

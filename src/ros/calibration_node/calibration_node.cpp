@@ -53,6 +53,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
       intake_(node, start.actuator, options.calibration),
       diagnostics_(node, private_node, start.actuator) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
+  topics_.publishSetup(start, options.calibration);
   topics_.publishParameters(session_);
   if (const auto report = session_.lastReport()) {
     topics_.publishReport(

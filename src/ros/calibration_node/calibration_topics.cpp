@@ -3,10 +3,12 @@
 #include <utility>
 
 #include <spherical_actuator_calibration/CalibrationStatus.h>
+#include <std_msgs/String.h>
 
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 
 namespace sac {
 namespace {
@@ -31,7 +33,18 @@ CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
       parameters_(node.advertise<msg::ActuatorParameters>("parameters", 1, kLatched)),
       report_(node.advertise<msg::CalibrationReport>("report", 1, kLatched)),
       status_(node.advertise<msg::CalibrationStatus>("status", 1, kLatched)),
+      description_(node.advertise<std_msgs::String>(kDescriptionTopic, 1, kLatched)),
+      config_(node.advertise<std_msgs::String>(kConfigTopic, 1, kLatched)),
       samples_(node.advertise<msg::CalibrationSample>("samples", kQueueLength)) {}
+
+void CalibrationTopics::publishSetup(const CalibratedDescription& start,
+                                     const CalibrationConfig& config) {
+  std_msgs::String message;
+  message.data = renderDescription(start, description_.getTopic());
+  description_.publish(message);
+  message.data = renderCalibrationConfig(config);
+  config_.publish(message);
+}
 
 void CalibrationTopics::publishParameters(const LiveSession& session) {
   const CalibrationSession& calibration = session.calibration();

@@ -37,8 +37,7 @@ class Reader {
         streams_(nominal, options.frames, options.samples),
         recorded_samples_(nominal, options.frames) {}
 
-  Recording read(const std::vector<std::string>& paths) {
-    const std::vector<std::unique_ptr<BagFile>> bags = openBags(paths);
+  Recording read(const std::vector<std::unique_ptr<BagFile>>& bags) {
     BagGroup all;
     for (const auto& bag : bags) {
       topics_.requireTypes(*bag);
@@ -65,6 +64,7 @@ class Reader {
     const bool from_samples = takesSamples(group);
     if (!from_samples) {
       topics_.requireStreams(group);
+      streams_.repeat(takenLive(group));
     }
     streams_.keepMotion(options_.motion == MotionUse::kAlways ||
                         (options_.motion == MotionUse::kWithoutTorques &&
@@ -76,7 +76,7 @@ class Reader {
   }
 
   bool takesSamples(const BagGroup& group) const {
-    if (options_.source == SampleSource::kStreams) {
+    if (options_.source == SampleSource::kStreams || options_.source == SampleSource::kDwells) {
       return false;
     }
     const bool are_recorded = topics_.isRecorded(group, TopicRole::kSamples);
@@ -85,6 +85,35 @@ class Reader {
                       " was not recorded; take the samples from the streams.");
     }
     return are_recorded;
+  }
+
+  /// Samples that a node took of the streams of the group, and which stretches it took them of.
+  std::vector<Sample> takenLive(const BagGroup& group) {
+    if (options_.source == SampleSource::kDwells ||
+        !topics_.isRecorded(group, TopicRole::kSamples)) {
+      return {};
+    }
+    RecordedSamples recorded(nominal_, options_.frames);
+    guarded(group, [&] {
+      BagReader reader(group, {topics_.name(TopicRole::kSamples)});
+      BagMessage message;
+      while (reader.next(message)) {
+        recorded.add(decodeSample(message));
+      }
+    });
+    std::vector<Sample> samples = recorded.takeSamples();
+    const bool tell_their_rest = std::all_of(
+        samples.begin(), samples.end(), [](const Sample& sample) { return sample.dwell != 0; });
+    if (!tell_their_rest) {
+      recording_.report.notes.emplace_back(
+          "The recorded samples do not tell which rest they are of, so that every rest gives its "
+          "own: the result is not that of the session.");
+      return {};
+    }
+    recording_.report.notes.push_back(std::to_string(samples.size()) +
+                                      " samples that were taken live are made again of the streams "
+                                      "(of every rest: --from dwells).");
+    return samples;
   }
 
   // rosbag and the message classes report damage by several exceptions, some of them of the
@@ -146,13 +175,15 @@ class Reader {
       case TopicRole::kCurrents:
         return streams_.add(decoder_.decode(message.data, currents_));
       case TopicRole::kSamples:
-        return recorded_samples_.add(decoder_.decode(
-            message.data,
-            sample_,
-            message.connection->md5sum == kEarlierSampleMd5 ? kLaterSampleBytes : 0));
+        return recorded_samples_.add(decodeSample(message));
       case TopicRole::kParameters:
         return requireSameUnit(decoder_.decode(message.data, parameters_));
     }
+  }
+
+  const msg::CalibrationSample& decodeSample(const BagMessage& message) {
+    const bool is_earlier = message.connection->md5sum == kEarlierSampleMd5;
+    return decoder_.decode(message.data, sample_, is_earlier ? kLaterSampleBytes : 0);
   }
 
   void append(std::vector<Sample> samples) {
@@ -239,10 +270,16 @@ class Reader {
 
 }  // namespace
 
+Recording readRecordings(const OpenRecordings& recordings,
+                         const Actuator& nominal,
+                         const RecordingOptions& options) {
+  return Reader(nominal, options).read(recordings.bags());
+}
+
 Recording readRecordings(const std::vector<std::string>& paths,
                          const Actuator& nominal,
                          const RecordingOptions& options) {
-  return Reader(nominal, options).read(paths);
+  return readRecordings(OpenRecordings(paths), nominal, options);
 }
 
 }  // namespace sac

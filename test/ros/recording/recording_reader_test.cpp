@@ -215,17 +215,26 @@ TEST_F(RecordingReader, ReadsSamplesOfEarlierReleases) {
 
 TEST_F(RecordingReader, TakesSamplesOrStreamsAsAsked) {
   const std::vector<Sample> from_streams = read({session()}).samples;
+  Sample taken = from_streams[2];
+  taken.id = 7;
+  taken.torque.setConstant(1.0);
   const std::string both = edited([&, written = false](const auto& message, auto& out) mutable {
     bags::keep(message, out);
     if (!written) {
-      out.write("/actuator/samples", message.getTime(), sampleToRos(from_streams.front()));
+      out.write("/actuator/samples", message.getTime(), sampleToRos(taken));
       written = true;
     }
   });
   RecordingOptions options;
+  options.source = SampleSource::kDwells;
+  const Recording dwells = readRecordings({both}, unit(), options);
+  expectSame(dwells.samples, from_streams);
+  EXPECT_FALSE(dwells.report.has_samples);
+
   options.source = SampleSource::kStreams;
   const Recording streams = readRecordings({both}, unit(), options);
-  expectSame(streams.samples, from_streams);
+  taken.torque = from_streams[2].torque;
+  expectSame(streams.samples, {taken});
   EXPECT_FALSE(streams.report.has_samples);
 
   options.source = SampleSource::kSamples;
@@ -233,6 +242,24 @@ TEST_F(RecordingReader, TakesSamplesOrStreamsAsAsked) {
   const std::string error =
       errorMessage<DataError>([&] { readRecordings({session()}, unit(), options); });
   EXPECT_NE(error.find("/actuator/samples was not recorded"), std::string::npos) << error;
+}
+
+TEST_F(RecordingReader, MakesEveryRestASampleWhereThoseRecordedTellNone) {
+  const std::vector<Sample> from_streams = read({session()}).samples;
+  const std::string both = edited([&, written = false](const auto& message, auto& out) mutable {
+    bags::keep(message, out);
+    if (!written) {
+      Sample taken = from_streams.front();
+      taken.dwell = 0;
+      out.write("/actuator/samples", message.getTime(), sampleToRos(taken));
+      written = true;
+    }
+  });
+  RecordingOptions options;
+  options.source = SampleSource::kStreams;
+  const Recording streams = readRecordings({both}, unit(), options);
+  expectSame(streams.samples, from_streams);
+  EXPECT_NE(streams.report.notes.front().find("do not tell which rest"), std::string::npos);
 }
 
 TEST_F(RecordingReader, SamplesRecordedTwiceCountOnce) {

@@ -6,7 +6,9 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
@@ -14,13 +16,16 @@
 
 namespace sac {
 
-/// What the calibration node publishes: `parameters`, `report` and `status`, latched, and
-/// `samples`.
+/// What the calibration node publishes: `parameters`, `report`, `status`, and what the session rests
+/// on (`calibration_description`, `calibration_config`), latched, and `samples`.
 class CalibrationTopics {
  public:
   /// `frame`: name of the stator frame.
   CalibrationTopics(ros::NodeHandle node, std::string frame);
 
+  /// Description and configuration at the start of the session: with them its recording can be
+  /// calibrated again with nothing beside it.
+  void publishSetup(const CalibratedDescription& start, const CalibrationConfig& config);
   void publishParameters(const LiveSession& session);
   void publishReport(const msg::CalibrationReport& report);
   /// Publishes the last report once more where its grade is another one now.
@@ -41,6 +46,8 @@ class CalibrationTopics {
   ros::Publisher parameters_;
   ros::Publisher report_;
   ros::Publisher status_;
+  ros::Publisher description_;
+  ros::Publisher config_;
   ros::Publisher samples_;
 };
 

@@ -26,6 +26,9 @@ class RecordedStreams {
   /// Whether what follows is kept for takeMotion(); it is not from the start.
   void keepMotion(bool keep) { keeps_motion_ = keep; }
 
+  /// Samples are made of the stretches of these until finish() (SampleBuilder::repeat()).
+  void repeat(const std::vector<Sample>& taken) { builder_.repeat(taken); }
+
   void add(const sensor_msgs::JointState& message);
   void add(const geometry_msgs::QuaternionStamped& message);
   void add(const geometry_msgs::Vector3Stamped& message);

@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "spherical_actuator_calibration/ros/recording/open_recordings.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_report.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
 
@@ -17,7 +18,10 @@ namespace sac {
 enum class SampleSource {
   kSamplesWhereRecorded,  ///< the topic `samples` of recordings that have it, else the raw streams
   kSamples,               ///< the topic `samples`
-  kStreams,               ///< the raw streams, also where samples were recorded
+  /// The raw streams; where samples were recorded, too, the stretches of them that these were
+  /// averaged over
+  kStreams,
+  kDwells,  ///< the raw streams: every rest of the rotor, whatever was recorded as samples
 };
 
 /// When the raw streams are kept for calibration in motion.
@@ -49,6 +53,10 @@ struct Recording {
 /// Throws DataError, naming the file, for bags that cannot be read, that miss topics, are of
 /// another actuator, unit or number of coils, or whose measurements are all in another frame.
 /// Throws ConfigError when the options are not valid.
+Recording readRecordings(const OpenRecordings& recordings,
+                         const Actuator& nominal,
+                         const RecordingOptions& options);
+/// The same for recordings that are closed.
 Recording readRecordings(const std::vector<std::string>& paths,
                          const Actuator& nominal,
                          const RecordingOptions& options);
