@@ -19,6 +19,9 @@ namespace {
 /// for some poses [s].
 constexpr double kSwitchedOff = 30.0;
 
+/// By which a recorder may get one stream after another [s].
+constexpr double kRecorderLag = 10.0;
+
 std::optional<DropReason> defectOf(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return values.allFinite() ? std::nullopt : std::optional(DropReason::kNotFinite);
 }
@@ -140,6 +143,11 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
             std::nullopt,
             "Rotor and currents were not steady for " + shortNumber(duration) + " s."};
   }
+  if (newest_behind_ && *newest_behind_ >= span.begin) {
+    return {State::kRefused,
+            std::nullopt,
+            "Measurements came too late to be used: a computer is too busy."};
+  }
   return captured(span);
 }
 
@@ -223,8 +231,9 @@ bool SampleBuilder::accept(Stream& stream, Stamp stamp, std::optional<DropReason
   if (verdict.gap) {
     ++stream.statistics->gaps;
   }
-  if (!defect && newest_ && *newest_ - stamp > stream_timeout_) {
+  if (!defect && newest_ && *newest_ - stamp > largestLag()) {
     defect = DropReason::kBehind;
+    newest_behind_ = std::max(newest_behind_.value_or(stamp), stamp);
   }
   if (defect) {
     ++stream.statistics->dropped[static_cast<std::size_t>(*defect)];
@@ -234,6 +243,11 @@ bool SampleBuilder::accept(Stream& stream, Stamp stamp, std::optional<DropReason
   stream.horizon = stamp;
   newest_ = std::max(newest_.value_or(stamp), stamp);
   return true;
+}
+
+// What was taken live was there in time. How late it came to a recorder does not matter.
+Stamp SampleBuilder::largestLag() const {
+  return repeated_ ? std::max(stream_timeout_, ticksFromSeconds(kRecorderLag)) : stream_timeout_;
 }
 
 void SampleBuilder::store(Stream& stream, Stamp stamp, const double* values) {
@@ -253,6 +267,7 @@ void SampleBuilder::endTimeBase() {
     takeRepeated(*newest_, std::nullopt);
   }
   newest_.reset();
+  newest_behind_.reset();
   for (Stream* stream : {&joints_, &orientations_, &torques_, &currents_}) {
     stream->buffer->clear();
     stream->horizon.reset();

@@ -168,6 +168,21 @@ TEST_F(Capture, EndsWhenTheClockIsSetBack) {
   EXPECT_NE(progress.message.find("set back"), std::string::npos) << progress.message;
 }
 
+TEST_F(Capture, RefusesAStretchOfWhichMeasurementsCameTooLate) {
+  feedUntil(4.0);
+  TorqueMeasurement late{synthetic::stampAt(4.3), {0.1, 0.2, 0.3}};
+  synthetic::Streams ahead = between(streams_, 4.0, 5.45);
+  ahead.torques.clear();
+  synthetic::feed(builder_, ahead);
+  builder_.add(late);
+  fed_ = 5.45;
+  feedUntil(5.6);
+  const CaptureProgress lost = builder_.capture(synthetic::stampAt(4.2), 1.0);
+  EXPECT_EQ(lost.state, State::kRefused);
+  EXPECT_NE(lost.message.find("came too late"), std::string::npos) << lost.message;
+  EXPECT_EQ(builder_.capture(synthetic::stampAt(4.35), 1.0).state, State::kDone);
+}
+
 TEST(CaptureWithoutStreams, NamesWhatIsMissing) {
   const SampleBuilder builder({}, kCoils);
   const CaptureProgress progress = builder.capture(0, 1.0);

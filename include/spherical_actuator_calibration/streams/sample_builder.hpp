@@ -95,6 +95,7 @@ class SampleBuilder {
   };
 
   bool accept(Stream& stream, Stamp stamp, std::optional<DropReason> defect);
+  Stamp largestLag() const;
   void store(Stream& stream, Stamp stamp, const double* values);
   void endTimeBase();
   void queue(const std::optional<StampInterval>& dwell);
@@ -123,6 +124,7 @@ class SampleBuilder {
   Stream currents_;
   DwellDetector detector_;
   std::optional<Stamp> newest_;                ///< of all streams
+  std::optional<Stamp> newest_behind_;         ///< of those that came too late
   std::deque<StampInterval> queued_;           ///< dwells that wait for the other streams
   std::unique_ptr<RepeatedSamples> repeated_;  ///< where samples are made again
   std::vector<Sample> samples_;
