@@ -7,7 +7,7 @@ PACKAGE = "spherical_actuator_calibration"
 
 setup(
     **generate_distutils_setup(
-        packages=[PACKAGE] + [f"{PACKAGE}.{part}" for part in ("coil_drive", "report_page", "session_guide")],
+        packages=[PACKAGE] + [f"{PACKAGE}.{part}" for part in ("coil_drive", "report_page", "session_guide", "session_tables")],
         package_dir={"": "src"},
         package_data={f"{PACKAGE}.report_page": ["report_template.html"]},
     )

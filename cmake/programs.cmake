@@ -7,7 +7,9 @@ install(PROGRAMS scripts/record_session
 catkin_install_python(
   PROGRAMS
     scripts/calibrate_by_motion
+    scripts/export_session
     scripts/guided_session
+    scripts/import_csv
     scripts/level_1_by_coils
     scripts/plot_study
     scripts/plot_tracking

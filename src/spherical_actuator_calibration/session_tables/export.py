@@ -1,0 +1,162 @@
+"""A session database as CSV files and the description that it belongs to."""
+
+import csv
+import io
+import math
+import os
+import pathlib
+import sqlite3
+import tempfile
+
+from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading, unit_of_parameter
+
+APPLICATION = 0x53414353
+FORMATS = (1, 2, 3)
+FILES = ("samples.csv", "parameters.csv", "revisions.csv", "actuator.yaml")
+PARAMETER_HEADINGS = (
+    "revision", "date", "cycle", "coil", "name", "unit", "nominal", "initial", "value", "stddev", "observable"
+)  # fmt: skip
+REVISION_HEADINGS = ("revision", "date", "software", "source", "origin", "predecessor", "refined", "in_force")
+
+
+class ExportError(ValueError):
+    """What is wrong with a session, in a sentence that names it."""
+
+
+def quaternion(rotation):
+    """x, y, z, w of a rotation matrix, row by row, with w not negative."""
+    r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation
+    # The largest component is safe to divide by.
+    squares = (1 + r11 - r22 - r33, 1 - r11 + r22 - r33, 1 - r11 - r22 + r33, 1 + r11 + r22 + r33)
+    largest = max(range(4), key=lambda k: squares[k])
+    columns = (
+        (squares[0], r12 + r21, r13 + r31, r32 - r23),
+        (r12 + r21, squares[1], r23 + r32, r13 - r31),
+        (r13 + r31, r23 + r32, squares[2], r21 - r12),
+        (r32 - r23, r13 - r31, r21 - r12, squares[3]),
+    )
+    column = columns[largest]
+    norm = math.copysign(math.sqrt(sum(value * value for value in column)), column[3])
+    return [value / norm for value in column]
+
+
+class Session:
+    """A session database that is read only, also while a node works with it."""
+
+    def __init__(self, path):
+        self.path = path
+        if not os.path.isfile(path):
+            raise ExportError(f"{path}: there is no such file.")
+        self._database = sqlite3.connect(pathlib.Path(path).absolute().as_uri() + "?mode=ro", uri=True)
+        self._database.row_factory = sqlite3.Row
+        if self._pragma("application_id") != APPLICATION:
+            raise ExportError(f"{path}: this is not a session database.")
+        if self._pragma("user_version") not in FORMATS:
+            raise ExportError(f"{path}: a newer version of this package made this session database; update the package.")
+        # One state of the session, whatever is stored meanwhile.
+        self._database.execute("BEGIN")
+
+    def _pragma(self, name):
+        return self._database.execute(f"PRAGMA {name}").fetchone()[0]
+
+    def rows(self, query):
+        return self._database.execute(query).fetchall()
+
+    def description(self):
+        """Text of the description at the start."""
+        return self.rows("SELECT description FROM unit")[0][0]
+
+    def samples(self):
+        """Headings and lines; what a sample does not have is empty."""
+        currents = {}
+        for row in self.rows("SELECT sample, current FROM sample_currents ORDER BY sample, coil"):
+            currents.setdefault(row["sample"], []).append(row["current"])
+        coils = max(map(len, currents.values()), default=0)
+        headings = [heading(name, unit) for name, unit in SAMPLE_COLUMNS]
+        headings += [heading(f"current_{coil}", "A") for coil in range(1, coils + 1)]
+        lines = []
+        for row in self.rows("SELECT * FROM samples ORDER BY id"):
+            values = self._sample_values(row)
+            cells = [values.get(name) for name, _ in SAMPLE_COLUMNS]
+            lines.append(cells + currents.get(row["id"], []))
+        return headings, lines
+
+    @staticmethod
+    def _sample_values(row):
+        keys = row.keys()
+        values = {key: row[key] for key in keys}
+        if row["has_orientation"]:
+            matrix = [row[f"r{i}{j}"] for i in (1, 2, 3) for j in (1, 2, 3)]
+            values.update(zip(QUATERNION, quaternion(matrix)))
+        else:
+            values["orientation_stddev"] = None
+        if not row["has_torque"]:
+            values.update({name: None for name in (*TORQUE, "torque_stddev", "torque_shared_stddev")})
+        # Of format 1 and 2.
+        for name in (*(f"{joint}_shared_stddev" for joint in JOINTS), "dwell"):
+            values.setdefault(name, 0)
+        return values
+
+    def parameters(self):
+        """What each successful cycle identified, with the revision that it made."""
+        lines = []
+        for row in self.rows(
+            "SELECT number, revisions.date, cycles.cycle, coil, name, nominal, initial, value, stddev, observable "
+            "FROM revisions JOIN cycles ON revisions.cycle = cycles.id "
+            "JOIN cycle_estimates ON cycle_estimates.cycle = cycles.id ORDER BY number, position"
+        ):
+            cells = list(row)
+            cells.insert(5, unit_of_parameter(row["name"]))
+            lines.append(cells)
+        return PARAMETER_HEADINGS, lines
+
+    def revisions(self):
+        newest = self.rows("SELECT max(number) FROM revisions")[0][0]
+        lines = [
+            [*row, int(row["number"] == newest)]
+            for row in self.rows(
+                "SELECT number, date, software, source, origin, predecessor, refined FROM revisions ORDER BY number"
+            )
+        ]
+        return REVISION_HEADINGS, lines
+
+
+def text_of(table):
+    """CSV text; numbers have the digits that give them back to the last bit."""
+    headings, lines = table
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(headings)
+    for line in lines:
+        writer.writerow([repr(cell) if isinstance(cell, float) else cell for cell in line])
+    return text.getvalue()
+
+
+def write_whole(path, text):
+    """The file appears whole, or not at all."""
+    folder = os.path.dirname(path) or "."
+    with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8", newline="") as file:
+        try:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+            os.chmod(file.name, 0o644)
+            os.replace(file.name, path)
+        except BaseException:
+            os.unlink(file.name)
+            raise
+
+
+def export(path, folder, force):
+    """Writes the files of FILES, and returns how many samples there are."""
+    os.makedirs(folder, exist_ok=True)
+    for name in FILES:
+        target = os.path.join(folder, name)
+        if os.path.exists(target) and not force:
+            raise ExportError(f"{target}: the file exists already; choose another folder or give --force.")
+    session = Session(path)
+    samples = session.samples()
+    texts = (text_of(samples), text_of(session.parameters()), text_of(session.revisions()), session.description())
+    for name, text in zip(FILES, texts):
+        write_whole(os.path.join(folder, name), text)
+    return len(samples[1])

@@ -1,0 +1,112 @@
+"""Recordings that calibrate_bag reads, made of tables."""
+
+import os
+
+import genpy
+import rosbag
+import yaml
+from std_msgs.msg import String
+
+from spherical_actuator_calibration.msg import ActuatorParameters
+
+from .sample_messages import SPACING, SampleTable
+from .stream_messages import streams_of
+from .table import TableError
+
+LARGEST = 1 << 24  # [bytes] of a YAML file
+
+
+def load(path):
+    """Text and content of a YAML file."""
+    try:
+        with open(path, "rb") as file:
+            text = file.read(LARGEST + 1)
+        if len(text) > LARGEST:
+            raise TableError(f"{path}: is larger than {LARGEST} bytes.")
+        return text.decode("utf-8"), yaml.safe_load(text)
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read: {error.strerror}.") from error
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        mark = getattr(error, "problem_mark", None)
+        raise TableError(f"{path}{f':{mark.line + 1}' if mark else ''}: this is not valid YAML.") from error
+
+
+class Recording:
+    """A bag that appears when it is whole."""
+
+    def __init__(self, path, ns, actuator_path):
+        self._path = path
+        self._active = path + ".active"
+        self._prefix = "/" + ns.strip("/") + "/" if ns.strip("/") else "/"
+        self._text, content = load(actuator_path)
+        if not isinstance(content, dict) or not isinstance(content.get("actuator"), dict):
+            raise TableError(f"{actuator_path}: it is no description: the key actuator is missing.")
+        self.actuator = content["actuator"]
+        joints = self.actuator.get("joints")
+        are_maps = isinstance(joints, list) and all(isinstance(joint, dict) for joint in joints)
+        if not isinstance(self.actuator.get("name"), str) or not (are_maps and all("name" in joint for joint in joints)):
+            raise TableError(f"{actuator_path}: it is no description: actuator and joints need names.")
+        self._bag = None
+
+    def __enter__(self):
+        try:
+            self._bag = rosbag.Bag(self._active, "w")
+        except OSError as error:
+            raise TableError(f"{self._path}: cannot be written: {error.strerror}.") from error
+        return self
+
+    def __exit__(self, kind, _error, _trace):
+        self._bag.close()
+        if kind is None:
+            os.replace(self._active, self._path)
+        else:
+            os.unlink(self._active)
+
+    def write(self, topic, stamp, message):
+        self._bag.write(self._prefix + topic, message, stamp)
+
+    def describe(self, stamp):
+        """Says whose recording it is, and by which description."""
+        # Of which only the unit is read.
+        unit = ActuatorParameters(actuator=self.actuator["name"], serial=str(self.actuator.get("serial", "")))
+        unit.header.stamp = stamp
+        unit.header.frame_id = "stator"
+        unit.source = "nominal"
+        self.write("parameters", stamp, unit)
+        # One that names another file would say nothing without it.
+        curve = self.actuator.get("torque_curve")
+        if not isinstance(curve, dict) or not isinstance(curve.get("table"), str):
+            self.write("calibration_description", stamp, String(data=self._text))
+
+
+def record_samples(recording, path):
+    """Writes the samples of a table; returns what was written, in words."""
+    samples = SampleTable(path, len(recording.actuator.get("coils", []))).messages()
+    with recording:
+        stamp = genpy.Time(0, SPACING)
+        recording.describe(stamp)
+        for number, sample in enumerate(samples, 1):
+            sample.header.frame_id = "stator"
+            recording.write("samples", genpy.Time(0, number * SPACING), sample)
+    return [f"{len(samples)} samples"]
+
+
+def record_streams(recording, path):
+    """Writes the streams that a YAML file describes; returns what was written, in words."""
+    streams = streams_of(path, load(path)[1], recording.actuator)
+    lines = []
+    with recording:
+        described = False
+        for stream in streams:
+            count = 0
+            for stamp, message in stream.messages():
+                if not described:
+                    recording.describe(stamp)
+                    described = True
+                recording.write(stream.topic, stamp, message)
+                count += 1
+            left_out = f", {stream.left_out} lines without values left out" if stream.left_out else ""
+            lines.append(f"{stream.topic}: {count} measurements{left_out}")
+        if not described:
+            raise TableError(f"{path}: the files hold no measurement.")
+    return lines

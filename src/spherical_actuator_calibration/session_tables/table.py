@@ -1,0 +1,135 @@
+"""CSV files of foreign origin, read with errors that name file, line and column."""
+
+import csv
+import io
+import math
+
+from .columns import UNITS
+
+LARGEST = 1 << 30  # [bytes] of a file
+LONGEST_TEXT = 1 << 16  # [characters] of a cell
+BAD_BYTE = "\ufffd"
+
+
+class TableError(ValueError):
+    """What is wrong with a file, in a sentence that names it."""
+
+
+def named(heading):
+    """Name and unit of a heading such as "joint_1 [deg]"; the unit is empty where there is none."""
+    text = heading.strip()
+    if text.endswith("]") and "[" in text:
+        name, _, unit = text[:-1].rpartition("[")
+        return name.strip(), unit.strip()
+    return text, ""
+
+
+class Row:
+    """One line of numbers."""
+
+    def __init__(self, table, line, cells):
+        self.table = table
+        self.line = line
+        self._cells = cells
+
+    def fail(self, sentence, column=None):
+        """Raises TableError: file, line, column if any, sentence."""
+        place = f"{self.table.path}:{self.line}: "
+        if column is not None:
+            place += f"column {column + 1} ({self.table.titles[column]}): "
+        raise TableError(place + sentence)
+
+    def text(self, column):
+        """A cell without blanks around it; empty where the line is shorter."""
+        return self._cells[column].strip() if column < len(self._cells) else ""
+
+    def is_empty(self, column):
+        return not self.text(column)
+
+    def number(self, column, factor=1.0):
+        """A finite number."""
+        text = self.text(column)
+        try:
+            value = float(text) * factor
+        except ValueError:
+            self.fail(f'"{text[:40]}" is not a number.', column)
+        if not math.isfinite(value):
+            self.fail(f'"{text[:40]}" is not a finite number.', column)
+        return value
+
+    def integer(self, column, smallest=0, largest=(1 << 63) - 1):
+        """A whole number."""
+        text = self.text(column)
+        try:
+            value = int(text)
+        except ValueError:
+            self.fail(f'"{text[:40]}" is not a whole number.', column)
+        if not smallest <= value <= largest:
+            self.fail(f"{value} is outside [{smallest}, {largest}].", column)
+        return value
+
+
+class Table:
+    """A CSV file with a line of headings. `headings`: which line that is, from 1; what is before it is left out."""
+
+    def __init__(self, path, headings=1, separator=","):
+        self.path = path
+        self._lines = self._read(headings, separator)
+        self._first, self.titles = next(self._lines, (0, None))
+        if not self.titles:
+            raise TableError(f"{path}: there is no line {headings} with headings.")
+        self.titles = [title.strip() or f"column {number}" for number, title in enumerate(self.titles, 1)]
+
+    def _read(self, headings, separator):
+        try:
+            with open(self.path, "rb") as file:
+                content = file.read(LARGEST + 1)
+        except OSError as error:
+            raise TableError(f"{self.path}: cannot be read: {error.strerror}.") from error
+        if len(content) > LARGEST:
+            raise TableError(f"{self.path}: is larger than {LARGEST} bytes.")
+        text = content.decode("utf-8-sig", errors="replace")
+        csv.field_size_limit(LONGEST_TEXT)
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
+        while True:
+            try:
+                cells = next(reader)
+            except StopIteration:
+                return
+            except csv.Error as error:
+                raise TableError(f"{self.path}:{reader.line_num}: {error}.") from error
+            if reader.line_num >= headings:
+                yield reader.line_num, cells
+
+    def rows(self):
+        """The lines after the headings; empty ones, and those that begin with #, are left out."""
+        for line, cells in self._lines:
+            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
+                row = Row(self, line, cells)
+                if len(cells) > len(self.titles):
+                    row.fail(f"{len(cells)} cells, but {len(self.titles)} headings.")
+                yield row
+
+    def fail(self, sentence):
+        """Raises TableError: file, line of the headings, sentence."""
+        raise TableError(f"{self.path}:{self._first}: {sentence}")
+
+    def column(self, which):
+        """Index of a column by its number, from 1, or by its heading, which must be the only one."""
+        if isinstance(which, int):
+            if not 1 <= which <= len(self.titles):
+                self.fail(f"there is no column {which}: it has {len(self.titles)}.")
+            return which - 1
+        found = [index for index, title in enumerate(self.titles) if which in (title, named(title)[0])]
+        if len(found) != 1:
+            several = f"{len(found)} columns are called so; name one by its number" if found else "there is no such column"
+            self.fail(f'"{which}": {several}.')
+        return found[0]
+
+    def factor(self, column, unit):
+        """From the unit of a heading, `unit` where it names none, to that unit of UNITS."""
+        told = named(self.titles[column])[1] or unit
+        if told not in UNITS[unit]:
+            known = ", ".join(UNITS[unit])
+            self.fail(f"column {column + 1} ({self.titles[column]}): the unit must be one of {known}.")
+        return UNITS[unit][told]

@@ -1,0 +1,265 @@
+#!/usr/bin/python3
+"""Sessions as CSV files, and recordings of the CSV files of others."""
+
+import contextlib
+import importlib.machinery
+import io
+import math
+import os
+import pathlib
+import random
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+from unittest import mock
+
+import numpy as np
+import rosbag
+import yaml
+from spherical_actuator_calibration.session_tables.export import quaternion
+
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+CALIBRATE_BAG = os.path.join(os.environ["PROGRAMS"], "calibrate_bag")
+BEGIN = 1700000000.0
+LEVER = np.array([0.0, 0.0, 0.06])
+
+
+def run(program, *arguments):
+    return subprocess.run(
+        [str(program), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
+    )
+
+
+def call(program, *arguments):
+    """The same within this process, which is quicker."""
+    loader = importlib.machinery.SourceFileLoader(program, str(SOURCE / "scripts" / program))
+    module = types.ModuleType(program)
+    loader.exec_module(module)
+    out, errors = io.StringIO(), io.StringIO()
+    with mock.patch.object(sys, "argv", [program, *map(str, arguments)]):
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
+            status = module.main()
+    return types.SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=errors.getvalue())
+
+
+def matrix(q):
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def about(axis, angle):
+    """Rotation about one of the axes x, y, z."""
+    q = np.zeros(4)
+    q[axis], q[3] = math.sin(0.5 * angle), math.cos(0.5 * angle)
+    return matrix(q)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return self.folder / name
+
+    def description(self, coils):
+        actuator = {
+            "name": "positioner",
+            "serial": "unit-7",
+            "joints": [
+                {"name": f"axis_{k}", "axis": [float(k == j) for j in range(3)], "offset": 0.0} for k in range(3)
+            ],
+            "poles": [{"polar": 0.0, "azimuth": 0.0, "polarity": 1}] if coils else [],
+            "coils": [{"polar": 0.1, "azimuth": float(j)} for j in range(coils)],
+            "workspace": {"tilt_limit": 0.6},
+        }
+        if coils:
+            actuator["torque_curve"] = {
+                "angle_unit": "deg",
+                "coefficients": [0.0, 0.01],
+                "blend_start": 2.0,
+                "support": [28.0, 32.0],
+            }
+        return self.write("actuator.yaml", yaml.safe_dump({"actuator": actuator}))
+
+    def import_csv(self, *arguments):
+        output = self.folder / "out.bag"
+        return call("import_csv", "--actuator", self.folder / "actuator.yaml", "--output", output, *arguments)
+
+    def refused(self, part, *arguments):
+        result = self.import_csv(*arguments)
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertIn(part, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertEqual(list(self.folder.glob("out.bag*")), [])
+
+    def messages(self, topic):
+        with rosbag.Bag(str(self.folder / "out.bag")) as bag:
+            return [message for _, message, _ in bag.read_messages([f"/actuator/{topic}"])]
+
+
+class ImportOfSamples(Folder):
+    HEADINGS = "joint_1 [deg],joint_2 [rad],joint_3,torque_x [N.mm],torque_y,torque_z [mNm],current_1 [mA],current_2 [A]"
+
+    def test_units_of_headings(self):
+        self.description(2)
+        table = self.write("s.csv", f"{self.HEADINGS}\n# by hand\n180,0.5,0.25,1000,2,500,1500,-1\n\n90,0,0,,,,,\n")
+        result = self.import_csv(table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout, "2 samples\n")
+        first, second = self.messages("samples")
+        np.testing.assert_allclose(first.joint_position, [math.pi, 0.5, 0.25], rtol=1e-15)
+        np.testing.assert_allclose([first.torque.x, first.torque.y, first.torque.z], [1.0, 2.0, 0.5])
+        self.assertEqual(list(first.current), [1.5, -1.0])
+        self.assertTrue(first.has_torque and not first.has_orientation)
+        self.assertFalse(second.has_torque)
+        self.assertEqual([first.id, second.id], [1, 2])
+        self.assertEqual(self.messages("parameters")[0].serial, "unit-7")
+
+    def test_errors_name_file_line_and_column(self):
+        self.description(2)
+        path = self.folder / "s.csv"
+
+        def refuse(text, part):
+            self.write("s.csv", text)
+            self.refused(part, path)
+
+        refuse(f"{self.HEADINGS}\n1,2,x,,,,,\n", f'{path}:2: column 3 (joint_3): "x" is not a number.')
+        refuse(f"{self.HEADINGS}\n1,2,3,,,,,\n1,nan,3,,,,,\n", f"{path}:3: column 2 (joint_2 [rad])")
+        refuse(f"{self.HEADINGS}\n1,,3,,,,,\n", f"{path}:2: column 2 (joint_2 [rad]): it is empty")
+        refuse(f"{self.HEADINGS}\n1,2,3,4,,6,1,1\n", "column 5 (torque_y): torque_y is empty")
+        refuse(f"{self.HEADINGS}\n1,2,3,4,5,6,,\n", f"{path}:2: a torque needs the currents of all 2 coils")
+        refuse(f"{self.HEADINGS}\n1,2,3,4,5,6,7,8,9\n", f"{path}:2: 9 cells, but 8 headings")
+        refuse("joint_1,joint_2\n1,2\n", f'{path}:1: "joint_3": there is no such column')
+        refuse("joint_1 [kg],joint_2,joint_3\n", "the unit must be one of rad, mrad, deg")
+        refuse("joint_1,joint_2,joint_3,speed\n", 'column 4 ("speed") is none of samples.csv')
+        refuse("joint_1,joint_2,joint_3,joint_1\n", "is there twice")
+        refuse("joint_1,joint_2,joint_3\n", "there is no sample")
+        refuse("", "there is no line 1 with headings")
+        quaternions = "joint_1,joint_2,joint_3,orientation_x,orientation_y,orientation_z,orientation_w\n"
+        refuse(quaternions + "1,2,3,0,0,0,2\n", "the quaternion has norm 2 instead of 1")
+        refuse("joint_1,joint_2,joint_3,validation\n1,2,3,4\n", "4 is outside [0, 1]")
+        refuse("joint_1,joint_2,joint_3,joint_1_stddev\n1,2,3,-1\n", "-1 is less than 0")
+        self.refused("no.csv: cannot be read", self.folder / "no.csv")
+        self.write("s.csv", "joint_1,joint_2,joint_3\n1,2,3\n")
+        self.write("actuator.yaml", "actuator: [1\n")
+        self.refused("actuator.yaml:2: this is not valid YAML", path)
+
+
+class ImportOfStreams(Folder):
+    """A model of a session in the formats of three neighbours, by the file of the example."""
+
+    def setUp(self):
+        super().setUp()
+        shutil.copy(SOURCE / "config/examples/import_csv/import.yaml", self.folder)
+        self.description(2)
+        random.seed(1)
+        self.times = [0.01 * n for n in range(300)]
+        self.orientation = about(2, 0.4) @ about(0, 0.2)
+        self.torque = np.array([0.1, -0.2, 0.3])
+        self.write_joints()
+        self.write_motion_capture()
+        self.write_force_torque()
+        rows = [f"{BEGIN + time:.6f},0.5,-0.25" for time in self.times]
+        self.write("currents.csv", "\n".join(["time,coil_1 [A],coil_2 [A]", *rows]) + "\n")
+
+    def write_joints(self):
+        headings = "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.name0,field.name1,field.name2,"
+        headings += "field.position0,field.position1,field.position2"
+        rows = [f"{int(BEGIN) * 10**9 + n * 10**7 + 77},{n},{int(BEGIN) * 10**9 + n * 10**7},,a,b,c,0.1,0.2,0.3" for n in range(300)]
+        self.write("joints.csv", "\n".join([headings, *rows]) + "\n")
+
+    def write_motion_capture(self):
+        # R_stator_rotor = R_stator_tracker R_tracker_marker R_rotor_marker^T, with the example's registrations.
+        measured = about(2, 0.5 * math.pi).T @ self.orientation @ about(1, math.pi / 3.0)
+        x, y, z, w = quaternion(measured.ravel())
+        head = ["Format Version,1.23,Take Name,Take 1", "", ",,Rigid Body,Rigid Body,Rigid Body,Rigid Body"]
+        head += [",,marker,marker,marker,marker", ",,id,id,id,id", ",,Rotation,Rotation,Rotation,Rotation"]
+        head += ["Frame,Time (Seconds),X,Y,Z,W,X,Y,Z"]
+        rows = [f"{n},{time:.6f},{x:.12f},{y:.12f},{z:.12f},{w:.12f},1,2,3" for n, time in enumerate(self.times)]
+        rows[7] = "7,0.070000,,,,,,,"
+        self.write("motion_capture.csv", "\n".join(head + rows) + "\n")
+
+    def write_force_torque(self):
+        rotation, force = about(2, math.pi / 6.0), np.array([1.0, 2.0, -3.0])
+        torque = 1e3 * rotation.T @ (self.torque - np.cross(LEVER, rotation @ force))
+        cells = ";".join(f"{value:.12g}" for value in (*force, *torque))
+        rows = [f"{1e3 * time:.3f};{cells}" for time in self.times]
+        self.write("force_torque.csv", "\n".join(["t_ms;Fx;Fy;Fz;Tx;Ty;Tz", *rows]) + "\n")
+
+    def test_streams_are_those_of_the_rotor(self):
+        result = self.import_csv("--streams", self.folder / "import.yaml")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("measured_orientation: 299 measurements, 1 lines without values left out", result.stdout)
+        joints = self.messages("joint_states")
+        self.assertEqual(joints[3].header.stamp.to_nsec(), int(BEGIN) * 10**9 + 3 * 10**7)
+        self.assertEqual((joints[0].name, joints[0].position), (["axis_0", "axis_1", "axis_2"], (0.1, 0.2, 0.3)))
+        orientation = self.messages("measured_orientation")[0]
+        q = orientation.quaternion
+        np.testing.assert_allclose(matrix([q.x, q.y, q.z, q.w]), self.orientation, atol=1e-10)
+        self.assertEqual(orientation.header.frame_id, "stator")
+        torque = self.messages("measured_torque")[5]
+        np.testing.assert_allclose([torque.vector.x, torque.vector.y, torque.vector.z], self.torque, atol=1e-10)
+        self.assertAlmostEqual(torque.header.stamp.to_sec(), BEGIN + 0.05, places=6)
+        self.assertEqual(self.messages("coil_currents")[0].current, (0.5, -0.25))
+        self.assertEqual(len(self.messages("calibration_description")), 1)
+        # They can be read: bad would be a status of 2.
+        result = run(CALIBRATE_BAG, "--output", self.folder / "o.yaml", "--cycles", "joint", self.folder / "out.bag")
+        self.assertIn("1 dwells at rest gave 1 samples", result.stdout)
+        self.assertEqual(result.returncode, 1, result.stderr)
+
+    def changed(self, part, **changes):
+        content = yaml.safe_load((self.folder / "import.yaml").read_text())
+        content["streams"][1].update(changes)
+        self.refused(part, "--streams", self.write("other.yaml", yaml.safe_dump(content)))
+
+    def test_errors_name_key_or_line(self):
+        self.changed("streams[1].values: 3 columns; 4 are needed", values=[1, 2, 3])
+        self.changed('motion_capture.csv:7: "X": 2 columns are called so; name one by its number', values=["X", 4, 5, 6])
+        self.changed("motion_capture.csv:7: there is no column 12: it has 9", values=[12, 4, 5, 6])
+        self.changed("streams[1].speed: a stream measured_orientation has no such key", speed=1)
+        self.changed("streams[1].stream: \"pose\" is none of joint_states", stream="pose")
+        self.changed("streams[1].stator_tracker: the quaternion x, y, z, w has norm 2", stator_tracker=[0, 0, 0, 2])
+        self.changed("streams[1].time.unit: it is one of s, ms, us, ns", time={"column": 2, "unit": "h"})
+        self.changed("is no stamp", time={"column": 2, "offset": -5})
+        lines = (self.folder / "motion_capture.csv").read_text().splitlines()
+        lines[9] = lines[9].replace(",1,2,3", "").replace("0.", "O.", 1)
+        self.write("motion_capture.csv", "\n".join(lines))
+        self.refused("motion_capture.csv:10: column 2 (Time (Seconds))", "--streams", self.folder / "import.yaml")
+
+
+class Export(Folder):
+    def test_what_is_no_session_is_refused(self):
+        with sqlite3.connect(self.folder / "other.db") as database:
+            database.execute("CREATE TABLE a (b)")
+        for name, part in (("no.db", "no such file"), ("other.db", "not a session"), ("text.db", "cannot be read")):
+            if name == "text.db":
+                self.write(name, "no database" * 1000)
+            result = call("export_session", self.folder / name, self.folder / "out")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(part, result.stderr)
+
+    def test_quaternions_give_back_the_rotation(self):
+        random.seed(2)
+        for _ in range(100):
+            q = np.array([random.gauss(0.0, 1.0) for _ in range(4)])
+            q[random.randrange(4)] *= 1e-9
+            q /= np.linalg.norm(q)
+            found = quaternion(matrix(q).ravel())
+            self.assertGreaterEqual(found[3], 0.0)
+            np.testing.assert_allclose(matrix(found), matrix(q), atol=1e-14)
+
+
+if __name__ == "__main__":
+    unittest.main()
