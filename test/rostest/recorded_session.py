@@ -20,7 +20,7 @@ TOLERANCE = 1e-9
 COIL = 3
 CURRENT = 1.5  # [A]
 POSES = [
-    [0.0, 0.0, 0.0],
+    [0.1, 0.2, 0.4],  # not where it rests at the start, before the recorder is connected
     [0.3, 0.0, 0.8],
     [-0.3, 0.1, 1.6],
     [0.0, 0.3, 2.4],
