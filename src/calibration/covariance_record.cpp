@@ -72,6 +72,18 @@ class Diagonal {
   Eigen::VectorXd variance_;
 };
 
+/// What the laboratory adds to measurements, and the weight of the rotor: no part of what coils and
+/// joints do.
+bool isOfLaboratory(const std::string& effect) {
+  static constexpr std::array<const char*, 5> kOfLaboratory = {"torque_bias",
+                                                               "rotor_unbalance",
+                                                               "marker_registration",
+                                                               "tracker_registration",
+                                                               "torque_registration"};
+  return std::any_of(
+      kOfLaboratory.begin(), kOfLaboratory.end(), [&](const char* name) { return effect == name; });
+}
+
 }  // namespace
 
 CovarianceRecord covarianceRecord(const ParameterSpace& space, const ParameterBelief& belief) {
@@ -127,6 +139,19 @@ Eigen::MatrixXd coordinateCovariance(const ParameterSpace& space,
     for (Eigen::Index b = 0; b <= a; ++b) {
       covariance(a, b) = *next++ / (units[a] * units[b]);
       covariance(b, a) = covariance(a, b);
+    }
+  }
+  return covariance;
+}
+
+Eigen::MatrixXd machineCovariance(const ParameterSpace& space,
+                                  const CalibratedDescription& description) {
+  Eigen::MatrixXd covariance = coordinateCovariance(space, description);
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    if (isOfLaboratory(placed.name)) {
+      const Eigen::Index first = space.effect() + placed.first;
+      covariance.middleRows(first, placed.size()).setZero();
+      covariance.middleCols(first, placed.size()).setZero();
     }
   }
   return covariance;

@@ -1,9 +1,7 @@
 #include "spherical_actuator_calibration/calibration/prediction.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/LU>
 
@@ -17,33 +15,8 @@ namespace {
 
 constexpr double kComponents = 3.0;
 
-/// What the laboratory adds to measurements, and the weight of the rotor: no part of what coils and
-/// joints do.
-bool isOfLaboratory(const std::string& effect) {
-  static constexpr std::array<const char*, 5> kOfLaboratory = {"torque_bias",
-                                                               "rotor_unbalance",
-                                                               "marker_registration",
-                                                               "tracker_registration",
-                                                               "torque_registration"};
-  return std::any_of(
-      kOfLaboratory.begin(), kOfLaboratory.end(), [&](const char* name) { return effect == name; });
-}
-
 CalibrationModel modelOf(const CalibratedDescription& description) {
   return CalibrationModel(ParameterSpace(description.actuator, effectsOf(description.calibration)));
-}
-
-Eigen::MatrixXd covarianceOf(const ParameterSpace& space,
-                             const CalibratedDescription& description) {
-  Eigen::MatrixXd covariance = coordinateCovariance(space, description);
-  for (const PlacedEffect& placed : space.effects().effects()) {
-    if (isOfLaboratory(placed.name)) {
-      const Eigen::Index first = space.effect() + placed.first;
-      covariance.middleRows(first, placed.size()).setZero();
-      covariance.middleCols(first, placed.size()).setZero();
-    }
-  }
-  return covariance;
 }
 
 }  // namespace
@@ -51,7 +24,7 @@ Eigen::MatrixXd covarianceOf(const ParameterSpace& space,
 Predictor::Predictor(const CalibratedDescription& description)
     : model_(modelOf(description)),
       x_(Eigen::VectorXd::Zero(model_.space().size())),
-      covariance_(covarianceOf(model_.space(), description)) {}
+      covariance_(machineCovariance(model_.space(), description)) {}
 
 double Predictor::parameterVariance(const ResidualJacobian& jacobian) const {
   return std::max(0.0, (jacobian * covariance_ * jacobian.transpose()).trace());

@@ -24,4 +24,9 @@ EffectSelection effectsOf(const std::optional<CalibrationRecord>& calibration);
 Eigen::MatrixXd coordinateCovariance(const ParameterSpace& space,
                                      const CalibratedDescription& description);
 
+/// The same of the machine alone: zero for effects of the laboratory (registrations, bias of the
+/// force/torque sensor, weight of the rotor), which are no part of what joints and coils do.
+Eigen::MatrixXd machineCovariance(const ParameterSpace& space,
+                                  const CalibratedDescription& description);
+
 }  // namespace sac

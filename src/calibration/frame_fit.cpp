@@ -1,0 +1,256 @@
+#include "frame_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
+
+namespace sac {
+namespace {
+
+constexpr Eigen::Index kFrames = 6;
+
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  signs[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+CalibrationModel modelOf(const CalibratedDescription& description) {
+  return CalibrationModel(ParameterSpace(description.actuator, effectsOf(description.calibration)));
+}
+
+/// Of all coordinates: as a calibration left them or as the description states it; the tolerance of
+/// manufacture for joints of which it states nothing.
+Eigen::MatrixXd machineUncertainty(const ParameterSpace& space,
+                                   const CalibratedDescription& description,
+                                   const ManufacturingTolerance& tolerance) {
+  if (description.calibration && description.calibration->covariance) {
+    return machineCovariance(space, description);
+  }
+  Eigen::VectorXd stddev = Eigen::VectorXd::Zero(space.size());
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const JointStddev& stated = description.stddevs.joints[k];
+    stddev.segment<ParameterSpace::kPerJoint>(space.joint(k)) =
+        Eigen::Vector3d(stated.offset.value_or(tolerance.joint_offset),
+                        stated.axis_u.value_or(tolerance.joint_axis),
+                        stated.axis_v.value_or(tolerance.joint_axis));
+  }
+  return stddev.cwiseAbs2().asDiagonal();
+}
+
+/// L with L Lᵀ the covariance, a column for each direction that is uncertain at all. Poles and
+/// coils turn no rotor.
+Eigen::MatrixXd rootOf(const ParameterSpace& space, Eigen::MatrixXd covariance) {
+  const Eigen::Index magnetic = space.effect() - space.joint(kJoints);
+  covariance.middleRows(space.joint(kJoints), magnetic).setZero();
+  covariance.middleCols(space.joint(kJoints), magnetic).setZero();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  constexpr double kNothing = 1e-14;  // of the largest variance
+  const double least = kNothing * solver.eigenvalues().maxCoeff();
+  Eigen::Index first = 0;
+  while (first < covariance.rows() && solver.eigenvalues()[first] <= least) {
+    ++first;
+  }
+  const Eigen::Index count = covariance.rows() - first;
+  return solver.eigenvectors().rightCols(count) *
+         solver.eigenvalues().tail(count).cwiseSqrt().asDiagonal();
+}
+
+/// The pose as a sample, its orientation by the frames.
+Sample sampleOf(const TrackedPose& pose, const Frames& frames) {
+  Sample sample;
+  sample.joint_position = pose.joint_position;
+  sample.has_orientation = true;
+  sample.R_stator_rotor =
+      frames.R_stator_tracker * pose.R_tracker_marker * frames.R_rotor_marker.transpose();
+  return sample;
+}
+
+}  // namespace
+
+Frames turnedByHalf(const Frames& frames,
+                    const Eigen::Vector3d& axis_stator,
+                    const Eigen::Matrix3d& R_stator_rotor) {
+  const Eigen::Matrix3d half = rotationExp(kPi * axis_stator.normalized());
+  return {half * frames.R_stator_tracker,
+          R_stator_rotor.transpose() * half * R_stator_rotor * frames.R_rotor_marker};
+}
+
+double angleBetween(const Frames& a, const Frames& b) {
+  return std::max(rotationLog(a.R_stator_tracker * b.R_stator_tracker.transpose()).norm(),
+                  rotationLog(a.R_rotor_marker * b.R_rotor_marker.transpose()).norm());
+}
+
+FrameFit::FrameFit(const CalibratedDescription& description,
+                   const std::vector<TrackedPose>& poses,
+                   const EstimationOptions& options)
+    : poses_(poses),
+      options_(options),
+      model_(modelOf(description)),
+      root_(rootOf(model_.space(),
+                   machineUncertainty(model_.space(), description, options.tolerance))) {
+  const JointGeometry joints = jointGeometry(description.actuator);
+  for (const TrackedPose& pose : poses) {
+    R_stator_rotor_.push_back(rotorOrientation(joints, pose.joint_position));
+  }
+}
+
+Frames FrameFit::start(const PoseSelection& used) const {
+  // vec(R Z Mᵀ) = (M ⊗ R) vec(Z), so that the sum is vec(X)ᵀ (Σ M ⊗ R) vec(Z).
+  Matrix9d sum = Matrix9d::Zero();
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    if (!used[n]) {
+      continue;
+    }
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      for (Eigen::Index b = 0; b < 3; ++b) {
+        sum.block<3, 3>(3 * a, 3 * b) += poses_[n].R_tracker_marker(a, b) * R_stator_rotor_[n];
+      }
+    }
+  }
+  const Eigen::JacobiSVD<Matrix9d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector9d left = svd.matrixU().col(0);
+  const Vector9d right = svd.matrixV().col(0);
+  const Eigen::Map<const Eigen::Matrix3d> tracker(left.data());
+  const Eigen::Map<const Eigen::Matrix3d> marker(right.data());
+  const double sign = tracker.determinant() < 0.0 ? -1.0 : 1.0;
+  return {nearestRotation(sign * tracker), nearestRotation(sign * marker)};
+}
+
+FrameFit::Row FrameFit::row(const Solution& at, std::size_t pose, double noise_scale) const {
+  const TrackedPose& measured = poses_[pose];
+  const Sample sample = sampleOf(measured, at.frames);
+  ResidualJacobian d_machine;
+  Row row;
+  row.residual = model_.orientationResidual(sample, root_ * at.w, &d_machine);
+  // X → e^{ξ̂}X turns e^{ŷ} into e^{ξ̂}e^{ŷ}; Z → e^{ζ̂}Z turns it into e^{ŷ}e^{−(Rζ)^}.
+  const Eigen::Matrix3d R_predicted = rotationExp(row.residual).transpose() * sample.R_stator_rotor;
+  row.jacobian.resize(3, unknowns());
+  row.jacobian.leftCols<3>() = leftJacobianInverse(row.residual);
+  row.jacobian.middleCols<3>(3) = -leftJacobianInverse(-row.residual) * R_predicted;
+  row.jacobian.rightCols(root_.cols()) = d_machine * root_;
+
+  const double stddev = measured.orientation_stddev > 0.0 ? measured.orientation_stddev
+                                                          : options_.default_orientation_stddev;
+  Eigen::Matrix3d noise = Eigen::Vector3d::Constant(stddev * stddev).asDiagonal();
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    // An error of a reading acts as an offset of that joint does.
+    const Eigen::Vector3d reading = d_machine.col(model_.space().joint(k)) *
+                                    measured.joint_stddev[static_cast<Eigen::Index>(k)];
+    noise += reading * reading.transpose();
+  }
+  if (const auto& map = model_.space().nominal().orientation_map) {
+    const OrientationMap::Uncertainty left_open = map->uncertainty(measured.joint_position);
+    noise.diagonal() += left_open.variance + left_open.noise;
+  }
+  const Eigen::LLT<Eigen::Matrix3d> root(noise_scale * noise_scale * noise);
+  row.whitened = root.matrixL().solve(row.residual);
+  root.matrixL().solveInPlace(row.jacobian);
+  return row;
+}
+
+double FrameFit::cost(const Solution& at, const PoseSelection& used, double noise_scale) const {
+  double sum = at.w.squaredNorm();
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    if (used[n]) {
+      sum += row(at, n, noise_scale).whitened.squaredNorm();
+    }
+  }
+  return sum;
+}
+
+FrameFit::Solution FrameFit::solve(const Frames& start,
+                                   const PoseSelection& used,
+                                   double noise_scale) const {
+  constexpr double kConverged = 1e-11;  // of a step [rad], standard deviations
+  constexpr double kLargestDamping = 1e8;
+  constexpr double kFactor = 10.0;
+  Solution solution{start, Eigen::VectorXd::Zero(root_.cols()), 0.0};
+  solution.cost = cost(solution, used, noise_scale);
+  double damping = 1e-6;
+  for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+    information.diagonal().tail(root_.cols()).setOnes();
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns());
+    gradient.tail(root_.cols()) = solution.w;
+    for (std::size_t n = 0; n < poses_.size(); ++n) {
+      if (used[n]) {
+        const Row each = row(solution, n, noise_scale);
+        information += each.jacobian.transpose() * each.jacobian;
+        gradient += each.jacobian.transpose() * each.whitened;
+      }
+    }
+    bool has_improved = false;
+    double step_size = 0.0;
+    while (!has_improved && damping < kLargestDamping) {
+      Eigen::MatrixXd damped = information;
+      damped.diagonal() *= 1.0 + damping;
+      const Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+      step_size = step.norm();
+      Solution next = solution;
+      next.frames.R_stator_tracker = rotationExp(step.head<3>()) * next.frames.R_stator_tracker;
+      next.frames.R_rotor_marker = rotationExp(step.segment<3>(3)) * next.frames.R_rotor_marker;
+      next.w += step.tail(root_.cols());
+      next.cost = cost(next, used, noise_scale);
+      has_improved = next.cost < solution.cost;
+      damping = has_improved ? damping / kFactor : damping * kFactor;
+      if (has_improved) {
+        solution = std::move(next);
+      } else if (step_size < kConverged) {
+        return solution;
+      }
+    }
+    if (!has_improved || step_size < kConverged) {
+      break;
+    }
+  }
+  return solution;
+}
+
+FrameFit::Judgement FrameFit::judge(const Solution& solution,
+                                    const PoseSelection& used,
+                                    double noise_scale) const {
+  Eigen::MatrixXd measured = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+  std::vector<Row> rows;
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    rows.push_back(row(solution, n, noise_scale));
+    if (used[n]) {
+      measured += rows.back().jacobian.transpose() * rows.back().jacobian;
+    }
+  }
+  Eigen::MatrixXd information = measured;
+  information.diagonal().tail(root_.cols()).array() += 1.0;
+  const Eigen::MatrixXd covariance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(unknowns(), unknowns()));
+  Judgement judgement;
+  judgement.covariance = covariance.topLeftCorner<kFrames, kFrames>();
+  judgement.noise_covariance =
+      (covariance * measured * covariance).topLeftCorner<kFrames, kFrames>();
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    const Row& each = rows[n];
+    // What the pose itself did not pull: the residual's covariance is smaller where it took part.
+    const double sign = used[n] ? -1.0 : 1.0;
+    const Eigen::Matrix3d spread =
+        Eigen::Matrix3d::Identity() + sign * each.jacobian * covariance * each.jacobian.transpose();
+    const double squared = each.whitened.dot(spread.ldlt().solve(each.whitened));
+    judgement.poses.push_back(
+        {poses_[n].id, each.residual, std::sqrt(std::max(0.0, squared) / 3.0), !used[n]});
+    judgement.gain.push_back(used[n] ? squared : 0.0);
+  }
+  return judgement;
+}
+
+}  // namespace sac

@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+"""register_frames against an independent laboratory: its intervals hold what they promise, its error is at the bound,
+and a calibration that takes over what it wrote is honest too."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+import cases
+import laboratory
+import numpy as np
+import yaml
+
+PROGRAM = os.path.join(os.environ.get("PROGRAMS", "build/devel/lib/spherical_actuator_calibration"), "register_frames")
+TOLERANCE = 0.03  # [rad] of manufacture, as configured by default
+ORIENTATION, READING = 3e-4, 1e-4  # [rad] standard deviations of tracker and joints
+TRIALS, POSES, TILT = 40, 12, 0.5
+EXACT_JOINTS = "tolerance: {joint_offset: 0.0, joint_axis: 0.0}\n"
+
+
+class Trial:
+    """A unit, where its tracker and marker sit, and what they measured."""
+
+    def __init__(self, seed, tolerance=TOLERANCE, poses=POSES):
+        rng = np.random.default_rng(seed)
+        self.unit = laboratory.paper_unit()
+        self.errors = np.zeros(self.unit.size())
+        self.errors[:9] = rng.normal(0.0, 1.0, 9) * tolerance
+        self.tracker = laboratory.rotation(rng.uniform(-1.5, 1.5, 3))
+        self.marker = laboratory.rotation(rng.uniform(-1.5, 1.5, 3))
+        self.joints = laboratory.random_poses(poses, TILT, rng)
+        self.readings = [q + rng.normal(0.0, READING, 3) for q in self.joints]
+        self.measured = [self.measure(q, rng) for q in self.joints]
+        self.rng = rng
+
+    def measure(self, q, rng):
+        """Of the marker in the tracker."""
+        noise = laboratory.rotation(rng.normal(0.0, ORIENTATION, 3))
+        return self.tracker.T @ noise @ self.unit.orientation(self.errors, q) @ self.marker
+
+    def write(self, path, orientations):
+        sensors = laboratory.Laboratory(orientation=ORIENTATION, joint=READING)
+        dwells = [laboratory.Dwell(q, R) for q, R in zip(self.readings, orientations)]
+        laboratory.write_samples(path, self.unit, sensors, dwells)
+
+    def bound(self):
+        """Covariance of both frames with joints that are known."""
+        information = np.zeros((6, 6))
+        for q in self.joints:
+            R = self.unit.orientation(self.errors, q)
+            columns = []
+            for k in range(3):
+                step = np.eye(3)[k] * 1e-6
+                turned = self.unit.orientation(self.errors, q + step) @ R.T
+                columns.append(laboratory.rotation_vector(turned) / 1e-6)
+            turns = np.stack(columns, axis=1)
+            noise = ORIENTATION**2 * np.eye(3) + READING**2 * turns @ turns.T
+            A = np.hstack([np.eye(3), -R])
+            information += A.T @ np.linalg.solve(noise, A)
+        return np.linalg.inv(information)
+
+
+def rotation_of(quaternion):
+    x, y, z, w = quaternion
+    v = np.array([x, y, z])
+    angle = 2.0 * np.arctan2(np.linalg.norm(v), w)
+    return laboratory.rotation(v / np.linalg.norm(v) * angle)
+
+
+class Registered:
+    def __init__(self, trial, config=""):
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [os.path.join(folder, name) for name in ("samples.yaml", "config.yaml", "frames.yaml")]
+            trial.write(paths[0], trial.measured)
+            with open(paths[1], "w", encoding="utf-8") as file:
+                file.write(config or "validation: {hold_out_every: 0}\n")
+            answer = subprocess.run(
+                [PROGRAM, "--actuator", cases.ACTUATOR, "--samples", paths[0], "--config", paths[1], "--output", paths[2]],
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            if answer.returncode != 0:
+                raise RuntimeError(answer.stdout + answer.stderr)
+            with open(paths[2], encoding="utf-8") as file:
+                self.text = yaml.safe_load(file)
+        found = self.text["registered_frames"]
+        self.tracker = rotation_of(found["stator_tracker"]["quaternion_xyzw"])
+        self.marker = rotation_of(found["rotor_marker"]["quaternion_xyzw"])
+        self.covariance = np.array(found["covariance"], float)
+        self.error = np.concatenate(
+            [
+                laboratory.rotation_vector(trial.tracker @ self.tracker.T),
+                laboratory.rotation_vector(trial.marker @ self.marker.T),
+            ]
+        )
+
+
+def shares(errors, stddevs):
+    """Share inside 95 %, and root mean square of the normalised errors."""
+    normalised = np.abs(np.array(errors) / np.array(stddevs))
+    return np.mean(normalised < 1.96), np.sqrt(np.mean(normalised**2))
+
+
+class RegistrationIsHonest(unittest.TestCase):
+    def test_joints_as_made_are_common_errors(self):
+        results = [Registered(Trial(seed)) for seed in range(TRIALS)]
+        stddevs = [np.sqrt(np.diag(result.covariance)) for result in results]
+        inside, rms = shares([result.error for result in results], stddevs)
+        self.assertGreater(inside, 0.90)
+        self.assertLess(inside, 0.99)
+        self.assertLess(abs(rms - 1.0), 0.2)
+        # All six together: chi-square of six degrees of freedom.
+        together = [r.error @ np.linalg.solve(r.covariance, r.error) for r in results]
+        self.assertLess(abs(np.mean(together) / 6.0 - 1.0), 0.3)
+        # Tolerances rule: noise alone would be a hundredth of it.
+        self.assertGreater(np.min(stddevs), 0.3 * TOLERANCE)
+
+    def test_with_joints_that_are_known_it_reaches_the_bound(self):
+        trials = [Trial(seed, tolerance=0.0) for seed in range(100, 100 + TRIALS)]
+        results = [Registered(trial, EXACT_JOINTS) for trial in trials]
+        bounds = [np.sqrt(np.diag(trial.bound())) for trial in trials]
+        inside, rms = shares([result.error for result in results], bounds)
+        self.assertGreater(inside, 0.90)
+        self.assertLess(inside, 0.99)
+        self.assertLess(abs(rms - 1.0), 0.15)
+        for result, bound in zip(results, bounds):
+            scale = np.sqrt(np.diag(result.covariance)) / bound
+            self.assertGreater(scale.min(), 0.95)
+            # A set of poses that scatters by chance widens its own result.
+            self.assertLess(scale.max(), 1.6)
+
+    def test_a_calibration_that_takes_it_over_is_honest(self):
+        errors, stddevs = [], []
+        for seed in range(200, 200 + TRIALS // 2):
+            trial = Trial(seed)
+            found = Registered(trial)
+            trial.joints = laboratory.random_poses(24, TILT, trial.rng)
+            trial.readings = [q + trial.rng.normal(0.0, READING, 3) for q in trial.joints]
+            dwells = [
+                laboratory.Dwell(reading, found.tracker @ trial.measure(q, trial.rng) @ found.marker.T)
+                for q, reading in zip(trial.joints, trial.readings)
+            ]
+            stated = [found.text["registration"][name]["stddev"] for name in ("stator_tracker", "rotor_marker")]
+            sensors = laboratory.Laboratory(orientation=ORIENTATION, joint=READING)
+            config = cases.registration_config((*stated, 0.0))
+            (outcome,) = cases.calibrate(trial.unit, [(sensors, dwells, 0)], config)
+            self.assertTrue(outcome.cycles[0][1], outcome.cycles[0][2])
+            self.assertTrue(outcome.identified[:9].all(), outcome.cycles[0][2])
+            errors.append(outcome.values[:9] - trial.errors[:9])
+            stddevs.append(outcome.stddevs[:9])
+        # Both frames err together, which the configuration cannot say: rather too wide than too narrow.
+        inside, rms = shares(errors, stddevs)
+        self.assertGreater(inside, 0.93)
+        self.assertGreater(rms, 0.6)
+        self.assertLess(rms, 1.1)
+
+    def test_argument_of_the_launch_file_is_what_was_found(self):
+        found = Registered(Trial(1)).text
+        for name in ("stator_tracker", "rotor_marker"):
+            words = [float(word) for word in found["launch"][name].split()]
+            self.assertEqual(words[:3], [0.0, 0.0, 0.0])
+            np.testing.assert_allclose(words[3:], found["registered_frames"][name]["quaternion_xyzw"], atol=1e-11)
+
+
+if __name__ == "__main__":
+    unittest.main()
