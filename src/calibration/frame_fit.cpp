@@ -103,6 +103,7 @@ FrameFit::FrameFit(const CalibratedDescription& description,
       root_(rootOf(model_.space(),
                    machineUncertainty(model_.space(), description, options.tolerance))) {
   const JointGeometry joints = jointGeometry(description.actuator);
+  R_stator_rotor_.reserve(poses.size());
   for (const TrackedPose& pose : poses) {
     R_stator_rotor_.push_back(rotorOrientation(joints, pose.joint_position));
   }
@@ -225,6 +226,7 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
                                     double noise_scale) const {
   Eigen::MatrixXd measured = Eigen::MatrixXd::Zero(unknowns(), unknowns());
   std::vector<Row> rows;
+  rows.reserve(poses_.size());
   for (std::size_t n = 0; n < poses_.size(); ++n) {
     rows.push_back(row(solution, n, noise_scale));
     if (used[n]) {

@@ -173,6 +173,7 @@ class Registrar {
     const Eigen::Matrix3d axes =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
     std::vector<FrameFit::Solution> solutions;
+    solutions.reserve(3);
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Frames turned = turnedByHalf(frames, axes.col(k), first);
       solutions.push_back(fit_.solve(turned, used_, noise_scale_));

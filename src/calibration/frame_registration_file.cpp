@@ -51,6 +51,7 @@ std::string render(const Actuator& actuator, const FrameRegistration& registrati
   writeFrame(writer, "rotor_marker", registration.R_rotor_marker, registration, 3);
   writer.line(1, "# [rad2] turn of the tracker in stator axes, then of the marker in rotor axes.");
   std::vector<std::string> rows;
+  rows.reserve(static_cast<std::size_t>(registration.covariance.rows()));
   for (Eigen::Index row = 0; row < registration.covariance.rows(); ++row) {
     rows.push_back(yamlNumbers(Eigen::RowVectorXd(registration.covariance.row(row))));
   }

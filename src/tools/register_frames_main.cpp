@@ -47,6 +47,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   std::vector<std::string> words;
   ros::removeROSArgs(argc, argv, words);
   std::vector<const char*> arguments;
+  arguments.reserve(words.size());
   for (const std::string& word : words) {
     arguments.push_back(word.c_str());
   }

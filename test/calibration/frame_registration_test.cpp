@@ -37,6 +37,7 @@ class FrameRegistrationTest : public testing::Test {
                                    const std::vector<Eigen::Vector3d>& joints,
                                    double noise) {
     std::vector<TrackedPose> poses;
+    poses.reserve(joints.size());
     for (const Eigen::Vector3d& q : joints) {
       poses.push_back(poseOf(truth, q, noise));
     }
