@@ -37,3 +37,15 @@ def check_calibrate_samples(case, program, source):
     case.assertEqual(
         sorted(name for name, line in lines.items() if line[2]), ["joint_3/axis_u", "joint_3/axis_v"]
     )
+
+
+def check_use_calibration(case, command, source):
+    """The example tells orientation, currents and torque of the machine as drawn, which is turned about z alone."""
+    result = run(*command, os.path.join(source, "config", "pm_spherical_8x24.yaml"), "0", "0", "0.5")
+    case.assertEqual(result.returncode, 0, result.stderr)
+    said = {name: rest.split() for name, _, rest in (line.partition(" ") for line in result.stdout.splitlines())}
+    numbers = [abs(float(word)) for word in said["orientation"] if word not in ("±", "rad")]
+    case.assertEqual(numbers, [0.0, 0.0, 0.247404, 0.968912, 0.0])
+    case.assertEqual(sum(name.startswith("coil_") for name in said), 24)
+    case.assertEqual([abs(float(word)) for word in said["torque"][:3]], [0.05, 0.0, 0.0])
+    return result.stdout

@@ -7,7 +7,7 @@ import re
 import shutil
 import unittest
 
-from example_case import check_calibrate_samples, run
+from example_case import check_calibrate_samples, check_use_calibration, run
 
 PACKAGE = "spherical_actuator_calibration"
 BUILD = pathlib.Path(os.environ["BUILD"])
@@ -68,6 +68,11 @@ class WithoutRos(unittest.TestCase):
         needed = run("ldd", program).stdout
         self.assertIn(f"libsac_core.so => {PREFIX}/lib/libsac_core.so", needed)
         self.assertNotRegex(needed, r"lib(ros|modbus|sqlite3|SQLiteCpp|Qt5)")
+
+    def test_example_uses_a_calibration(self):
+        program = build_examples(CONSUMER / "core", "use_calibration", "-DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON")
+        check_use_calibration(self, [program], SOURCE)
+        self.assertNotRegex(run("ldd", program).stdout, r"lib(ros|modbus|sqlite3|SQLiteCpp|Qt5)|not found")
 
     def test_example_reads_no_header_of_ros(self):
         read = run(

@@ -1,0 +1,49 @@
+// What a calibrated actuator does, without ROS:
+//   use_calibration CALIBRATED.yaml q1 q2 q3
+// Prints where the rotor is at these joint readings [rad], currents that turn it about its x axis,
+// and what torque they make, each with its standard deviation.
+// Exit status: 0 done; 2 bad usage or unreadable description.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include <Eigen/Geometry>
+
+#include <spherical_actuator_calibration/control/calibrated_actuator.hpp>
+
+int main(int argc, char** argv) {
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: use_calibration CALIBRATED.yaml q1 q2 q3\n");
+    return 2;
+  }
+  try {
+    const sac::CalibratedActuator actuator = sac::CalibratedActuator::load(argv[1]);
+    const Eigen::Vector3d joints(std::atof(argv[2]), std::atof(argv[3]), std::atof(argv[4]));
+
+    const auto pose = actuator.orientation(joints);
+    const Eigen::Quaterniond q(pose.R_stator_rotor);
+    std::printf(
+        "orientation %.6f %.6f %.6f %.6f ± %.6f rad\n", q.x(), q.y(), q.z(), q.w(), pose.stddev);
+
+    if (actuator.hasTorqueModel()) {
+      const Eigen::Vector3d wanted(0.05, 0.0, 0.0);  // [N·m], rotor frame
+      const auto found = actuator.currents(wanted, joints);
+      for (Eigen::Index coil = 0; coil < found.currents.size(); ++coil) {
+        std::printf("coil_%d %.4f ± %.4f A\n",
+                    static_cast<int>(coil) + 1,
+                    found.currents[coil],
+                    found.stddev[coil]);
+      }
+      const auto made = actuator.torque(joints, found.currents);
+      std::printf("torque %.5f %.5f %.5f ± %.5f N·m\n",
+                  made.torque.x(),
+                  made.torque.y(),
+                  made.torque.z(),
+                  made.stddev);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "use_calibration: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""What a calibrated actuator does: use_calibration.py CALIBRATED.yaml q1 q2 q3
+
+Prints where the rotor is at these joint readings [rad], currents that turn it about its x axis, and what torque they
+make, each with its standard deviation.
+"""
+
+import sys
+
+from spherical_actuator_calibration.calibrated_actuator import CalibratedActuator
+
+
+def main(path, *words):
+    joints = [float(word) for word in words]
+    with CalibratedActuator(path) as actuator:
+        pose = actuator.orientation(joints)
+        print("orientation", *(f"{q:.6f}" for q in pose.quaternion_xyzw), f"± {pose.stddev:.6f} rad")
+        if actuator.coils:
+            found = actuator.currents([0.05, 0.0, 0.0], joints)  # [N m], rotor frame
+            for coil, (current, stddev) in enumerate(zip(found.currents, found.stddevs), 1):
+                print(f"coil_{coil} {current:.4f} ± {stddev:.4f} A")
+            made = actuator.torque(joints, found.currents)
+            print("torque", *(f"{t:.5f}" for t in made.torque), f"± {made.stddev:.5f} N·m")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 5:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

@@ -1,0 +1,108 @@
+"""A calibrated actuator for programs in Python: orientation, torque and currents, each with its uncertainty.
+
+    with CalibratedActuator("calibrated.yaml") as actuator:
+        pose = actuator.orientation([0.1, 0.0, 0.5])
+        print(pose.quaternion_xyzw, "+-", pose.stddev)
+
+The numbers are those of the C++ class of the same name: its program `actuator_model` answers through a pipe, some ten
+thousand times a second. SI units; torques in the rotor frame; joint angles are raw readings.
+"""
+
+import os
+import subprocess
+import typing
+
+PACKAGE = "spherical_actuator_calibration"
+PROGRAM = "actuator_model"
+
+
+class Orientation(typing.NamedTuple):
+    quaternion_xyzw: list  # rotates rotor into stator coordinates
+    stddev: float  # of a component of the rotation error [rad]
+    is_supported: bool  # False far from all points of an orientation map
+
+
+class Torque(typing.NamedTuple):
+    torque: list  # of the coils on the rotor, rotor frame [N m]
+    stddev: float  # of a component [N m]
+
+
+class Currents(typing.NamedTuple):
+    outcome: str  # reached; limited: less torque than asked for; singular: none, and no currents
+    currents: list  # of every coil [A]
+    stddevs: list  # of each against the current that would make the torque in truth [A]
+    torque: list  # that they make, rotor frame [N m]
+    torque_stddev: float  # of a component [N m]
+
+
+def _program():
+    from roslib.packages import find_node  # pylint: disable=import-outside-toplevel
+
+    paths = find_node(PACKAGE, PROGRAM)
+    if not paths:
+        raise FileNotFoundError(f"{PACKAGE} has no program {PROGRAM}: source its setup.bash, or name it")
+    return paths[0]
+
+
+class CalibratedActuator:
+    """Not for several threads at a time."""
+
+    def __init__(self, description, program=None):
+        """`program`: path of actuator_model, where ROS does not know the package. Raises ValueError with what is wrong
+        with the description."""
+        self._process = subprocess.Popen(
+            [program or _program(), "--actuator", os.fspath(description)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            bufsize=1,
+        )
+        words = self._process.stdout.readline().split()
+        if not words:
+            message = self._process.stderr.read().strip()
+            self.close()
+            raise ValueError(message)
+        self.coils = int(words[1])  # 0 without a torque model
+        self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
+
+    def close(self):
+        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
+            pipe.close()
+        self._process.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _ask(self, question, *numbers):
+        words = [question, *(repr(float(number)) for group in numbers for number in group)]
+        self._process.stdin.write(" ".join(words) + "\n")
+        self._process.stdin.flush()
+        answer = self._process.stdout.readline()
+        if not answer:
+            raise RuntimeError(f"{PROGRAM} has ended")
+        if answer.startswith("error: "):
+            raise ValueError(answer[len("error: ") :].strip())
+        return answer.split()
+
+    def orientation(self, joints):
+        """At joint readings [rad]."""
+        *numbers, supported = self._ask("orientation", joints)
+        values = [float(number) for number in numbers]
+        return Orientation(values[:4], values[4], supported == "1")
+
+    def torque(self, joints, currents):
+        """Also at currents, one for each coil [A]."""
+        values = [float(number) for number in self._ask("torque", joints, currents)]
+        return Torque(values[:3], values[3])
+
+    def currents(self, torque, joints, limit=2.5):
+        """Of least power for a torque [N m, rotor frame], none beyond `limit` [A]."""
+        outcome, *numbers = self._ask("currents", torque, joints, [limit])
+        values = [float(number) for number in numbers]
+        coils = self.coils
+        made = values[2 * coils :]
+        return Currents(outcome, values[:coils], values[coils : 2 * coils], made[:3], made[3])

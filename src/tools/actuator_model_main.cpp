@@ -1,0 +1,146 @@
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "command_line.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/control/calibrated_actuator.hpp"
+#include "tool_main.hpp"
+
+namespace sac {
+namespace {
+
+constexpr char kIntroduction[] =
+    "Usage: actuator_model --actuator CALIBRATED.yaml\n\n"
+    "Answers questions about a calibrated actuator, a line for each line of the standard input;\n"
+    "other programs ask it through a pipe, those in Python by the module calibrated_actuator.\n"
+    "  orientation q1 q2 q3          -> qx qy qz qw stddev supported\n"
+    "  torque q1 q2 q3 i1 i2 ...     -> tx ty tz stddev\n"
+    "  currents tx ty tz q1 q2 q3 limit -> outcome i1 i2 ... s1 s2 ... tx ty tz stddev\n"
+    "in rad, A and N.m, the rotor frame; outcome is reached, limited or singular. What cannot be\n"
+    "answered is \"error: the reason\".\n"
+    "Exit status: 0 at the end of the input; 2 bad usage or unreadable description.\n\n";
+
+/// Numbers of one question.
+class Numbers {
+ public:
+  explicit Numbers(std::istringstream& line) {
+    std::string word;
+    while (line >> word) {
+      const std::optional<double> number = parsedNumber(word);
+      if (!number) {
+        throw DataError("\"" + word + "\" is no number.");
+      }
+      values_.push_back(*number);
+    }
+  }
+
+  void require(std::size_t count) const {
+    if (values_.size() != count) {
+      throw DataError("There are " + std::to_string(values_.size()) + " numbers where " +
+                      std::to_string(count) + " belong.");
+    }
+  }
+  double number(std::size_t place) const { return values_[place]; }
+  Eigen::Vector3d vector(std::size_t first) const { return Eigen::Vector3d(&values_[first]); }
+  Eigen::VectorXd from(std::size_t first) const {
+    return Eigen::Map<const Eigen::VectorXd>(values_.data() + first,
+                                             static_cast<Eigen::Index>(values_.size() - first));
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+template <typename Values>
+void append(const Values& values, std::string& text) {
+  for (const double value : values) {
+    text += (text.empty() ? "" : " ") + shortestText(value);
+  }
+}
+
+std::string orientation(const CalibratedActuator& actuator, const Numbers& asked) {
+  asked.require(3);
+  const Predictor::Orientation pose = actuator.orientation(asked.vector(0));
+  std::string text;
+  append(Eigen::Quaterniond(pose.R_stator_rotor).normalized().coeffs(), text);
+  return text + " " + shortestText(pose.stddev) + (pose.is_supported ? " 1" : " 0");
+}
+
+std::string torque(const CalibratedActuator& actuator, const Numbers& asked) {
+  asked.require(3 + actuator.coils());
+  const Predictor::Torque made = actuator.torque(asked.vector(0), asked.from(3));
+  std::string text;
+  append(made.torque, text);
+  return text + " " + shortestText(made.stddev);
+}
+
+std::string currents(const CalibratedActuator& actuator, const Numbers& asked) {
+  asked.require(7);
+  AllocationOptions options;
+  options.current_limit = asked.number(6);
+  const CalibratedActuator::Currents found =
+      actuator.currents(asked.vector(0), asked.vector(3), options);
+  std::string text = found.outcome == Allocation::kReached   ? "reached"
+                     : found.outcome == Allocation::kLimited ? "limited"
+                                                             : "singular";
+  append(found.currents, text);
+  append(found.stddev, text);
+  append(found.torque, text);
+  return text + " " + shortestText(found.torque_stddev);
+}
+
+std::string answer(const CalibratedActuator& actuator, const std::string& question) {
+  std::istringstream line(question);
+  std::string word;
+  line >> word;
+  const Numbers numbers(line);
+  if (word == "orientation") {
+    return orientation(actuator, numbers);
+  }
+  if (word == "torque") {
+    return torque(actuator, numbers);
+  }
+  if (word == "currents") {
+    return currents(actuator, numbers);
+  }
+  throw DataError("\"" + printable(word) + "\" is none of: orientation, torque, currents.");
+}
+
+void serve(const std::string& path) {
+  const CalibratedActuator actuator = CalibratedActuator::load(path);
+  std::cout << "ready " << (actuator.hasTorqueModel() ? actuator.coils() : 0) << " "
+            << (actuator.hasUncertainty() ? 1 : 0) << std::endl;
+  std::string question;
+  while (std::getline(std::cin, question)) {
+    std::string text;
+    try {
+      text = answer(actuator, question);
+    } catch (const Error& error) {
+      text = "error: " + printable(error.what());
+    }
+    // Who asked waits for it.
+    std::cout << text << std::endl;
+  }
+}
+
+}  // namespace
+}  // namespace sac
+
+int main(int argc, char** argv) {
+  return sac::runTool("actuator_model", [&] {
+    std::string path;
+    sac::CommandLine line(sac::kIntroduction);
+    line.addRequired("actuator", path, "YAML", "description, usually a calibrated one");
+    if (line.parse(argc, argv, std::cout)) {
+      sac::serve(path);
+    }
+    return sac::kToolSuccess;
+  });
+}

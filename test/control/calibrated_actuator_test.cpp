@@ -1,0 +1,66 @@
+#include "spherical_actuator_calibration/control/calibrated_actuator.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "support/scenarios.hpp"
+
+namespace sac {
+namespace {
+
+/// The paper's machine as made, poles and coils known to a milliradian.
+CalibratedDescription calibrated() {
+  CalibratedDescription description{scenarios::paperTruth(), {}, std::nullopt};
+  description.stddevs.poles.assign(description.actuator.poles.size(), {1e-3, 1e-3});
+  description.stddevs.coils.assign(description.actuator.coils.size(), {1e-3, 1e-3});
+  return description;
+}
+
+const Eigen::Vector3d& somewhere() {
+  static const Eigen::Vector3d reading(0.1, -0.2, 0.7);
+  return reading;
+}
+
+TEST(CalibratedActuator, CurrentsMakeTheTorqueThatWasAskedFor) {
+  const CalibratedActuator actuator(calibrated());
+  const Eigen::Vector3d wanted(0.05, -0.03, 0.04);
+  const CalibratedActuator::Currents found = actuator.currents(wanted, somewhere());
+  EXPECT_EQ(found.outcome, Allocation::kReached);
+  EXPECT_LT((found.torque - wanted).norm(), 1e-12);
+  const Predictor::Torque made = actuator.torque(somewhere(), found.currents);
+  EXPECT_LT((made.torque - wanted).norm(), 1e-12);
+  EXPECT_EQ(found.torque_stddev, made.stddev);
+  EXPECT_GT(made.stddev, 0.0);
+  EXPECT_GT(found.stddev.minCoeff(), 0.0);
+  // Of currents below half an ampere, milliradians make no more than some hundredths.
+  EXPECT_LT(found.stddev.maxCoeff(), 0.05);
+}
+
+TEST(CalibratedActuator, GainsCountOnce) {
+  CalibratedDescription weak = calibrated();
+  for (CoilAxis& coil : weak.actuator.coils) {
+    coil.gain = 0.5;
+  }
+  const Eigen::Vector3d wanted(0.05, -0.03, 0.04);
+  const auto plain = CalibratedActuator(calibrated()).currents(wanted, somewhere());
+  const auto more = CalibratedActuator(weak).currents(wanted, somewhere());
+  EXPECT_LT((more.currents - 2.0 * plain.currents).norm(), 1e-12);
+  EXPECT_LT((more.torque - wanted).norm(), 1e-12);
+}
+
+TEST(CalibratedActuator, SaysWhatItCannotTell) {
+  const CalibratedActuator actuator(calibrated());
+  EXPECT_THROW(actuator.torque(somewhere(), Eigen::VectorXd::Zero(3)), DataError);
+  EXPECT_THROW(actuator.orientation({0.0, std::nan(""), 0.0}), DataError);
+  CalibratedDescription joints_alone = calibrated();
+  joints_alone.actuator.torque_curve.reset();
+  const CalibratedActuator without(joints_alone);
+  EXPECT_FALSE(without.hasTorqueModel());
+  EXPECT_THROW(without.currents(Eigen::Vector3d::Zero(), somewhere()), DataError);
+  EXPECT_NO_THROW(without.orientation(somewhere()));
+}
+
+}  // namespace
+}  // namespace sac

@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""examples/use_calibration as this build makes it, and the same in Python."""
+
+import os
+import sys
+import unittest
+
+from example_case import check_use_calibration, run
+
+PROGRAM = os.environ["USE_CALIBRATION"]
+SOURCE = os.environ["SOURCE"]
+
+
+class UseCalibration(unittest.TestCase):
+    def test_in_both_languages_the_same(self):
+        script = os.path.join(SOURCE, "examples", "use_calibration.py")
+        in_cpp = check_use_calibration(self, [PROGRAM], SOURCE)
+        in_python = check_use_calibration(self, [sys.executable, script], SOURCE)
+        self.assertEqual(in_cpp.replace("-0.0000", "0.0000"), in_python.replace("-0.0000", "0.0000"))
+
+    def test_tells_what_it_cannot_read(self):
+        result = run(PROGRAM, "no_such_file.yaml", "0", "0", "0")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("no_such_file.yaml", result.stderr)
+        self.assertEqual(run(PROGRAM).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
