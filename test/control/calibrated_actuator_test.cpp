@@ -33,7 +33,9 @@ TEST(CalibratedActuator, CurrentsMakeTheTorqueThatWasAskedFor) {
   EXPECT_LT((made.torque - wanted).norm(), 1e-12);
   EXPECT_EQ(found.torque_stddev, made.stddev);
   EXPECT_GT(made.stddev, 0.0);
-  EXPECT_GT(found.stddev.minCoeff(), 0.0);
+  // Coils out of reach of all poles have neither.
+  EXPECT_GE(found.stddev.minCoeff(), 0.0);
+  EXPECT_GT(found.stddev.maxCoeff(), 0.0);
   // Of currents below half an ampere, milliradians make no more than some hundredths.
   EXPECT_LT(found.stddev.maxCoeff(), 0.05);
 }
