@@ -4,10 +4,8 @@
 #include <exception>
 #include <memory>
 
-#include <rosbag/query.h>
-#include <rosbag/view.h>
-
 #include "bag_files.hpp"
+#include "bag_reader.hpp"
 #include "recorded_topics.hpp"
 #include "recorded_unit.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -63,7 +61,7 @@ class PoseReader {
       } catch (const Error&) {
         throw;
       } catch (const std::exception& error) {
-        // rosbag reports damage by several exceptions, some of them of the standard library.
+        // Damage is told by several exceptions, some of them of the standard library.
         throw DataError(pathsOf(group) + ": the recording is damaged (" + error.what() +
                         "); copy it again, or rescue what is in it by `rosbag reindex`.");
       }
@@ -74,9 +72,10 @@ class PoseReader {
  private:
   void readUnit(const BagGroup& group) {
     for (BagFile* file : group) {
-      rosbag::View view(file->bag, rosbag::TopicQuery(topics_.name(TopicRole::kParameters)));
-      for (const rosbag::MessageInstance& message : view) {
-        const RecordedUnit& unit = decoder_.decode(message, unit_);
+      BagReader reader({file}, {topics_.name(TopicRole::kParameters)});
+      BagMessage message;
+      while (reader.next(message)) {
+        const RecordedUnit& unit = decoder_.decode(message.data, unit_);
         const bool is_other_kind = !unit.actuator.empty() && unit.actuator != actuator_.name;
         const bool is_other_unit =
             !unit.serial.empty() && !actuator_.serial.empty() && unit.serial != actuator_.serial;
@@ -90,21 +89,19 @@ class PoseReader {
   }
 
   void readGroup(const BagGroup& group, const std::function<void(double)>& progress) {
-    rosbag::View view;
-    for (const BagFile* file : group) {
-      view.addQuery(file->bag,
-                    rosbag::TopicQuery(std::vector<std::string>{joint_states_, tracker_poses_}));
-    }
-    const double size = std::max(1.0, static_cast<double>(view.size()));
+    BagReader reader(group, {joint_states_, tracker_poses_});
+    const ros::Time begin = reader.begin();
+    const double duration = secondsBetween(begin, reader.end());
     std::uint64_t count = 0;
-    for (const rosbag::MessageInstance& message : view) {
-      if (message.getTopic() == joint_states_) {
-        streams_.add(decoder_.decode(message, joint_state_));
+    BagMessage message;
+    while (reader.next(message)) {
+      if (message.connection->topic == joint_states_) {
+        streams_.add(decoder_.decode(message.data, joint_state_));
       } else {
-        streams_.add(decoder_.decode(message, pose_));
+        streams_.add(decoder_.decode(message.data, pose_));
       }
       if (++count % kProgressStep == 0 && progress) {
-        progress(static_cast<double>(count) / size);
+        progress(std::min(1.0, secondsBetween(begin, message.time) / duration));
       }
     }
     if (progress) {
