@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/moving_rotor.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "support/moving_rotor.hpp"
 #include "support/numeric_jacobian.hpp"
 
 namespace sac {

@@ -16,8 +16,8 @@
 
 namespace sac {
 
-/// What the calibration node publishes: `parameters`, `report`, `status`, and what the session rests
-/// on (`calibration_description`, `calibration_config`), latched, and `samples`.
+/// What the calibration node publishes: `parameters`, `report`, `status`, and what the session
+/// rests on (`calibration_description`, `calibration_config`), latched, and `samples`.
 class CalibrationTopics {
  public:
   /// `frame`: name of the stator frame.
