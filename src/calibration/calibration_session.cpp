@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
+#include "start_state.hpp"
 
 namespace sac {
 namespace {
@@ -33,60 +34,6 @@ std::vector<Sample> prepared(std::vector<Sample> samples,
     samples[n].validation = samples[n].validation || isHeldOut(n, config);
   }
   return samples;
-}
-
-/// Enters what a calibrated description states into a state.
-class StatedUncertainty {
- public:
-  StatedUncertainty(const ParameterSpace& space, CalibrationState& state)
-      : space_(space), state_(state) {}
-
-  void enter(const ParameterStddevs& stddevs) const {
-    for (std::size_t k = 0; k < kJoints; ++k) {
-      enter(space_.joint(k), stddevs.joints[k].offset, 1.0);
-      enter(space_.joint(k) + 1, stddevs.joints[k].axis_u, 1.0);
-      enter(space_.joint(k) + 2, stddevs.joints[k].axis_v, 1.0);
-    }
-    for (std::size_t i = 0; i < stddevs.poles.size(); ++i) {
-      enterAngles(space_.pole(i), stddevs.poles[i], space_.nominal().poles[i].polar);
-    }
-    for (std::size_t j = 0; j < stddevs.coils.size(); ++j) {
-      enterAngles(space_.coil(j), stddevs.coils[j], space_.nominal().coils[j].polar);
-    }
-  }
-
- private:
-  // Coordinate v of an axis is cos(polar) times the azimuth (AxisChart::aroundAngles).
-  void enterAngles(Eigen::Index at, const AxisStddev& stddev, double polar) const {
-    enter(at, stddev.polar, 1.0);
-    enter(at + 1, stddev.azimuth, std::cos(polar));
-  }
-
-  void enter(Eigen::Index at, const std::optional<double>& stddev, double scale) const {
-    if (stddev) {
-      state_.belief.covariance(at, at) = std::pow(scale * *stddev, 2);
-      state_.identified[static_cast<std::size_t>(at)] = true;
-    }
-  }
-
-  const ParameterSpace& space_;
-  CalibrationState& state_;
-};
-
-CalibrationState startState(const ParameterSpace& space,
-                            const CalibratedDescription& start,
-                            const ManufacturingTolerance& tolerance) {
-  CalibrationState state = nominalState(space, tolerance);
-  StatedUncertainty(space, state).enter(start.stddevs);
-  if (start.calibration) {
-    const std::vector<std::string>& open = start.calibration->unidentified;
-    for (Eigen::Index p = 0; p < space.size(); ++p) {
-      if (std::find(open.begin(), open.end(), space.name(p)) != open.end()) {
-        state.identified[static_cast<std::size_t>(p)] = false;
-      }
-    }
-  }
-  return state;
 }
 
 CycleRecord cycleRecord(const CycleReport& report) {
@@ -270,11 +217,13 @@ Actuator CalibrationSession::actuator() const {
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
   const auto last = std::find_if(
       reports_.rbegin(), reports_.rend(), [](const CycleReport& one) { return one.success; });
-  if (last != reports_.rend() && last->motion && last->motion->held_out.windows > 0) {
-    return validationOf(last->motion->held_out);
-  }
-  const HeldOutValidation result = validateHeldOut(
-      orientationMap().map ? mappedModel() : model_, samples_, state_, config_.estimation);
+  const HeldOutValidation result =
+      last != reports_.rend() && last->motion
+          ? validationOf(last->motion->held_out)
+          : validateHeldOut(orientationMap().map ? mappedModel() : model_,
+                            samples_,
+                            state_,
+                            config_.estimation);
   return result.samples == 0 ? std::nullopt : std::optional(result);
 }
 

@@ -14,7 +14,6 @@
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 
@@ -24,17 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSamplePeriod = 0.05;  // how often finished dwells are looked for [s]
-
-/// The cycle that a plan is asked for; the refinement where none is named.
-CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
-  for (const Cycle cycle : {Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine}) {
-    const bool needs_coil = cycle == Cycle::kPoles || cycle == Cycle::kCoil;
-    if (request.cycle == cycleName(cycle) || (request.cycle.empty() && cycle == Cycle::kRefine)) {
-      return {cycle, needs_coil ? indexOf(request.coil) : std::nullopt};
-    }
-  }
-  throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
-}
 
 }  // namespace
 
@@ -238,40 +226,6 @@ bool CalibrationNode::validate(msg::Calibrate::Request& /*request*/,
   response.report = topics_.stamped(validationToRos(validation, gradeCalibration(calibration)));
   response.success = response.report.success;
   response.message = response.report.message;
-  return true;
-}
-
-// Planning takes seconds: it works on a copy, so that nothing waits for it.
-bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
-                                msg::PlanPoses::Response& response) {
-  try {
-    PosePlanOptions plan_options;
-    plan_options.max_poses = request.max_poses;
-    plan_options.wanted_stddev = request.wanted_stddev;
-    PlanningProblem problem;
-    problem.request = plannedCycle(request);
-    std::vector<Sample> held;
-    {
-      const std::lock_guard<std::mutex> lock(session_mutex_);
-      const CalibrationSession& calibration = session_.calibration();
-      // The model never changes while the node runs.
-      problem.model = &calibration.model();
-      problem.state = calibration.state();
-      problem.estimation = calibration.config().estimation;
-      held = calibration.samples();
-      plan_options.start =
-          held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
-    }
-    problem.held = &held;
-    const PosePlan plan = sac::planPoses(problem, plan_options);
-    response = planToRos(plan);
-    const std::lock_guard<std::mutex> lock(session_mutex_);
-    plan_ = plan.poses;
-    publishStatus();
-  } catch (const std::exception& error) {
-    response.success = 0;
-    response.message = printable(error.what());
-  }
   return true;
 }
 
