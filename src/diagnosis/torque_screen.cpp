@@ -215,6 +215,12 @@ class TorqueScreen {
     }
   }
 
+  /// A coil that is off measures some milliamperes all the same, which explain anything when they
+  /// are multiplied by enough.
+  bool isOn(const PredictedTorque& torque, Eigen::Index coil) const {
+    return std::abs(torque.current[coil]) > config_.estimation.current_threshold;
+  }
+
   /// By the samples in which one of two coils is on.
   template <typename Change>
   void addWithCurrent(const Hypothesis& hypothesis,
@@ -224,7 +230,7 @@ class TorqueScreen {
     double gain = 0.0;
     for (std::size_t n = 0; n < torques_.size(); ++n) {
       const PredictedTorque& torque = torques_[n];
-      if (torque.current[first] == 0.0 && torque.current[second] == 0.0) {
+      if (!isOn(torque, first) && !isOn(torque, second)) {
         continue;
       }
       Eigen::VectorXd current = torque.current;
@@ -242,6 +248,9 @@ class TorqueScreen {
     double top = 0.0;
     double bottom = 0.0;
     for (const PredictedTorque& torque : torques_) {
+      if (!isOn(torque, coil)) {
+        continue;
+      }
       const Eigen::Vector3d own = torque.per_ampere.col(coil) * torque.current[coil];
       const double weight = 1.0 / torque.variance(torque.current);
       top += weight * own.dot(torque.measured - torque.total + own);

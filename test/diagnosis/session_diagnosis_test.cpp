@@ -1,5 +1,7 @@
 #include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
@@ -20,6 +22,27 @@ class SessionDiagnosis : public ::testing::Test {
 
 TEST_F(SessionDiagnosis, NamesNothingWhereAllIsWell) {
   EXPECT_TRUE(diagnose(session(scenarios::paperTruth(), 1)).empty());
+}
+
+// Six torques of one coil; the amplifier measures a milliampere in the others, as it does.
+TEST_F(SessionDiagnosis, SaysNothingOfCoilsThatAreOff) {
+  constexpr std::size_t kCoil = 2;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    scenarios::Generator generator(seed);
+    const Actuator truth = scenarios::perturbed(scenarios::paperNominal(), 0.03, 0.02, generator);
+    const std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(6, 0.3, generator);
+    std::vector<Sample> samples =
+        scenarios::torqueSamples(truth, poses, kCoil, 1.5, 1e-4, 1e-4, generator);
+    std::normal_distribution<double> ampere(0.0, 1e-3);
+    for (Sample& sample : samples) {
+      for (Eigen::Index coil = 0; coil < sample.current.size(); ++coil) {
+        sample.current[coil] += ampere(generator);
+      }
+    }
+    const std::vector<Diagnosis> mistakes =
+        diagnoseMistakes({{scenarios::paperNominal()}, samples, {}});
+    EXPECT_TRUE(mistakes.empty()) << seed << ": " << mistakes.front().message;
+  }
 }
 
 TEST_F(SessionDiagnosis, NamesTheStrengthThatTheMagnetsLost) {

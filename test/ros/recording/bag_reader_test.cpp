@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -86,6 +87,9 @@ class BagReaderTest : public testing::Test {
       handed.emplace_back(message.time.toNSec(), message.connection->topic, message.data);
     }
     EXPECT_FALSE(reader.next(message));
+    if (handed.empty()) {
+      throw std::logic_error("no message was handed out");
+    }
     EXPECT_EQ(reader.begin().toNSec(), std::get<0>(handed.front()));
     EXPECT_EQ(reader.end().toNSec(), std::get<0>(handed.back()));
     return handed;
