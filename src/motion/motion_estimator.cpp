@@ -246,11 +246,11 @@ HeldOutMotion Estimator::countHeldOut() {
       turns += std::pow(terms_.noise().orientation, 2) * term.residual.squaredNorm();
     }
   }
-  const auto rootMean = [](double sum, std::size_t count) {
+  const auto root_mean = [](double sum, std::size_t count) {
     return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
   };
-  held_out.torque_rms = rootMean(torques, held_out.windows);
-  held_out.orientation_rms = rootMean(turns, held_out.orientations);
+  held_out.torque_rms = root_mean(torques, held_out.windows);
+  held_out.orientation_rms = root_mean(turns, held_out.orientations);
   return held_out;
 }
 

@@ -25,7 +25,7 @@ std::size_t bytesOf(const MotionStreams& streams) {
 /// of no use here.
 bool isOfUse(const MotionStreams& streams) {
   constexpr double kLeastTime = 1.0;  // [s]
-  return movingTime(streams) >= kLeastTime && drivenShare(streams) >= 0.1;
+  return timesOf(streams).driven_motion >= kLeastTime;
 }
 
 }  // namespace

@@ -77,42 +77,44 @@ MotionRecording MotionRecorder::take() {
   return std::exchange(recording_, MotionRecording());
 }
 
-double movingTime(const MotionStreams& streams) {
-  constexpr double kSpan = 0.1;    // [s] over which a rotor turns or rests
-  constexpr double kMoved = 0.01;  // [rad] in that time
-  double time = 0.0;
+MotionTimes timesOf(const MotionStreams& streams) {
+  constexpr double kSpan = 0.1;      // [s] over which a rotor turns or rests
+  constexpr double kMoved = 0.01;    // [rad] in that time
+  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
+  MotionTimes times;
   std::size_t begin = 0;
+  std::size_t current = 0;
   for (std::size_t n = 1; n < streams.joints.size(); ++n) {
     const double passed = secondsBetween(streams.joint_stamps[begin], streams.joint_stamps[n]);
     if (passed < kSpan) {
       continue;
     }
-    time += (streams.joints[n] - streams.joints[begin]).norm() > kMoved ? passed : 0.0;
+    bool is_driven = false;
+    for (; current < streams.current_stamps.size() &&
+           streams.current_stamps[current] < streams.joint_stamps[n];
+         ++current) {
+      const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
+      is_driven = is_driven || row.cwiseAbs().maxCoeff() > kCurrent;
+    }
+    const bool moves = (streams.joints[n] - streams.joints[begin]).norm() > kMoved;
+    times.all += passed;
+    times.motion += moves ? passed : 0.0;
+    times.driven += is_driven ? passed : 0.0;
+    times.driven_motion += moves && is_driven ? passed : 0.0;
     begin = n;
   }
-  return time;
-}
-
-double drivenShare(const MotionStreams& streams) {
-  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
-  if (streams.currents.size() == 0) {
-    return 0.0;
-  }
-  const auto driven = (streams.currents.cwiseAbs().rowwise().maxCoeff().array() > kCurrent).count();
-  return static_cast<double>(driven) / static_cast<double>(streams.currents.rows());
+  return times;
 }
 
 bool tellsMotion(const MotionRecording& recording) {
-  double moving = 0.0;
-  double all = 0.0;
-  double driven = 0.0;
+  MotionTimes sum;
   for (const MotionStreams& streams : recording.spans) {
-    const double time = secondsBetween(streams.joint_stamps.front(), streams.joint_stamps.back());
-    moving += movingTime(streams);
-    driven += time * drivenShare(streams);
-    all += time;
+    const MotionTimes times = timesOf(streams);
+    sum.all += times.all;
+    sum.motion += times.motion;
+    sum.driven += times.driven;
   }
-  return all > 0.0 && 2.0 * moving > all && 2.0 * driven > all;
+  return sum.all > 0.0 && 2.0 * sum.motion > sum.all && 2.0 * sum.driven > sum.all;
 }
 
 }  // namespace sac

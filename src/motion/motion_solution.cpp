@@ -228,7 +228,7 @@ void MotionDescent::solveCoarsely() {
   }
 }
 
-bool MotionDescent::solveFinely(const std::function<bool()>& weighAnew) {
+bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
   // A step as short as this one changes the derivatives by nothing that counts.
   constexpr double kEnd = 1.0;
   constexpr double kSettled = 0.02;
@@ -245,7 +245,7 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weighAnew) {
     bool settled = settle(kSettled);
     // Far from the solution everything is an outlier.
     const bool is_near = iteration > 0 || lengthOf(x_ - start) <= kEnd;
-    while (settled && is_near && weighings < kMostWeighings && weighAnew()) {
+    while (settled && is_near && weighings < kMostWeighings && weigh_anew()) {
       ++weighings;
       settled = settle(kSettled);
     }

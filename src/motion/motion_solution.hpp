@@ -31,9 +31,9 @@ class MotionDescent {
   /// Coarsely from the prior, with the delay of the currents that explains most.
   void solveCoarsely();
   /// On from the present place, to the last digit that counts; false where there is no end.
-  /// `weighAnew` looks at noise and outliers at the present place, and tells whether that changed
+  /// `weigh_anew` looks at noise and outliers at the present place, and tells whether that changed
   /// what counts.
-  bool solveFinely(const std::function<bool()>& weighAnew);
+  bool solveFinely(const std::function<bool()>& weigh_anew);
 
   const Eigen::VectorXd& x() const { return x_; }
   const MotionSums& sums() const { return sums_; }

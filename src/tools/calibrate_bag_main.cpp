@@ -312,6 +312,12 @@ void writeReport(const std::string& report, const Files& files, OverwritePolicy 
   }
 }
 
+void print(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    std::cout << line << "\n";
+  }
+}
+
 int calibrateBag(const CalibrateBagOptions& options) {
   const OpenRecordings recordings(options.bags);
   const CalibrateBagSetup setup = readSetup(options, recordings);
@@ -322,15 +328,14 @@ int calibrateBag(const CalibrateBagOptions& options) {
   const CertificateIssuer issuer =
       options.issuer_path ? loadCertificateIssuer(*options.issuer_path) : CertificateIssuer{};
 
+  print(setup.lines);
   Recording recording = readBags(recordings, options, start.actuator, config);
   const bool takes_motion = takesMotion(recording, options, start.actuator);
   if (takes_motion) {
     recording.report.missing.clear();
   }
   const std::vector<std::string> lines = describe(recording.report);
-  for (const std::string& line : lines) {
-    std::cout << line << "\n";
-  }
+  print(lines);
   if (takes_motion) {
     config.effects = withMotionEffects(config.effects);
   }

@@ -1,7 +1,5 @@
 #include "calibrate_bag_setup.hpp"
 
-#include <iostream>
-
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/recording/recorded_setup.hpp"
@@ -16,24 +14,24 @@ CalibrateBagSetup readSetup(const CalibrateBagOptions& options, const OpenRecord
   CalibrateBagSetup setup;
   if (options.actuator_path) {
     setup.start = loadDescription(*options.actuator_path);
-    std::cout << "Description: " << *options.actuator_path << "\n";
+    setup.lines.push_back("Description: " + *options.actuator_path);
   } else if (recorded.description) {
     setup.start = *recorded.description;
-    std::cout << "Description: as recorded, " << setup.start.actuator.name
-              << (setup.start.actuator.serial.empty() ? "" : ", unit ")
-              << setup.start.actuator.serial << "\n";
+    const Actuator& actuator = setup.start.actuator;
+    setup.lines.push_back("Description: as recorded, " + actuator.name +
+                          (actuator.serial.empty() ? "" : ", unit " + actuator.serial));
   } else {
     throw ConfigError("--actuator is needed: the recordings hold no description (topic " +
                       topicPrefix(options.ns) + kDescriptionTopic + ").");
   }
   if (options.config_path) {
     setup.config = loadCalibrationConfig(*options.config_path);
-    std::cout << "Configuration: " << *options.config_path << "\n";
+    setup.lines.push_back("Configuration: " + *options.config_path);
   } else if (recorded.config) {
     setup.config = *recorded.config;
-    std::cout << "Configuration: as recorded\n";
+    setup.lines.emplace_back("Configuration: as recorded");
   } else {
-    std::cout << "Configuration: defaults\n";
+    setup.lines.emplace_back("Configuration: defaults");
   }
   return setup;
 }

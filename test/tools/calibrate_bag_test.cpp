@@ -355,7 +355,7 @@ TEST_F(CalibrateBag, RefusesBadUsage) {
   expectRefusal("--actuator " + actuator() + " --output " + output(), "recording (BAG) is needed");
   expectRefusal(good + " --cycles joint,pole:1", "The cycle \"pole:1\" is unknown");
   expectRefusal(good + " --cycles ''", "--cycles needs a value");
-  expectRefusal(good + " --from dwells", "--from: \"dwells\" is neither samples nor streams");
+  expectRefusal(good + " --from tables", "--from: \"tables\" is ");
   expectRefusal(good + " --from samples", "/actuator/samples was not recorded");
   expectRefusal(good + " --speed 3", "--speed");
   expectRefusal(good + " --cycle joint", "--cycle");

@@ -29,10 +29,15 @@ struct MotionRecording {
   bool empty() const { return spans.empty(); }
 };
 
-/// For how long the joints turn [s].
-double movingTime(const MotionStreams& streams);
-/// Share of the currents with some coil on.
-double drivenShare(const MotionStreams& streams);
+/// For how long a rotor did what [s].
+struct MotionTimes {
+  double all = 0.0;
+  double motion = 0.0;         ///< the joints turned
+  double driven = 0.0;         ///< some coil was on
+  double driven_motion = 0.0;  ///< both
+};
+
+MotionTimes timesOf(const MotionStreams& streams);
 
 /// Whether a rotor moves with currents, so that the recording is one of motion rather than dwells:
 /// it turns for most of the time, and nothing else would tell the torque.
