@@ -87,8 +87,8 @@ TEST_F(RecordedSetupOf, NonsenseIsRefusedAsOfAFile) {
 TEST_F(RecordedSetupOf, AStrangerReadsNoOtherFile) {
   std::string text = description();
   const std::size_t curve = text.find("torque_curve:");
-  text = text.substr(0, curve) + "torque_curve: {table: /etc/passwd}" +
-         text.substr(text.find('\n', curve));
+  const std::size_t end = text.find('\n', curve);
+  text.replace(curve, end - curve, "torque_curve: {table: /etc/passwd}");
   expectError<ConfigError>({{"calibration_description", text}}, "names no file");
 }
 
