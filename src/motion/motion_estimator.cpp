@@ -231,10 +231,13 @@ HeldOutMotion Estimator::countHeldOut() {
   double torques = 0.0;
   const std::vector<WindowTerm>& windows = terms_.windows();
   for (std::size_t n = 0; n < windows.size(); ++n) {
-    if (windows[n].held_out && windows[n].active) {
+    if (!windows[n].held_out || windows[n].residual.size() == 0) {
+      continue;
+    }
+    if (windows[n].active) {
       held_out.residuals.push_back(residualOf(n));
       torques += held_out.residuals.back().residual.squaredNorm();
-    } else if (windows[n].held_out) {
+    } else {
       ++held_out.rejected;
     }
   }

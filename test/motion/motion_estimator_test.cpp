@@ -11,14 +11,16 @@
 namespace sac {
 namespace {
 
-MotionEstimate estimated(const CalibrationModel& model, const MotionRecording& recording) {
+MotionEstimate estimated(const CalibrationModel& model,
+                         const MotionRecording& recording,
+                         const MotionOptions& options = {}) {
   MotionProblem problem;
   problem.model = &model;
   problem.recording = &recording;
   problem.prior = nominalState(model.space(), {}).belief;
   problem.free.resize(static_cast<std::size_t>(model.space().size()));
   std::iota(problem.free.begin(), problem.free.end(), 0);
-  return estimateMotion(problem, {}, {});
+  return estimateMotion(problem, {}, options);
 }
 
 CalibrationModel motionModel() {
@@ -112,6 +114,17 @@ TEST(MotionEstimator, HoldsOutEveryTenthWindowOfALongRecording) {
   for (const ObservationResidual& residual : held_out.residuals) {
     EXPECT_EQ(residual.observation.sample % 10, 5U);
   }
+}
+
+// Windows are cut, some of them held out, and none is looked at.
+TEST(MotionEstimator, RefusesFewResidualsOfManyWindows) {
+  MotionOptions options;
+  options.test_functions = 1;
+  options.least_windows_to_hold_out = 2;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, madeRotor().record(), options);
+  EXPECT_EQ(found.estimate.termination, Termination::kTooFewObservations);
+  EXPECT_EQ(found.summary.held_out.windows, 0U);
 }
 
 TEST(MotionEstimator, HoldsOutNothingOfAShortRecording) {
