@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 namespace {
@@ -63,10 +64,11 @@ std::optional<double> heldOutError(const CalibrationSession& session) {
     }
     const CycleOutcome outcome = runCycle(
         session.model(), others, session.state(), {Cycle::kRefine}, session.config().estimation);
+    const ModelPoint point(session.model(), outcome.state.belief.x);
     for (std::size_t n = 0; outcome.report.success && n < others.size(); ++n) {
       const Sample& sample = session.samples()[n];
       if (regions[n] == region && sample.has_orientation && !sample.validation) {
-        sum += session.model().orientationResidual(sample, outcome.state.belief.x).squaredNorm();
+        sum += point.orientationResidual(sample).squaredNorm();
         ++count;
       }
     }

@@ -131,12 +131,15 @@ Frames FrameFit::start(const PoseSelection& used) const {
   return {nearestRotation(sign * tracker), nearestRotation(sign * marker)};
 }
 
-FrameFit::Row FrameFit::row(const Solution& at, std::size_t pose, double noise_scale) const {
+FrameFit::Row FrameFit::row(const ModelPoint& point,
+                            const Frames& frames,
+                            std::size_t pose,
+                            double noise_scale) const {
   const TrackedPose& measured = poses_[pose];
-  const Sample sample = sampleOf(measured, at.frames);
+  const Sample sample = sampleOf(measured, frames);
   ResidualJacobian d_machine;
   Row row;
-  row.residual = model_.orientationResidual(sample, root_ * at.w, &d_machine);
+  row.residual = point.orientationResidual(sample, &d_machine);
   // X → e^{ξ̂}X turns e^{ŷ} into e^{ξ̂}e^{ŷ}; Z → e^{ζ̂}Z turns it into e^{ŷ}e^{−(Rζ)^}.
   const Eigen::Matrix3d R_predicted = rotationExp(row.residual).transpose() * sample.R_stator_rotor;
   row.jacobian.resize(3, unknowns());
@@ -164,10 +167,11 @@ FrameFit::Row FrameFit::row(const Solution& at, std::size_t pose, double noise_s
 }
 
 double FrameFit::cost(const Solution& at, const PoseSelection& used, double noise_scale) const {
+  const ModelPoint point = pointOf(at);
   double sum = at.w.squaredNorm();
   for (std::size_t n = 0; n < poses_.size(); ++n) {
     if (used[n]) {
-      sum += row(at, n, noise_scale).whitened.squaredNorm();
+      sum += row(point, at.frames, n, noise_scale).whitened.squaredNorm();
     }
   }
   return sum;
@@ -183,13 +187,14 @@ FrameFit::Solution FrameFit::solve(const Frames& start,
   solution.cost = cost(solution, used, noise_scale);
   double damping = 1e-6;
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+    const ModelPoint point = pointOf(solution);
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns(), unknowns());
     information.diagonal().tail(root_.cols()).setOnes();
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns());
     gradient.tail(root_.cols()) = solution.w;
     for (std::size_t n = 0; n < poses_.size(); ++n) {
       if (used[n]) {
-        const Row each = row(solution, n, noise_scale);
+        const Row each = row(point, solution.frames, n, noise_scale);
         information += each.jacobian.transpose() * each.jacobian;
         gradient += each.jacobian.transpose() * each.whitened;
       }
@@ -225,10 +230,11 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
                                     const PoseSelection& used,
                                     double noise_scale) const {
   Eigen::MatrixXd measured = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+  const ModelPoint point = pointOf(solution);
   std::vector<Row> rows;
   rows.reserve(poses_.size());
   for (std::size_t n = 0; n < poses_.size(); ++n) {
-    rows.push_back(row(solution, n, noise_scale));
+    rows.push_back(row(point, solution.frames, n, noise_scale));
     if (used[n]) {
       measured += rows.back().jacobian.transpose() * rows.back().jacobian;
     }

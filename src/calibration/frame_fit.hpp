@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/calibration/tracked_pose.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 
@@ -69,7 +70,11 @@ class FrameFit {
     Eigen::Vector3d whitened;  ///< without unit
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;
   };
-  Row row(const Solution& at, std::size_t pose, double noise_scale) const;
+  ModelPoint pointOf(const Solution& at) const { return {model_, root_ * at.w}; }
+  Row row(const ModelPoint& point,
+          const Frames& frames,
+          std::size_t pose,
+          double noise_scale) const;
   double cost(const Solution& at, const PoseSelection& used, double noise_scale) const;
   Eigen::Index unknowns() const { return 6 + root_.cols(); }
 

@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 #include "spherical_actuator_calibration/estimation/orientation_map_fit.hpp"
 
 namespace sac {
@@ -53,12 +54,13 @@ UnexplainedRotations unexplained(const CalibrationModel& model,
                                  const std::vector<Sample>& samples,
                                  const Eigen::VectorXd& x) {
   const std::shared_ptr<const OrientationMap>& nominal = model.space().nominal().orientation_map;
+  const ModelPoint point(model, x);
   UnexplainedRotations result;
   for (const Sample& sample : samples) {
     if (!serves(sample)) {
       continue;
     }
-    Eigen::Vector3d rotation = model.orientationResidual(sample, x);
+    Eigen::Vector3d rotation = point.orientationResidual(sample);
     if (nominal) {
       rotation =
           rotationLog(rotationExp(rotation) * rotationExp(nominal->mean(sample.joint_position)));

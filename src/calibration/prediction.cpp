@@ -15,16 +15,17 @@ namespace {
 
 constexpr double kComponents = 3.0;
 
-CalibrationModel modelOf(const CalibratedDescription& description) {
-  return CalibrationModel(ParameterSpace(description.actuator, effectsOf(description.calibration)));
+std::shared_ptr<const CalibrationModel> modelOf(const CalibratedDescription& description) {
+  return std::make_shared<const CalibrationModel>(
+      ParameterSpace(description.actuator, effectsOf(description.calibration)));
 }
 
 }  // namespace
 
 Predictor::Predictor(const CalibratedDescription& description)
     : model_(modelOf(description)),
-      x_(Eigen::VectorXd::Zero(model_.space().size())),
-      covariance_(machineCovariance(model_.space(), description)) {}
+      point_(*model_, Eigen::VectorXd::Zero(model_->space().size())),
+      covariance_(machineCovariance(model_->space(), description)) {}
 
 double Predictor::parameterVariance(const ResidualJacobian& jacobian) const {
   return std::max(0.0, (jacobian * covariance_ * jacobian.transpose()).trace());
@@ -34,13 +35,13 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
   Sample sample;
   sample.joint_position = reading;
   sample.has_orientation = true;
-  predictMeasurements(model_, x_, sample);
+  predictMeasurements(point_, sample);
   ResidualJacobian jacobian;
-  model_.orientationResidual(sample, x_, &jacobian);
+  point_.orientationResidual(sample, &jacobian);
   double variance = parameterVariance(jacobian);
   Orientation result;
   result.R_stator_rotor = sample.R_stator_rotor;
-  const Actuator& actuator = model_.space().nominal();
+  const Actuator& actuator = model_->space().nominal();
   if (actuator.orientation_map) {
     const OrientationMap::Uncertainty map = actuator.orientation_map->uncertainty(reading);
     variance += map.variance.sum() + map.noise.sum();
@@ -58,16 +59,16 @@ Predictor::Torque Predictor::torque(const Eigen::Vector3d& reading,
   const std::vector<Excitation> excitations = excitedCoils(sample, 0.0);
   ResidualJacobian jacobian;
   Torque result;
-  result.torque = -model_.torqueResidual(sample, excitations, x_, &jacobian);
+  result.torque = -point_.torqueResidual(sample, excitations, &jacobian);
   double variance = parameterVariance(jacobian);
-  const Actuator& actuator = model_.space().nominal();
+  const Actuator& actuator = model_->space().nominal();
   if (actuator.orientation_map) {
     // A rotation error ξ acts on the torque as offsets do: ∂T/∂ξ = (∂T/∂offsets)(∂ξ/∂offsets)⁻¹.
     const OrientationMap::Uncertainty map = actuator.orientation_map->uncertainty(reading);
     const JointLinearization joints = linearizeRotorOrientation(jointGeometry(actuator), reading);
     Eigen::Matrix3d d_offset;
     for (std::size_t k = 0; k < kJoints; ++k) {
-      d_offset.col(static_cast<Eigen::Index>(k)) = jacobian.col(model_.space().joint(k));
+      d_offset.col(static_cast<Eigen::Index>(k)) = jacobian.col(model_->space().joint(k));
     }
     const Eigen::Matrix3d d_rotation =
         joints.d_offset.transpose().fullPivLu().solve(d_offset.transpose()).transpose();

@@ -5,6 +5,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "axis_point.hpp"
 #include "effects_at.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
@@ -30,18 +31,6 @@ JointPoint jointPoint(const ParameterSpace& space, const Eigen::VectorXd& x) {
     point.geometry.axes.col(column) = axis;
     point.geometry.offsets[column] = space.nominal().joints[k].offset + x[at];
   }
-  return point;
-}
-
-/// A pole or coil axis, rotor or stator frame, with ∂axis/∂(u, v).
-struct AxisPoint {
-  Eigen::Vector3d axis;
-  Eigen::Matrix<double, 3, 2> d_axis;
-};
-
-AxisPoint axisPoint(const AxisChart& chart, const double* uv) {
-  AxisPoint point;
-  chart.evaluate(uv[0], uv[1], point.axis, point.d_axis);
   return point;
 }
 

@@ -4,16 +4,16 @@
 
 namespace sac {
 
-void predictMeasurements(const CalibrationModel& model, const Eigen::VectorXd& x, Sample& sample) {
+void predictMeasurements(const ModelPoint& point, Sample& sample) {
   if (sample.has_orientation) {
     // y = ln(R_a Rᵀ)^∨ with R_a = 1 gives R = e^{−ŷ}.
     sample.R_stator_rotor.setIdentity();
-    sample.R_stator_rotor = rotationExp(-model.orientationResidual(sample, x));
+    sample.R_stator_rotor = rotationExp(-point.orientationResidual(sample));
   }
   if (sample.has_torque) {
     // The residual of a torque that is zero is the model's, negative.
     sample.torque.setZero();
-    sample.torque = -model.torqueResidual(sample, excitedCoils(sample, 0.0), x);
+    sample.torque = -point.torqueResidual(sample, excitedCoils(sample, 0.0));
   }
 }
 

@@ -6,10 +6,12 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "axis_point.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 namespace {
@@ -58,18 +60,6 @@ class ExpectedError {
   boost::container::small_vector<Column, 32> columns_;
 };
 
-/// A pole or coil axis, rotor or stator frame, with ∂axis/∂(u, v).
-struct AxisPoint {
-  Eigen::Vector3d axis;
-  Eigen::Matrix<double, 3, 2> d_axis;
-};
-
-AxisPoint axisPoint(const AxisChart& chart, const double* uv) {
-  AxisPoint point;
-  chart.evaluate(uv[0], uv[1], point.axis, point.d_axis);
-  return point;
-}
-
 /// Expected errors at single poses. The joint coordinates are condensed into the rotation error ξ
 /// that they imply at the pose, since the torque depends on them through it alone; the
 /// covariance then is that of (ξ, poles, coils).
@@ -78,6 +68,7 @@ class PoseUncertainty {
   PoseUncertainty(const CalibrationModel& model, const ParameterBelief& belief)
       : model_(model),
         belief_(belief),
+        point_(model, belief.x),
         moved_covariance_(moved(space().size()), moved(space().size())) {
     const Eigen::Index axes = space().size() - space().pole(0);
     moved_covariance_.bottomRightCorner(axes, axes) =
@@ -96,7 +87,7 @@ class PoseUncertainty {
     const Eigen::Index axes = space().size() - joints;
     R_rotor_stator_ = pose.R_stator_rotor.transpose();
     // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
-    model_.orientationResidual(pose, belief_.x, &jacobian_);
+    point_.orientationResidual(pose, &jacobian_);
     const Eigen::Matrix<double, 3, 9> J = jacobian_.leftCols<9>();
     const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
     const Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
@@ -149,6 +140,7 @@ class PoseUncertainty {
 
   const CalibrationModel& model_;
   const ParameterBelief& belief_;
+  ModelPoint point_;
   std::vector<AxisPoint> poles_;
   std::vector<AxisPoint> coils_;
   ResidualJacobian jacobian_;

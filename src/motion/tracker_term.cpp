@@ -5,10 +5,9 @@ namespace sac {
 TrackerTerm::TrackerTerm(const CalibrationModel& model,
                          const MotionPlaces& places,
                          const Eigen::VectorXd& x)
-    : model_(model), places_(places), x_(x) {
+    : space_(model.space()), places_(places), point_(model, x) {
   if (places.tracker_delay >= 0) {
-    const ParameterSpace& space = model.space();
-    scale_ = space.effects().scale(places.tracker_delay - space.effect());
+    scale_ = space_.effects().scale(places.tracker_delay - space_.effect());
     delay_ = scale_ * x[places.tracker_delay];
   }
 }
@@ -21,12 +20,11 @@ bool TrackerTerm::evaluate(const MotionSpan& span, std::size_t orientation) {
   }
   sample_.joint_position = track->position;
   sample_.R_stator_rotor = span.streams->orientations[orientation].toRotationMatrix();
-  residual_ = model_.orientationResidual(sample_, x_, &jacobian_);
+  residual_ = point_.orientationResidual(sample_, &jacobian_);
   if (places_.tracker_delay >= 0) {
     for (std::size_t k = 0; k < kJoints; ++k) {
       jacobian_.col(places_.tracker_delay) -=
-          (scale_ * track->velocity[static_cast<Eigen::Index>(k)]) *
-          jacobian_.col(model_.space().joint(k));
+          (scale_ * track->velocity[static_cast<Eigen::Index>(k)]) * jacobian_.col(space_.joint(k));
     }
   }
   return true;

@@ -4,7 +4,7 @@
 
 #include "motion_point.hpp"
 #include "motion_span.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 
@@ -23,9 +23,9 @@ class TrackerTerm {
   double time() const { return time_; }
 
  private:
-  const CalibrationModel& model_;
+  const ParameterSpace& space_;
   const MotionPlaces& places_;
-  const Eigen::VectorXd& x_;
+  ModelPoint point_;
   double delay_ = 0.0;
   double scale_ = 0.0;  ///< of the coordinate of the delay [s]
   double time_ = 0.0;

@@ -170,10 +170,11 @@ std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
   std::vector<PoseCandidate> candidates = drawPoses(problem, options);
   std::vector<Sample> samples;
   std::vector<std::size_t> candidate_of_sample;
+  const ModelPoint point(*problem.model, problem.state.belief.x);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     for (Sample& sample :
          visitSamples(problem, options, candidates[c].joint_position, candidates[c].coils)) {
-      predictMeasurements(*problem.model, problem.state.belief.x, sample);
+      predictMeasurements(point, sample);
       samples.push_back(std::move(sample));
       candidate_of_sample.push_back(c);
     }

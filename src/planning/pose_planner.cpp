@@ -54,12 +54,13 @@ class Planner {
   Planner(const PlanningProblem& problem, const PosePlanOptions& options)
       : problem_(problem),
         options_(options),
+        point_(*problem.model, problem.state.belief.x),
         coordinates_(plannedCoordinates(problem)),
         candidates_(drawCandidates(problem, options, coordinates_)),
         selection_(candidates_, knownInformation(), selectionOptions()),
         held_(*problem.held) {
     for (Sample& sample : held_) {
-      predictMeasurements(*problem.model, problem.state.belief.x, sample);
+      predictMeasurements(point_, sample);
     }
   }
 
@@ -117,7 +118,7 @@ class Planner {
                                          options_,
                                          candidates_[pose.candidate].joint_position,
                                          coilsOf(candidates_, pose))) {
-        predictMeasurements(*problem_.model, problem_.state.belief.x, sample);
+        predictMeasurements(point_, sample);
         samples.push_back(std::move(sample));
       }
     }
@@ -220,6 +221,7 @@ class Planner {
 
   const PlanningProblem& problem_;
   const PosePlanOptions& options_;
+  ModelPoint point_;  ///< of what is believed
   std::vector<Eigen::Index> coordinates_;
   std::vector<PoseCandidate> candidates_;
   PoseSelection selection_;

@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
 #include "spherical_actuator_calibration/control/motion_run.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 namespace {
@@ -76,7 +77,8 @@ class PlannedMotion {
         time_(plan.duration, plan.ramp),
         joints_(jointGeometry(model.space().nominal())),
         torques_(torqueGeometry(model.space().nominal())),
-        x_(Eigen::VectorXd::Zero(model.space().size())) {}
+        size_(model.space().size()),
+        point_(model, Eigen::VectorXd::Zero(size_)) {}
 
   /// Currents of the control and the excitation at a time [A].
   Eigen::VectorXd currentsAt(double time) {
@@ -100,19 +102,19 @@ class PlannedMotion {
     const Eigen::Matrix3Xd Q = R * torquePerAmpere(model_.curve(), torques_, R);
     const Eigen::Matrix3d J = R * rotor_.inertia * R.transpose();
     const Eigen::Vector3d w = R * desired.angular_velocity;
-    const Eigen::Index size = x_.size();
 
     Moment moment;
-    moment.orientation = Rows::Zero(3, size + kNuisances);
-    moment.orientation.leftCols(size) = turning(time);
-    moment.orientation.col(size + kTrackerDelay) = w;
+    moment.orientation = Rows::Zero(3, size_ + kNuisances);
+    moment.orientation.leftCols(size_) = turning(time);
+    moment.orientation.col(size_ + kTrackerDelay) = w;
     const Rows turning_rate = (turning(time + kStep) - turning(time - kStep)) / (2.0 * kStep);
-    const Rows turned = moment.orientation.leftCols(size);
+    const Rows turned = moment.orientation.leftCols(size_);
 
-    moment.momentum = Rows::Zero(3, size + kNuisances);
-    moment.momentum.leftCols(size) = J * turning_rate - skew(J * w) * turned;
-    moment.torque = Rows::Zero(3, size + kNuisances);
-    moment.torque.leftCols(size) = R * torqueJacobian(time, currents) - skew(Q * currents) * turned;
+    moment.momentum = Rows::Zero(3, size_ + kNuisances);
+    moment.momentum.leftCols(size_) = J * turning_rate - skew(J * w) * turned;
+    moment.torque = Rows::Zero(3, size_ + kNuisances);
+    moment.torque.leftCols(size_) =
+        R * torqueJacobian(time, currents) - skew(Q * currents) * turned;
     addNuisances(moment, desired, Q * currentRate(time));
 
     moment.joint_momentum.setZero();
@@ -137,8 +139,8 @@ class PlannedMotion {
 
   /// ∂ξ/∂x.
   Rows turning(double time) const {
-    ResidualJacobian jacobian = ResidualJacobian::Zero(3, x_.size());
-    model_.orientationResidual(sampleAt(time), x_, &jacobian);
+    ResidualJacobian jacobian = ResidualJacobian::Zero(3, size_);
+    point_.orientationResidual(sampleAt(time), &jacobian);
     return -jacobian;
   }
 
@@ -147,8 +149,8 @@ class PlannedMotion {
     Sample sample = sampleAt(time);
     sample.has_torque = true;
     sample.current = currents;
-    ResidualJacobian jacobian = ResidualJacobian::Zero(3, x_.size());
-    model_.torqueResidual(sample, excitedCoils(sample, 1e-9), x_, &jacobian);
+    ResidualJacobian jacobian = ResidualJacobian::Zero(3, size_);
+    point_.torqueResidual(sample, excitedCoils(sample, 1e-9), &jacobian);
     return -jacobian;
   }
 
@@ -162,7 +164,7 @@ class PlannedMotion {
                     const Eigen::Vector3d& torque_rate) const {
     const Eigen::Matrix3d& R = desired.R_stator_rotor;
     const Eigen::Vector3d& w_rotor = desired.angular_velocity;
-    const Eigen::Index first = x_.size();
+    const Eigen::Index first = size_;
     Eigen::Index column = first + kInertia;
     for (Eigen::Index a = 0; a < 3; ++a) {
       for (Eigen::Index b = a; b < 3; ++b) {
@@ -189,7 +191,8 @@ class PlannedMotion {
   MotionTime time_;
   JointGeometry joints_;
   TorqueGeometry torques_;
-  Eigen::VectorXd x_;
+  Eigen::Index size_;  ///< of the coordinates
+  ModelPoint point_;   ///< nominal
 };
 
 /// Information of one window of torques by one test function.

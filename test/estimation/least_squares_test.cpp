@@ -143,8 +143,9 @@ TEST_F(LeastSquares, StaysWhereNothingIsLeftToGo) {
 TEST_F(LeastSquares, WithoutNoiseFindsTheTruthAndStaysThere) {
   prepare({Cycle::kRefine}, 7);
   const Eigen::VectorXd truth = solveLeastSquares(input_).solution();
+  const ModelPoint point(model_, truth);
   for (Sample& sample : samples_) {
-    predictMeasurements(model_, truth, sample);
+    predictMeasurements(point, sample);
   }
   const LeastSquaresResult found = solveLeastSquares(input_);
   ASSERT_EQ(found.termination, Termination::kConverged);

@@ -19,7 +19,7 @@ TEST(SamplePrediction, IsWhatTheForwardModelsSay) {
     Sample sample = scenarios::mixedTorqueSample(
         truth, scenarios::randomPose(0.3, generator), {2.0, -1.0, 0.5}, generator);
     sample.has_orientation = true;
-    predictMeasurements(model, x, sample);
+    predictMeasurements({model, x}, sample);
     const Eigen::Matrix3d R = rotorOrientation(jointGeometry(truth.joints), sample.joint_position);
     EXPECT_LT((sample.R_stator_rotor - R).norm(), 1e-12);
     const Eigen::Vector3d torque =
@@ -44,7 +44,7 @@ TEST(SamplePrediction, KnowsLaboratoryEffects) {
   sample.has_torque = true;
   sample.joint_position = {0.1, -0.2, 3.0};
   sample.current = Eigen::VectorXd::Zero(24);
-  predictMeasurements(model, x, sample);
+  predictMeasurements({model, x}, sample);
   EXPECT_TRUE(sample.torque.isApprox(Eigen::Vector3d(0.003, 0.0, 0.0)));
   const Eigen::Matrix3d R = rotorOrientation(JointGeometry{}, sample.joint_position) *
                             rotationExp(Eigen::Vector3d(0.0, 0.02, 0.0));
@@ -55,7 +55,7 @@ TEST(SamplePrediction, ChangesNothingElse) {
   const CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
   Sample sample;
   sample.torque = {1.0, 2.0, 3.0};
-  predictMeasurements(model, Eigen::VectorXd::Zero(model.space().size()), sample);
+  predictMeasurements({model, Eigen::VectorXd::Zero(model.space().size())}, sample);
   EXPECT_EQ(sample.torque, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_EQ(sample.R_stator_rotor, Eigen::Matrix3d::Identity());
 }

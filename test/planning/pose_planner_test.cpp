@@ -55,7 +55,7 @@ class PosePlanner : public ::testing::Test {
       for (const Sample& sample :
            visitSamples(problem_, options_, pose.joint_position, pose.coils)) {
         samples.push_back(sample);
-        predictMeasurements(model_, problem_.state.belief.x, samples.back());
+        predictMeasurements({model_, problem_.state.belief.x}, samples.back());
       }
     }
     return samples;
@@ -193,9 +193,8 @@ TEST_F(PosePlanner, MakesUpForAPoleThatNoSampleSees) {
                                Actuator other = belief;
                                other.poles[2].gain = 2.0;
                                Sample changed = sample;
-                               predictMeasurements(CalibrationModel{ParameterSpace(other)},
-                                                   problem_.state.belief.x,
-                                                   changed);
+                               const CalibrationModel of_other{ParameterSpace(other)};
+                               predictMeasurements({of_other, problem_.state.belief.x}, changed);
                                return !changed.torque.isApprox(sample.torque);
                              }),
               held_.end());

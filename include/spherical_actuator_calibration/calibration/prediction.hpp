@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 
@@ -32,8 +34,8 @@ class Predictor {
   /// parameters.
   explicit Predictor(const CalibratedDescription& description);
 
-  bool hasTorqueModel() const { return model_.hasTorqueModel(); }
-  std::size_t coils() const { return model_.space().coils(); }
+  bool hasTorqueModel() const { return model_->hasTorqueModel(); }
+  std::size_t coils() const { return model_->space().coils(); }
   /// Whether the description states any uncertainty: a nominal one does not.
   bool hasUncertainty() const { return !covariance_.isZero(0.0); }
 
@@ -46,8 +48,8 @@ class Predictor {
   /// Sum of the variances of three components that follow from the parameters.
   double parameterVariance(const ResidualJacobian& jacobian) const;
 
-  CalibrationModel model_;
-  Eigen::VectorXd x_;           ///< zero: the description is the nominal one of its model
+  std::shared_ptr<const CalibrationModel> model_;  ///< where the point finds it, also after a copy
+  ModelPoint point_;  ///< all coordinates zero: the description is the nominal one of its model
   Eigen::MatrixXd covariance_;  ///< of the coordinates; zero for those of the laboratory
 };
 
