@@ -1,0 +1,53 @@
+"""Runs the package on recordings of motion, by its program motion_cases.
+
+Environment: MOTION_CASES, the program (build/test/motion_cases of the project).
+"""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import free_motion
+import numpy as np
+
+PROJECT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("MOTION_CASES", str(PROJECT / "build" / "test" / "motion_cases"))
+NOMINAL = str(PROJECT / "config" / "pm_spherical_8x24.yaml")
+
+
+class Outcome:
+    """What motion_cases prints of one file."""
+
+    def __init__(self, lines):
+        self.parameters, self.left_out = {}, {}
+        for line in lines:
+            word, *rest = line.split()
+            if word == "parameter":
+                name, value, stddev, state = rest
+                self.parameters[name] = float(value), float(stddev), state == "identified"
+            elif word == "left_out":
+                self.left_out[" ".join(rest[1:])] = int(rest[0])
+            elif word == "held_out":
+                self.held_out, self.probability = int(rest[0]), float(rest[rest.index("probability") + 1])
+            elif word == "motion":
+                self.moves, self.converged = rest[0] == "moves", rest[2] == "0"
+                self.chi_square = float(rest[rest.index("chi_square") + 1])
+
+    def value(self, name):
+        return self.parameters[name][0]
+
+    def judged(self, unit, errors):
+        """Errors and standard deviations of the unit's own parameters; which are identified."""
+        rows = [self.parameters[name] for name in unit.names()]
+        apart = np.array([row[0] for row in rows]) - unit.values(errors)
+        apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
+        return apart, np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+
+
+def calibrate(recording, nominal=NOMINAL, options=()):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "streams.txt")
+        free_motion.write_text(path, recording)
+        command = [PROGRAM, nominal, *options, path]
+        return Outcome(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines())
