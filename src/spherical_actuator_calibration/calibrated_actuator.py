@@ -12,7 +12,8 @@ import os
 import subprocess
 import typing
 
-PACKAGE = "spherical_actuator_calibration"
+from .programs import program as program_path
+
 PROGRAM = "actuator_model"
 
 
@@ -35,15 +36,6 @@ class Currents(typing.NamedTuple):
     torque_stddev: float  # of a component [N m]
 
 
-def _program():
-    from roslib.packages import find_node  # pylint: disable=import-outside-toplevel
-
-    paths = find_node(PACKAGE, PROGRAM)
-    if not paths:
-        raise FileNotFoundError(f"{PACKAGE} has no program {PROGRAM}: source its setup.bash, or name it")
-    return paths[0]
-
-
 class CalibratedActuator:
     """Not for several threads at a time."""
 
@@ -51,7 +43,7 @@ class CalibratedActuator:
         """`program`: path of actuator_model, where ROS does not know the package. Raises ValueError with what is wrong
         with the description."""
         self._process = subprocess.Popen(
-            [program or _program(), "--actuator", os.fspath(description)],
+            [program or program_path(PROGRAM), "--actuator", os.fspath(description)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
