@@ -118,8 +118,9 @@ class CoilDriver(unittest.TestCase):
         wait_for(lambda: abs(self.setpoints()[coil - 1] - current) < MILLI, "the commanded current")
 
     def wait_for_zero(self):
+        """Of the setpoints, and of the stages, which are switched off by a request of its own."""
         wait_for(self.is_zero, "zero currents")
-        self.assertEqual(self.device.holding_at(ENABLE), [0])
+        wait_for(lambda: self.device.holding_at(ENABLE) == [0], "stages that are off")
 
     def largest_written(self):
         """Largest current of one coil, and largest sum, that was ever written [A]."""
