@@ -8,6 +8,7 @@
 #include "cycle_conclusion.hpp"
 #include "cycle_words.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
@@ -83,6 +84,72 @@ std::vector<Eigen::Index> without(const std::vector<Eigen::Index>& all,
   return rest;
 }
 
+/// Chooses observations and coordinates of a problem; returns why the cycle cannot start, or
+/// nothing.
+std::string prepare(const CalibrationState& state,
+                    const CycleRequest& request,
+                    const EstimationOptions& options,
+                    EstimationProblem& problem,
+                    CycleCoordinates& coordinates) {
+  const CalibrationModel& model = *problem.model;
+  const std::vector<Sample>& samples = *problem.samples;
+  problem.observations = selectObservations(samples, request, options);
+  std::string reason = refusal(model, state, request, problem.observations);
+  if (!reason.empty()) {
+    return reason;
+  }
+  coordinates.requested = selectCoordinates(model.space(), samples, request, options);
+  if (coordinates.requested.front() == 0) {  // the joints are among them
+    coordinates.unexcited =
+        unexcitedAxes(model.space(), samples, problem.observations, options.min_joint_motion);
+  }
+  if (coordinates.unexcited.size() == 2 * kJoints) {
+    return "The rotor stands still in all samples: capture poses with each joint moved.";
+  }
+  problem.free = without(coordinates.requested, coordinates.unexcited);
+  return {};
+}
+
+/// Columns of directions that reach beyond some coordinates.
+Eigen::MatrixXd beyond(const std::vector<Eigen::Index>& coordinates,
+                       const Eigen::MatrixXd& directions) {
+  constexpr double kLeastShare = 1e-6;
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    const Eigen::VectorXd direction = directions.col(k);
+    if (1.0 - direction(coordinates).squaredNorm() > kLeastShare) {
+      columns.push_back(k);
+    }
+  }
+  return directions(Eigen::all, columns);
+}
+
+/// Counts what a motion told beside the samples, and tells of it. Where both contradict each other
+/// the report says so.
+std::string join(const ParameterSpace& space,
+                 const MotionEvidence& motion,
+                 Estimate& estimate,
+                 CycleCoordinates& coordinates,
+                 CycleReport& report) {
+  const CombinedBelief all = combined(space, estimate.belief, motion);
+  if (all.probability < kLeastProbability) {
+    report.contradicted = true;
+    report.message = format(
+        "All parameters: the samples contradict the motion before them (probability %.2g); at "
+        "least one of both is wrong. Check registrations, torque curve and force/torque sensor; "
+        "calibrate from one of both alone to see which.",
+        all.probability);
+    return {};
+  }
+  estimate.belief = all.belief;
+  estimate.unobservable = without(estimate.unobservable, motion.told);
+  estimate.ambiguous = without(estimate.ambiguous, motion.told);
+  estimate.open_directions = beyond(motion.told, estimate.open_directions);
+  coordinates.unexcited = without(coordinates.unexcited, motion.told);
+  return format(" Combined with the motion before: both agree (probability %.2g).",
+                all.probability);
+}
+
 /// Whether an estimate failed for what was measured, rather than for how little.
 bool isContradiction(const EstimationProblem& problem, const Estimate& estimate) {
   const bool are_few = 3 * problem.observations.size() < problem.free.size();
@@ -95,7 +162,8 @@ CycleOutcome runCycle(const CalibrationModel& model,
                       const std::vector<Sample>& samples,
                       const CalibrationState& state,
                       const CycleRequest& request,
-                      const EstimationOptions& options) {
+                      const EstimationOptions& options,
+                      const MotionEvidence* motion) {
   CycleOutcome outcome{{}, state};
   CycleReport& report = outcome.report;
   report.cycle = request.cycle;
@@ -104,26 +172,21 @@ CycleOutcome runCycle(const CalibrationModel& model,
   EstimationProblem problem;
   problem.model = &model;
   problem.samples = &samples;
-  problem.prior = state.belief;
-  problem.observations = selectObservations(samples, request, options);
-  report.message = refusal(model, state, request, problem.observations);
+  problem.prior = motion != nullptr ? withoutMotion(state.belief, *motion) : state.belief;
+  CycleCoordinates coordinates;
+  report.message = prepare(state, request, options, problem, coordinates);
   if (!report.message.empty()) {
     return outcome;
   }
-  CycleCoordinates coordinates;
-  coordinates.requested = selectCoordinates(model.space(), samples, request, options);
-  if (coordinates.requested.front() == 0) {  // the joints are among them
-    coordinates.unexcited =
-        unexcitedAxes(model.space(), samples, problem.observations, options.min_joint_motion);
-  }
-  if (coordinates.unexcited.size() == 2 * kJoints) {
-    report.message = "The rotor stands still in all samples: capture poses with each joint moved.";
-    return outcome;
-  }
-  problem.free = without(coordinates.requested, coordinates.unexcited);
-
-  const Estimate estimate = sac::estimate(problem, options);
+  Estimate estimate = sac::estimate(problem, options);
   report.message = failure(problem, estimate, request, options);
+  std::string together;
+  if (motion != nullptr && report.message.empty()) {
+    together = join(model.space(), *motion, estimate, coordinates, report);
+    if (report.contradicted) {
+      return outcome;
+    }
+  }
   std::set_union(estimate.unobservable.begin(),
                  estimate.unobservable.end(),
                  coordinates.unexcited.begin(),
@@ -152,7 +215,8 @@ CycleOutcome runCycle(const CalibrationModel& model,
   std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
   conclude(model, estimate, coordinates, outcome.state, report);
   report.message =
-      successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice);
+      successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
+      together;
   return outcome;
 }
 

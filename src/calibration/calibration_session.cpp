@@ -105,7 +105,9 @@ CalibrationState CalibrationSession::startState() const {
   return sac::startState(model_.space(), start_, config_.tolerance);
 }
 
-void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport> reports) {
+void CalibrationSession::resume(CalibrationState state,
+                                std::vector<CycleReport> reports,
+                                std::optional<MotionEvidence> motion_evidence) {
   const Eigen::Index size = model_.space().size();
   if (state.belief.x.size() != size || state.belief.covariance.rows() != size ||
       state.belief.covariance.cols() != size ||
@@ -115,15 +117,25 @@ void CalibrationSession::resume(CalibrationState state, std::vector<CycleReport>
   }
   state_ = std::move(state);
   reports_ = std::move(reports);
+  motion_evidence_ = std::move(motion_evidence);
   map_choice_.reset();
 }
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
-  CycleOutcome outcome = request.cycle == Cycle::kMotion
-                             ? runMotionCycle(model_, motion(), state_, config_)
-                             : runCycle(model_, samples_, state_, request, config_.estimation);
+  const bool is_motion = request.cycle == Cycle::kMotion;
+  const bool joins_motion = request.cycle == Cycle::kRefine && motion_evidence_.has_value();
+  CycleOutcome outcome = is_motion ? runMotionCycle(model_, motion(), state_, config_)
+                                   : runCycle(model_,
+                                              samples_,
+                                              state_,
+                                              request,
+                                              config_.estimation,
+                                              joins_motion ? &*motion_evidence_ : nullptr);
   state_ = std::move(outcome.state);
   reports_.push_back(std::move(outcome.report));
+  if (is_motion && reports_.back().success) {
+    motion_evidence_ = sac::motionEvidence(model_.space(), reports_.back(), state_, startState());
+  }
   map_choice_.reset();
   return reports_.back();
 }

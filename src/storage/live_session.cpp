@@ -50,12 +50,9 @@ LiveSession::LiveSession(const CalibratedDescription& start,
     : software_(software),
       database_(database_path, {start, config, software}),
       revision_(database_.current()),
-      session_(start,
-               database_.samplesInUse(),
-               config,
-               revision_.state,
-               withUnits(database_.cyclesOfRevision(revision_.number),
-                         ParameterSpace(start.actuator, config.effects))) {}
+      session_(start, database_.samplesInUse(), config, revision_.state, {}) {
+  putInForce(revision_);
+}
 
 Actuator LiveSession::actuator() const {
   return session_.actuator();
@@ -88,6 +85,7 @@ CycleReport LiveSession::run(const CycleRequest& request, const std::string& dat
   // What cannot be stored must not be in force.
   CalibrationState before = session_.state();
   std::vector<CycleReport> reports = session_.reports();
+  std::optional<MotionEvidence> motion = session_.motionEvidence();
   CycleReport report = session_.run(request);
   try {
     if (report.success) {
@@ -97,7 +95,7 @@ CycleReport LiveSession::run(const CycleRequest& request, const std::string& dat
       database_.addCycle(report, date);
     }
   } catch (...) {
-    session_.resume(std::move(before), std::move(reports));
+    session_.resume(std::move(before), std::move(reports), std::move(motion));
     throw;
   }
   return report;
@@ -145,9 +143,22 @@ CalibrationOrigin LiveSession::origin(const std::string& date) const {
   return origin;
 }
 
+/// What the last motion before a revision told, or nothing.
+std::optional<MotionEvidence> LiveSession::motionBefore(std::uint32_t number) const {
+  const std::optional<std::uint32_t> motion = database_.motionBefore(number);
+  if (!motion) {
+    return std::nullopt;
+  }
+  return motionEvidence(session_.model().space(),
+                        database_.cyclesOfRevision(*motion).back(),
+                        database_.revision(*motion).value().state,
+                        session_.startState());
+}
+
 void LiveSession::putInForce(const Revision& revision) {
   session_.resume(revision.state,
-                  withUnits(database_.cyclesOfRevision(revision.number), session_.model().space()));
+                  withUnits(database_.cyclesOfRevision(revision.number), session_.model().space()),
+                  motionBefore(revision.number));
   revision_ = revision;
 }
 

@@ -60,6 +60,15 @@ std::optional<std::uint32_t> holderOf(const SQLite::Database& database,
   return row.next() ? std::optional(row.count()) : std::nullopt;
 }
 
+/// A revision, bound to the first place, and those before it, as the table `chain`. A predecessor
+/// has the smaller number, so that the order of numbers is the order of the chain.
+std::string chain() {
+  return "WITH RECURSIVE chain (number, predecessor, cycle) AS ("
+         "SELECT number, predecessor, cycle FROM revisions WHERE number = ? UNION ALL "
+         "SELECT r.number, r.predecessor, r.cycle FROM revisions AS r "
+         "JOIN chain ON r.number = chain.predecessor AND r.number < chain.number) ";
+}
+
 }  // namespace
 
 void insert(const SQLite::Database& database, const Revision& revision, const Lineage& lineage) {
@@ -114,19 +123,24 @@ std::vector<RevisionSummary> all(const SQLite::Database& database) {
 }
 
 std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number) {
-  // A predecessor has the smaller number, so that the order of numbers is the order of the chain.
-  RowReader row(database,
-                "WITH RECURSIVE chain (number, predecessor, cycle) AS ("
-                "SELECT number, predecessor, cycle FROM revisions WHERE number = ? UNION ALL "
-                "SELECT r.number, r.predecessor, r.cycle FROM revisions AS r "
-                "JOIN chain ON r.number = chain.predecessor AND r.number < chain.number) "
-                "SELECT cycle FROM chain WHERE cycle IS NOT NULL ORDER BY number",
-                number);
+  RowReader row(
+      database,
+      (chain() + "SELECT cycle FROM chain WHERE cycle IS NOT NULL ORDER BY number").c_str(),
+      number);
   std::vector<std::int64_t> cycles;
   while (row.next()) {
     cycles.push_back(row.integer());
   }
   return cycles;
+}
+
+std::optional<std::uint32_t> lastOfMotion(const SQLite::Database& database, std::uint32_t number) {
+  RowReader row(database,
+                (chain() + "SELECT number FROM chain JOIN cycles ON cycles.id = chain.cycle "
+                           "WHERE cycles.cycle = 'motion' ORDER BY number DESC LIMIT 1")
+                    .c_str(),
+                number);
+  return row.next() ? std::optional(row.count()) : std::nullopt;
 }
 
 }  // namespace sac::revision_table

@@ -26,5 +26,7 @@ std::optional<Revision> find(const SQLite::Database& database, std::uint32_t num
 std::vector<RevisionSummary> all(const SQLite::Database& database);
 /// Ids of the cycles that led to a revision, in their order.
 std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number);
+/// Number of the last one that the cycle motion made, of those that led to a revision.
+std::optional<std::uint32_t> lastOfMotion(const SQLite::Database& database, std::uint32_t number);
 
 }  // namespace sac::revision_table

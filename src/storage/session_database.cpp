@@ -147,6 +147,11 @@ std::vector<CycleReport> SessionDatabase::cyclesOfRevision(std::uint32_t number)
   });
 }
 
+std::optional<std::uint32_t> SessionDatabase::motionBefore(std::uint32_t number) const {
+  return tables_->connection.read(
+      kNotRead, [&] { return revision_table::lastOfMotion(tables_->database(), number); });
+}
+
 Revision SessionDatabase::addRevision(const CalibrationState& state,
                                       const std::string& source,
                                       const std::string& origin,

@@ -46,6 +46,11 @@ def write_bag(path, recording, coils):
             bag.write("/actuator/" + topic, message, stamp)
 
 
+def run(program, *arguments):
+    command = [os.path.join(os.environ["PROGRAMS"], program), *arguments]
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+
+
 class Motion(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -107,8 +112,7 @@ class Motion(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag, output = os.path.join(folder, "motion.bag"), os.path.join(folder, "calibrated.yaml")
             write_bag(bag, self.record(), len(self.unit.coils))
-            command = [os.environ["CALIBRATE_BAG"], "--actuator", NOMINAL, "--output", output, bag]
-            result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            result = run("calibrate_bag", "--actuator", NOMINAL, "--output", output, bag)
             self.assertEqual(result.returncode, 0, result.stdout)
             self.assertIn("grade: usable", result.stdout)
             self.assertIn("held-out", result.stdout)
@@ -117,6 +121,49 @@ class Motion(unittest.TestCase):
         poles = self.unit.poles + self.errors[9 : 9 + 2 * len(self.unit.poles)].reshape(-1, 2)
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
+
+    def dwells_and_motion(self, folder, errors):
+        """Bags of both: dwells of a unit with these errors."""
+        sensors, rng = laboratory.Laboratory(), np.random.default_rng(SEED)
+        poses = laboratory.random_poses(16, 0.4, rng)
+        dwells, _ = laboratory.measured_session(self.unit, errors, sensors, poses, 9, rng)
+        samples, dwell_bag, motion_bag = (os.path.join(folder, name) for name in ("s.yaml", "dwells.bag", "motion.bag"))
+        laboratory.write_samples(samples, self.unit, sensors, dwells)
+        run("samples_to_bag", "--actuator", NOMINAL, "--samples", samples, "--output", dwell_bag)
+        write_bag(motion_bag, self.record(), len(self.unit.coils))
+        return dwell_bag, motion_bag
+
+    def errors_and_stddevs(self, folder, cycles, *bags):
+        report = os.path.join(folder, cycles)
+        result = run("calibrate_bag", "--actuator", NOMINAL, "--cycles", cycles, "--report", report, *bags)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        with open(os.path.join(report, "report.yaml"), encoding="utf-8") as file:
+            rows = {row["name"]: row for row in yaml.safe_load(file)["parameters"]}
+        rows = [rows[name] for name in self.unit.names()]
+        apart = np.array([row["value"] for row in rows]) - self.unit.values(self.errors)
+        apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
+        return apart, np.array([row["stddev"] for row in rows])
+
+    def test_dwells_and_motion_are_one_calibration(self):
+        with tempfile.TemporaryDirectory() as folder:
+            dwells, motion = self.dwells_and_motion(folder, self.errors)
+            _, by_dwells = self.errors_and_stddevs(folder, "joint,refine", dwells)
+            _, by_motion = self.errors_and_stddevs(folder, "motion", motion)
+            apart, stddevs = self.errors_and_stddevs(folder, "motion,refine", dwells, motion)
+        self.assertTrue((stddevs < 1.001 * np.minimum(by_dwells, by_motion)).all())
+        normalised = np.sqrt(np.mean((apart / stddevs) ** 2))
+        self.assertGreater(normalised, 0.5)
+        self.assertLess(normalised, 1.6)
+
+    def test_dwells_of_another_unit_are_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            errors = self.errors.copy()
+            errors[9:11] += 2e-3  # of one pole
+            bags = self.dwells_and_motion(folder, errors)
+            result = run("calibrate_bag", "--actuator", NOMINAL, "--cycles", "motion,refine", *bags)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("contradict the motion", result.stdout)
+        self.assertIn("grade: contradicted", result.stdout)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
+#include "support/moving_rotor.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -62,6 +64,26 @@ TEST_F(LiveSessionTest, GoesOnWhereItEnded) {
   EXPECT_EQ(session.calibration().reports().size(), 2U);
   EXPECT_EQ(session.lastReport()->cycle, Cycle::kPoles);
   EXPECT_TRUE(session.progress().poles_done);
+}
+
+TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
+  {
+    LiveSession session = open();
+    addAll(session);
+    MovingRotor moving;
+    moving.truth = scenarios::paperTruth();
+    session.setMotion(std::make_shared<const MotionRecording>(moving.record()));
+    ASSERT_TRUE(session.run({Cycle::kMotion}, kDate).success);
+    ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  }
+  LiveSession session = open();
+  const CycleReport report = session.run({Cycle::kRefine}, kDate);
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_NE(report.message.find("both agree"), std::string::npos) << report.message;
+  session.restore(2, kDate);
+  EXPECT_TRUE(session.calibration().motionEvidence());
+  session.restore(0, kDate);
+  EXPECT_FALSE(session.calibration().motionEvidence());
 }
 
 // A retry after an answer that was lost: another dwell of the same pose differs in its stamp.

@@ -5,6 +5,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_request.hpp"
+#include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
@@ -19,11 +20,13 @@ struct CycleOutcome {
 };
 
 /// Runs one cycle. Never throws for poor data: a refused or failed cycle has success = false and
-/// says why. Throws DataError on malformed samples.
+/// says why. What a motion told counts beside the samples; where both contradict each other, the
+/// cycle is refused. Throws DataError on malformed samples.
 CycleOutcome runCycle(const CalibrationModel& model,
                       const std::vector<Sample>& samples,
                       const CalibrationState& state,
                       const CycleRequest& request,
-                      const EstimationOptions& options);
+                      const EstimationOptions& options,
+                      const MotionEvidence* motion = nullptr);
 
 }  // namespace sac

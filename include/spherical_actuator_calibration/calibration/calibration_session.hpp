@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 #include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -69,8 +70,14 @@ class CalibrationSession {
 
   /// Parameters of the description at the start, as if no cycle had run.
   CalibrationState startState() const;
-  /// Puts other parameters in force. Throws DataError when they do not belong to the description.
-  void resume(CalibrationState state, std::vector<CycleReport> reports);
+  /// Puts other parameters in force, with what a motion among their cycles told. Throws DataError
+  /// when they do not belong to the description.
+  void resume(CalibrationState state,
+              std::vector<CycleReport> reports,
+              std::optional<MotionEvidence> motion_evidence = std::nullopt);
+
+  /// What the last successful cycle `motion` told; a refinement takes it beside the samples.
+  const std::optional<MotionEvidence>& motionEvidence() const { return motion_evidence_; }
 
   /// Runs one cycle. Its parameters are in force afterwards if it succeeded.
   const CycleReport& run(const CycleRequest& request);
@@ -113,6 +120,7 @@ class CalibrationSession {
   CalibrationModel model_;
   CalibrationState state_;
   std::vector<CycleReport> reports_;
+  std::optional<MotionEvidence> motion_evidence_;
   mutable std::optional<OrientationMapChoice> map_choice_;  ///< nothing: not asked for yet
 };
 

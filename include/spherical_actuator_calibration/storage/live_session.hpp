@@ -70,6 +70,7 @@ class LiveSession {
   CalibrationOrigin origin(const std::string& date) const;
 
  private:
+  std::optional<MotionEvidence> motionBefore(std::uint32_t number) const;
   void putInForce(const Revision& revision);
 
   std::string software_;

@@ -64,6 +64,8 @@ class SessionDatabase {
   /// Reports of the successful cycles that led to a revision, in their order: from the parameters
   /// at the start, or from a reset.
   std::vector<CycleReport> cyclesOfRevision(std::uint32_t number) const;
+  /// Number of the last revision that the cycle `motion` made, of those that led to a revision.
+  std::optional<std::uint32_t> motionBefore(std::uint32_t number) const;
 
   /// Stores parameters that no cycle made: a reset, or with `same_as` the earlier revision that
   /// they are taken from, whose cycles then led to them, too.

@@ -1,0 +1,107 @@
+#include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace sac {
+namespace {
+
+/// Information y = Fᵀ x + unit noise of some coordinates x.
+struct WhitenedEvidence {
+  Eigen::MatrixXd factor;  ///< F
+  Eigen::VectorXd value;   ///< y
+};
+
+/// What the motion itself told, without what was stated beforehand (of mean zero).
+WhitenedEvidence ownEvidence(const ParameterSpace& space, const MotionEvidence& motion) {
+  constexpr double kNothing = 1e-9;  // of the largest information
+  const auto size = static_cast<Eigen::Index>(motion.told.size());
+  const Eigen::MatrixXd covariance = motion.belief.covariance(motion.told, motion.told);
+  Eigen::MatrixXd information = covariance.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::VectorXd vector = information * motion.belief.x(motion.told);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const Eigen::Index p = motion.told[static_cast<std::size_t>(k)];
+    const double stated =
+        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
+    if (stated > 0.0) {
+      information(k, k) -= 1.0 / stated;
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    if (eigen.eigenvalues()[k] > kNothing * eigen.eigenvalues()[size - 1]) {
+      kept.push_back(k);
+    }
+  }
+  const Eigen::MatrixXd directions = eigen.eigenvectors()(Eigen::all, kept);
+  const Eigen::VectorXd roots = eigen.eigenvalues()(kept).cwiseSqrt();
+  return {directions * roots.asDiagonal(), (directions.transpose() * vector).cwiseQuotient(roots)};
+}
+
+}  // namespace
+
+MotionEvidence motionEvidence(const ParameterSpace& space,
+                              const CycleReport& report,
+                              const CalibrationState& state,
+                              const CalibrationState& start) {
+  std::set<std::string> told;
+  for (const ParameterEstimate& estimate : report.estimates) {
+    if (estimate.observable) {
+      told.insert(estimate.name);
+    }
+  }
+  MotionEvidence evidence;
+  evidence.belief = state.belief;
+  evidence.covariance = start.belief.covariance;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    // What counts as exact beforehand stays so.
+    if (told.count(space.name(p)) > 0 && state.belief.covariance(p, p) > 0.0) {
+      evidence.told.push_back(p);
+    }
+  }
+  return evidence;
+}
+
+ParameterBelief withoutMotion(ParameterBelief belief, const MotionEvidence& motion) {
+  for (const Eigen::Index p : motion.told) {
+    belief.covariance.row(p) = motion.covariance.row(p);
+    belief.covariance.col(p) = motion.covariance.col(p);
+  }
+  return belief;
+}
+
+CombinedBelief combined(const ParameterSpace& space,
+                        const ParameterBelief& by_samples,
+                        const MotionEvidence& motion) {
+  CombinedBelief result{by_samples};
+  if (motion.told.empty()) {
+    return result;
+  }
+  const WhitenedEvidence own = ownEvidence(space, motion);
+  const Eigen::MatrixXd spread = by_samples.covariance(Eigen::all, motion.told) * own.factor;
+  const Eigen::VectorXd apart = own.value - own.factor.transpose() * by_samples.x(motion.told);
+  const Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(apart.size(), apart.size()) +
+                                   own.factor.transpose() * spread(motion.told, Eigen::all);
+  const Eigen::LLT<Eigen::MatrixXd> factor(expected);
+  const Eigen::MatrixXd gain = factor.solve(spread.transpose()).transpose();
+  result.belief.x += gain * apart;
+  // Joseph's form: what was hardly known before loses many digits in a difference.
+  Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(gain.rows(), gain.rows());
+  kept(Eigen::all, motion.told) -= gain * own.factor.transpose();
+  result.belief.covariance =
+      kept * by_samples.covariance * kept.transpose() + gain * gain.transpose();
+  const boost::math::chi_squared distribution(static_cast<double>(apart.size()));
+  const double misfit = factor.matrixL().solve(apart).squaredNorm();
+  result.probability = boost::math::cdf(boost::math::complement(distribution, misfit));
+  return result;
+}
+
+}  // namespace sac
