@@ -68,11 +68,12 @@ void insertErrors(const SQLite::Database& database, std::int64_t id, const Cycle
 void insertEstimates(const SQLite::Database& database, std::int64_t id, const CycleReport& report) {
   RowWriter row(database,
                 "INSERT INTO cycle_estimates (cycle, position, name, nominal, initial, value, "
-                "stddev, observable) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+                "stddev, observable, unit) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t n = 0; n < report.estimates.size(); ++n) {
     const ParameterEstimate& estimate = report.estimates[n];
     row.put(id).put(n).put(estimate.name).put(estimate.nominal).put(estimate.initial);
-    row.put(estimate.value).put(estimate.stddev).put(estimate.observable).write();
+    row.put(estimate.value).put(estimate.stddev).put(estimate.observable);
+    row.put(estimate.unit).write();
   }
 }
 
@@ -97,8 +98,8 @@ void readErrors(const SQLite::Database& database, std::int64_t id, CycleReport& 
 
 void readEstimates(const SQLite::Database& database, std::int64_t id, CycleReport& report) {
   RowReader row(database,
-                "SELECT name, nominal, initial, value, stddev, observable FROM cycle_estimates "
-                "WHERE cycle = ? ORDER BY position",
+                "SELECT name, nominal, initial, value, stddev, observable, unit "
+                "FROM cycle_estimates WHERE cycle = ? ORDER BY position",
                 id);
   while (row.next()) {
     ParameterEstimate estimate;
@@ -108,6 +109,7 @@ void readEstimates(const SQLite::Database& database, std::int64_t id, CycleRepor
     estimate.value = row.number();
     estimate.stddev = row.number();
     estimate.observable = row.flag();
+    estimate.unit = row.text();
     report.estimates.push_back(std::move(estimate));
   }
 }

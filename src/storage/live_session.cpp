@@ -9,7 +9,7 @@
 namespace sac {
 namespace {
 
-/// The database keeps no units: they are those of the model.
+/// Databases kept no units before their format 4: they were those of the model.
 CycleReport withUnits(CycleReport report, const ParameterSpace& space) {
   std::map<std::string, Eigen::Index> places;
   for (Eigen::Index p = 0; p < space.size(); ++p) {
@@ -17,7 +17,7 @@ CycleReport withUnits(CycleReport report, const ParameterSpace& space) {
   }
   for (ParameterEstimate& estimate : report.estimates) {
     const auto place = places.find(estimate.name);
-    if (place != places.end()) {
+    if (estimate.unit.empty() && place != places.end()) {
       estimate.unit = space.unit(place->second);
     }
   }

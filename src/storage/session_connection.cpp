@@ -40,7 +40,6 @@ SessionConnection::SessionConnection(const std::string& path,
     : path_(path), lock_(path), database_(openFile(path)) {
   const bool is_made = read(kOpenFailure, [this] { return hasSessionSchema(database_, path_); });
   read(kOpenFailure, [this] {
-    database_.exec("PRAGMA foreign_keys = ON");
     // Every commit waits until its journal is on the disk; readers are never held up.
     database_.exec("PRAGMA journal_mode = WAL");
     database_.exec("PRAGMA synchronous = FULL");
@@ -53,6 +52,8 @@ SessionConnection::SessionConnection(const std::string& path,
       fill(database);
     });
   }
+  // Not before: a table that others refer to is made anew without it.
+  read(kOpenFailure, [this] { database_.exec("PRAGMA foreign_keys = ON"); });
   files_ = filesInPlace();
   if (!(files_->front() == lock_.file())) {
     throwMoved(path_, kOpenFailure);

@@ -11,9 +11,31 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 3;
+constexpr std::int64_t kSchemaVersion = 4;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
+// Which cycles there are is said by cycleName() alone.
+constexpr char kCycles[] = R"sql(
+CREATE TABLE cycles (
+  id INTEGER PRIMARY KEY,
+  date TEXT NOT NULL,
+  software TEXT NOT NULL,
+  cycle TEXT NOT NULL,
+  coil INTEGER NOT NULL,
+  success INTEGER NOT NULL,
+  message TEXT NOT NULL,
+  samples_used INTEGER NOT NULL,
+  samples_rejected INTEGER NOT NULL,
+  iterations INTEGER NOT NULL,
+  error_measure TEXT NOT NULL CHECK (error_measure IN ('orientation', 'torque', 'standardized')),
+  reduced_chi_square ANY,
+  condition_number ANY,
+  solve_time ANY,
+  orientation_uncertainty ANY,
+  torque_uncertainty ANY
+) STRICT;
+)sql";
+
 constexpr char kTables[] = R"sql(
 CREATE TABLE unit (
   id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -54,25 +76,6 @@ CREATE TABLE sample_currents (
   PRIMARY KEY (sample, coil)
 ) STRICT, WITHOUT ROWID;
 
-CREATE TABLE cycles (
-  id INTEGER PRIMARY KEY,
-  date TEXT NOT NULL,
-  software TEXT NOT NULL,
-  cycle TEXT NOT NULL CHECK (cycle IN ('joint', 'poles', 'coil', 'refine')),
-  coil INTEGER NOT NULL,
-  success INTEGER NOT NULL,
-  message TEXT NOT NULL,
-  samples_used INTEGER NOT NULL,
-  samples_rejected INTEGER NOT NULL,
-  iterations INTEGER NOT NULL,
-  error_measure TEXT NOT NULL CHECK (error_measure IN ('orientation', 'torque', 'standardized')),
-  reduced_chi_square ANY,
-  condition_number ANY,
-  solve_time ANY,
-  orientation_uncertainty ANY,
-  torque_uncertainty ANY
-) STRICT;
-
 CREATE TABLE cycle_errors (
   cycle INTEGER NOT NULL REFERENCES cycles (id),
   iteration INTEGER NOT NULL,
@@ -89,6 +92,7 @@ CREATE TABLE cycle_estimates (
   value ANY,
   stddev ANY,
   observable INTEGER NOT NULL,
+  unit TEXT NOT NULL DEFAULT '',
   PRIMARY KEY (cycle, position)
 ) STRICT, WITHOUT ROWID;
 
@@ -155,20 +159,30 @@ bool isEarlierSchema(const SQLite::Database& database) {
 }
 
 void upgradeSessionSchema(SQLite::Database& database) {
-  if (pragma(database, "PRAGMA user_version") < 2) {
+  const std::int64_t version = pragma(database, "PRAGMA user_version");
+  if (version < 2) {
     database.exec(
         "ALTER TABLE revisions ADD COLUMN covariance_of INTEGER REFERENCES revisions (number)");
   }
+  if (version < 3) {
+    database.exec(
+        "ALTER TABLE samples ADD COLUMN dwell INTEGER NOT NULL DEFAULT 0;"
+        "ALTER TABLE samples ADD COLUMN joint_1_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+        "ALTER TABLE samples ADD COLUMN joint_2_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+        "ALTER TABLE samples ADD COLUMN joint_3_shared_stddev ANY NOT NULL DEFAULT 0.0;"
+        "ALTER TABLE samples ADD COLUMN torque_shared_stddev ANY DEFAULT 0.0");
+  }
+  // The table of cycles named those that it took; a constraint goes with its table only.
+  database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
+  database.exec(kCycles);
   database.exec(
-      "ALTER TABLE samples ADD COLUMN dwell INTEGER NOT NULL DEFAULT 0;"
-      "ALTER TABLE samples ADD COLUMN joint_1_shared_stddev ANY NOT NULL DEFAULT 0.0;"
-      "ALTER TABLE samples ADD COLUMN joint_2_shared_stddev ANY NOT NULL DEFAULT 0.0;"
-      "ALTER TABLE samples ADD COLUMN joint_3_shared_stddev ANY NOT NULL DEFAULT 0.0;"
-      "ALTER TABLE samples ADD COLUMN torque_shared_stddev ANY DEFAULT 0.0");
+      "INSERT INTO cycles SELECT * FROM earlier_cycles; DROP TABLE earlier_cycles;"
+      "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
 void createSessionSchema(SQLite::Database& database) {
+  database.exec(kCycles);
   database.exec(kTables);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));

@@ -136,6 +136,7 @@ class RecordedSession(unittest.TestCase):
         for estimate in live[0].estimates:
             self.assertEqual(float(estimates[estimate.name]["value"]), estimate.value)
             self.assertEqual(float(estimates[estimate.name]["stddev"]), estimate.stddev)
+            self.assertEqual(estimates[estimate.name]["unit"], estimate.unit)
         actuator = os.path.join(tables, "actuator.yaml")
         command = [program("import_csv"), "--actuator", actuator, "--output", bag, os.path.join(tables, "samples.csv")]
         subprocess.run(command, check=True)

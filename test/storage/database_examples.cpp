@@ -50,7 +50,8 @@ bool isSame(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 bool isSame(const ParameterEstimate& a, const ParameterEstimate& b) {
   return a.name == b.name && isSame(a.nominal, b.nominal) && isSame(a.initial, b.initial) &&
-         isSame(a.value, b.value) && isSame(a.stddev, b.stddev) && a.observable == b.observable;
+         isSame(a.value, b.value) && isSame(a.stddev, b.stddev) && a.observable == b.observable &&
+         a.unit == b.unit;
 }
 
 bool isSame(const SampleResidual& a, const SampleResidual& b) {
@@ -144,6 +145,7 @@ CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters
     estimate.value = numbers.next();
     estimate.stddev = numbers.next();
     estimate.observable = p % 2 == 0;
+    estimate.unit = p % 3 == 0 ? "N·m" : "rad";
     report.estimates.push_back(estimate);
   }
   for (std::uint32_t id = 1; id <= samples; ++id) {

@@ -10,6 +10,7 @@
 
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "support/error_message.hpp"
 #include "support/moving_rotor.hpp"
 #include "support/scenarios.hpp"
@@ -128,6 +129,23 @@ TEST_F(LiveSessionTest, AFailedCycleIsStoredAndChangesNothing) {
   EXPECT_TRUE(session.calibration().state().belief.x.isZero(0.0));
   EXPECT_EQ(session.lastReport()->cycle, Cycle::kCoil);
   EXPECT_FALSE(session.lastReport()->success);
+}
+
+// Of a motion, too, whose windows are no samples.
+TEST_F(LiveSessionTest, KeepsTheReportOfEveryCycle) {
+  LiveSession session = open();
+  addAll(session);
+  for (const CycleRequest& request : {CycleRequest{Cycle::kJoint},
+                                      CycleRequest{Cycle::kPoles, 0},
+                                      CycleRequest{Cycle::kCoil, 4},
+                                      CycleRequest{Cycle::kRefine},
+                                      CycleRequest{Cycle::kMotion}}) {
+    const CycleReport report = session.run(request, kDate);
+    ASSERT_TRUE(session.lastReport()) << cycleText(request);
+    EXPECT_EQ(cycleText({session.lastReport()->cycle, session.lastReport()->coil}),
+              cycleText(request));
+    EXPECT_EQ(session.lastReport()->message, report.message);
+  }
 }
 
 TEST_F(LiveSessionTest, ResetAndRestoreAreRevisionsThemselves) {

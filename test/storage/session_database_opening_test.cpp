@@ -109,7 +109,7 @@ TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
 
 TEST_F(OpeningTest, ANewerFormatIsRefused) {
   make();
-  database_examples::change(path(), "PRAGMA user_version = 4");
+  database_examples::change(path(), "PRAGMA user_version = 5");
   expectRefusal("a newer version of this package made this session database");
 }
 

@@ -160,6 +160,14 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
   EXPECT_TRUE(database_examples::isSame(database.current().state, state));
 }
 
+/// Cycles as formats before 4 had them.
+constexpr char kWithoutMotionAndUnits[] =
+    "ALTER TABLE cycle_estimates DROP COLUMN unit;"
+    "PRAGMA writable_schema = ON;"
+    "UPDATE sqlite_schema SET sql = replace(sql, 'cycle TEXT NOT NULL,', 'cycle TEXT NOT NULL "
+    "CHECK (cycle IN (''joint'', ''poles'', ''coil'', ''refine'')),') WHERE name = 'cycles';"
+    "PRAGMA writable_schema = OFF; PRAGMA user_version = 3";
+
 /// Samples as formats before 3 had them.
 constexpr char kWithoutSharedErrors[] =
     "ALTER TABLE samples DROP COLUMN dwell;"
@@ -176,6 +184,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
     database.addCycle(database_examples::report(1, 0, kParameters), state, false, kDate);
   }
   // What the first format did not have are the last columns of two tables.
+  database_examples::change(path(), kWithoutMotionAndUnits);
   database_examples::change(path(), kWithoutSharedErrors);
   database_examples::change(
       path(),
@@ -192,7 +201,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "3");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "4");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -201,6 +210,7 @@ TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
     SessionDatabase database(path(), identity());
     database.addSample(sample, kDate);
   }
+  database_examples::change(path(), kWithoutMotionAndUnits);
   database_examples::change(path(), kWithoutSharedErrors);
   database_examples::change(path(), "PRAGMA user_version = 2");
   sample.dwell = 0;
@@ -209,6 +219,30 @@ TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
   const std::vector<Sample> samples = SessionDatabase(path(), identity()).samplesInUse();
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_TRUE(database_examples::isSame(samples.front(), sample));
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
+  constexpr Eigen::Index kParameters = 73;
+  CycleReport report = database_examples::report(1, 0, kParameters);
+  const CalibrationState state = database_examples::state(1, kParameters);
+  {
+    SessionDatabase database(path(), identity());
+    database.addCycle(report, state, false, kDate);
+  }
+  database_examples::change(path(), kWithoutMotionAndUnits);
+  SessionDatabase database(path(), identity());
+  for (ParameterEstimate& estimate : report.estimates) {
+    estimate.unit.clear();
+  }
+  ASSERT_EQ(database.cyclesOfRevision(1).size(), 1U);
+  EXPECT_TRUE(database_examples::isSame(database.cyclesOfRevision(1)[0], report));
+  report.cycle = Cycle::kMotion;
+  database.addCycle(report, kDate);
+  EXPECT_EQ(database.lastCycle()->cycle, Cycle::kMotion);
+  EXPECT_EQ(database_examples::query(path(), "SELECT parent FROM pragma_foreign_key_check"), "");
+  EXPECT_EQ(database_examples::query(path(),
+                                     "SELECT name FROM sqlite_schema WHERE name LIKE '%earlier%'"),
+            "");
 }
 
 }  // namespace

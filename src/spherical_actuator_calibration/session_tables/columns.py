@@ -39,11 +39,3 @@ SAMPLE_COLUMNS = (
 def heading(name, unit):
     """ "joint_1 [rad]", or the name alone where there is no unit."""
     return f"{name} [{unit}]" if unit else name
-
-
-def unit_of_parameter(name):
-    """Unit of a parameter of the geometry or a gain; that of another effect is in doc/method.md."""
-    if name.endswith("/gain"):
-        return "1"
-    part = name.rpartition("/")[2]
-    return "rad" if part in ("offset", "axis_u", "axis_v", "polar", "azimuth") else ""

@@ -8,10 +8,10 @@ import pathlib
 import sqlite3
 import tempfile
 
-from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading, unit_of_parameter
+from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
-FORMATS = (1, 2, 3)
+FORMATS = (1, 2, 3, 4)
 FILES = ("samples.csv", "parameters.csv", "revisions.csv", "actuator.yaml")
 PARAMETER_HEADINGS = (
     "revision", "date", "cycle", "coil", "name", "unit", "nominal", "initial", "value", "stddev", "observable"
@@ -99,15 +99,12 @@ class Session:
 
     def parameters(self):
         """What each successful cycle identified, with the revision that it made."""
-        lines = []
-        for row in self.rows(
-            "SELECT number, revisions.date, cycles.cycle, coil, name, nominal, initial, value, stddev, observable "
+        unit = "unit" if self._pragma("user_version") >= 4 else "'' AS unit"
+        lines = self.rows(
+            f"SELECT number, revisions.date, cycles.cycle, coil, name, {unit}, nominal, initial, value, stddev, observable "
             "FROM revisions JOIN cycles ON revisions.cycle = cycles.id "
             "JOIN cycle_estimates ON cycle_estimates.cycle = cycles.id ORDER BY number, position"
-        ):
-            cells = list(row)
-            cells.insert(5, unit_of_parameter(row["name"]))
-            lines.append(cells)
+        )
         return PARAMETER_HEADINGS, lines
 
     def revisions(self):
