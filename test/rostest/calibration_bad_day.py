@@ -226,6 +226,7 @@ class BadDay(unittest.TestCase):
         for coil in (0, 25, 4294967295):
             self.refused(self.client.call("calibrate_coil", coil=coil), "coil")
             self.refused(self.client.call("calibrate_poles", coil=coil), "coil")
+        self.refused(self.client.call("calibrate_motion"), "record")  # of a rotor at rest
         self.refused(self.client.call("remove_sample", id=4711), "4711")
         self.refused(self.client.call("restore", revision=4711), "4711")
         for duration in (-1.0, 1e9, math.nan):

@@ -36,6 +36,7 @@ SILENCE = 30.0  # [s] without anything new, after which what is missing is lost
 SERVICES = {
     "calibrate_coil": Calibrate,
     "calibrate_joint": Calibrate,
+    "calibrate_motion": Calibrate,
     "calibrate_poles": Calibrate,
     "capture": Capture,
     "clear_samples": Trigger,
