@@ -9,6 +9,6 @@ setup(
     **generate_distutils_setup(
         packages=[PACKAGE] + [f"{PACKAGE}.{part}" for part in ("coil_drive", "report_page", "session_guide", "session_tables")],
         package_dir={"": "src"},
-        package_data={f"{PACKAGE}.report_page": ["report_template.html"]},
+        package_data={f"{PACKAGE}.report_page": ["report_style.css", "report_template.html"]},
     )
 )
