@@ -56,6 +56,19 @@ class CheckRooms(unittest.TestCase):
         self.write("src/base/wire.cpp", include("actuator/coil.hpp"))
         self.expect_one(f"src/base/wire.cpp: base must not include {INCLUDE}/actuator/coil.hpp: actuator comes after it")
 
+    def test_names_a_room_whose_library_is_not_linked(self):
+        rooms = {"base": "sac_core", "control": "sac_control", "storage": "sac_storage"}
+        self.write("src/CMakeLists.txt", "add_library_of_rooms(sac_core EXPORTED USES Eigen3::Eigen)\n"
+                   "add_library_of_rooms(sac_control USES sac_core)\nadd_library_of_rooms(sac_storage USES sac_core)\n"
+                   + "".join(f"add_subdirectory({room})\n" for room in rooms))  # fmt: skip
+        for room, library in rooms.items():
+            self.write(f"src/{room}/CMakeLists.txt", f"add_room({room} LIBRARY {library}\n  SOURCES\n    rest.cpp)\n")
+        self.write("src/storage/table.cpp", include("base/angle.hpp"))
+        self.assertEqual(self.complaints(), [])
+        self.write(f"{INCLUDE}/control/motion.hpp", "enum class Motion { kUp };\n")
+        self.write("src/storage/table.cpp", include("control/motion.hpp"))
+        self.expect_one("src/storage/table.cpp: includes", "sac_storage does not link sac_control")
+
     def test_names_an_internal_header_of_a_later_room(self):
         self.write("src/actuator/winding.hpp", "")
         self.write("src/base/wire.cpp", '#include "../actuator/winding.hpp"\n')
@@ -109,7 +122,7 @@ class CheckRooms(unittest.TestCase):
         self.expect_one("ros/node: holds 42 of ", "more than 25 %")
 
     def test_names_a_long_source(self):
-        for name, line in (("test/base/long.py", "\n"), ("scripts/long", "#!/bin/sh\n")):
+        for name, line in (("test/base/long.py", "\n"), ("scripts/long", "#!/bin/sh\n"), ("src/page.html", "\n")):
             with self.subTest(name):
                 self.write(name, 400 * line)
                 self.assertEqual(self.complaints(), [])
