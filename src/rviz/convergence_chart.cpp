@@ -5,9 +5,6 @@
 
 #include <QtCharts/QChart>
 #include <QtCharts/QLegend>
-#include <QtCharts/QLineSeries>
-#include <QtCharts/QLogValueAxis>
-#include <QtCharts/QValueAxis>
 
 namespace sac {
 namespace {
@@ -19,16 +16,16 @@ constexpr double kSmallestError = 1e-9;
 
 ConvergenceChart::ConvergenceChart(QWidget* parent)
     : QChartView(parent),
-      line_(new QtCharts::QLineSeries),
-      iterations_(new QtCharts::QValueAxis),
-      errors_(new QtCharts::QLogValueAxis) {
+      line_(new QLineSeries),
+      iterations_(new QValueAxis),
+      errors_(new QLogValueAxis) {
   line_->setPointsVisible(true);
   iterations_->setLabelFormat("%d");
   iterations_->setTitleText("iteration");
   // Without an interval, dynamic ticks are without end.
   iterations_->setRange(0.0, 1.0);
   iterations_->setTickInterval(1.0);
-  iterations_->setTickType(QtCharts::QValueAxis::TicksDynamic);
+  iterations_->setTickType(QValueAxis::TicksDynamic);
   errors_->setLabelFormat("%.0e");
   errors_->setBase(10.0);
   // The chart owns line and axes.

@@ -3,17 +3,21 @@
 #include <vector>
 
 #include <QtCharts/QChartView>
-
-QT_CHARTS_BEGIN_NAMESPACE
-class QLineSeries;
-class QLogValueAxis;
-class QValueAxis;
-QT_CHARTS_END_NAMESPACE
+#include <QtCharts/QLineSeries>
+#include <QtCharts/QLogValueAxis>
+#include <QtCharts/QValueAxis>
 
 namespace sac {
 
+#if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
+using QtCharts::QChartView;
+using QtCharts::QLineSeries;
+using QtCharts::QLogValueAxis;
+using QtCharts::QValueAxis;
+#endif
+
 /// Error over the iterations of a cycle, on a logarithmic scale.
-class ConvergenceChart : public QtCharts::QChartView {
+class ConvergenceChart : public QChartView {
   Q_OBJECT
 
  public:
@@ -23,9 +27,9 @@ class ConvergenceChart : public QtCharts::QChartView {
   void setHistory(const QString& title, const std::vector<double>& errors);
 
  private:
-  QtCharts::QLineSeries* line_;
-  QtCharts::QValueAxis* iterations_;
-  QtCharts::QLogValueAxis* errors_;
+  QLineSeries* line_;
+  QValueAxis* iterations_;
+  QLogValueAxis* errors_;
 };
 
 }  // namespace sac
