@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 
@@ -137,10 +136,6 @@ MotionPlanRecord parseMotionPlan(const std::string& text, const std::string& nam
   }
   file.finish();
   return record;
-}
-
-MotionPlanRecord loadMotionPlan(const std::string& path) {
-  return parseMotionPlan(readInputFile(path), path);
 }
 
 }  // namespace sac

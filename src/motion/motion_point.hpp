@@ -64,7 +64,6 @@ class MotionPoint {
   double coulomb() const { return valueAt(places_.coulomb); }
   double currentDelay() const { return valueAt(places_.current_delay); }
   double currentDispersion() const { return valueAt(places_.current_dispersion); }
-  double trackerDelay() const { return valueAt(places_.tracker_delay); }
   /// Value of an effect per coordinate, at its place.
   double scaleAt(Eigen::Index place) const {
     return space_->effects().scale(place - space_->effect());

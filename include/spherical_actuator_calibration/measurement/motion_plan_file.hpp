@@ -26,7 +26,5 @@ std::string renderMotionPlan(const MotionPlanRecord& record);
 /// Reads the text of a plan file; `name` stands for the file in messages. Throws ConfigError that
 /// names file, line and key. Whether the plan fits an actuator is for validate().
 MotionPlanRecord parseMotionPlan(const std::string& text, const std::string& name);
-/// The same from a file.
-MotionPlanRecord loadMotionPlan(const std::string& path);
 
 }  // namespace sac
