@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 
 namespace sac {
 namespace {
@@ -25,7 +26,9 @@ class Examiner {
         }));
     for (const CycleReport& report : session.reports()) {
       last_success_ = report.success ? &report : last_success_;
-      refused_ = report.contradicted ? &report : (mends(report) ? nullptr : refused_);
+      // Mended: a refinement, for instance, takes all samples.
+      const bool is_mended = refused_ != nullptr && mends(report, *refused_);
+      refused_ = report.contradicted ? &report : (is_mended ? nullptr : refused_);
     }
   }
 
@@ -35,14 +38,6 @@ class Examiner {
   }
 
  private:
-  /// A refinement takes all samples: where it succeeds, what was refused before is mended.
-  bool mends(const CycleReport& report) const {
-    const bool is_same =
-        refused_ != nullptr && report.cycle == refused_->cycle && report.coil == refused_->coil;
-    return report.success &&
-           (is_same || report.cycle == Cycle::kRefine || report.cycle == Cycle::kMotion);
-  }
-
   Grade grade() const {
     if (identified_ == 0) {
       // Motion is one cycle for everything: where it does not fit, nothing else has a say.

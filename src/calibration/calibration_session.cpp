@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
+#include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "start_state.hpp"
 
 namespace sac {
@@ -144,12 +145,7 @@ bool CalibrationSession::isComplete() const {
   const auto is_mended = [this](std::size_t failed) {
     return std::any_of(reports_.begin() + static_cast<std::ptrdiff_t>(failed),
                        reports_.end(),
-                       [&](const CycleReport& later) {
-                         const bool is_same = later.cycle == reports_[failed].cycle &&
-                                              later.coil == reports_[failed].coil;
-                         return later.success && (is_same || later.cycle == Cycle::kRefine ||
-                                                  later.cycle == Cycle::kMotion);
-                       });
+                       [&](const CycleReport& later) { return mends(later, reports_[failed]); });
   };
   for (std::size_t n = 0; n < reports_.size(); ++n) {
     if (!is_mended(n)) {
