@@ -218,7 +218,7 @@ class TorqueScreen {
   /// A coil that is off measures some milliamperes all the same, which explain anything when they
   /// are multiplied by enough.
   bool isOn(const PredictedTorque& torque, Eigen::Index coil) const {
-    return std::abs(torque.current[coil]) > config_.estimation.current_threshold;
+    return std::abs(torque.current[coil]) >= config_.estimation.current_threshold;
   }
 
   /// By the samples in which one of two coils is on.
