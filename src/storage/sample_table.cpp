@@ -1,8 +1,10 @@
 #include "sample_table.hpp"
 
+#include <cstddef>
 #include <map>
 
 #include "row_access.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac::sample_table {
 namespace {
@@ -97,7 +99,7 @@ void insert(const SQLite::Database& database, const Sample& sample, const std::s
   RowWriter current(database,
                     "INSERT INTO sample_currents (sample, coil, current) VALUES (?, ?, ?)");
   for (Eigen::Index j = 0; j < sample.current.size(); ++j) {
-    const auto coil = static_cast<std::int64_t>(j) + 1;
+    const std::size_t coil = numberOf(static_cast<std::size_t>(j));
     current.put(sample.id).put(coil).put(sample.current[j]).write();
   }
 }
