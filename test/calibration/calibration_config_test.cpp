@@ -35,8 +35,8 @@ TEST(CalibrationConfig, ShippedFileNamesEveryKeyInItsSection) {
   }
 }
 
-TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
-  // All values changed, so that an option that one side forgets comes back as its default.
+/// All values changed, so that an option that one side forgets comes back as its default.
+CalibrationConfig changedConfig() {
   CalibrationConfig config;
   config.frames = {"base", "ball"};
   SampleBuilderOptions& samples = config.samples;
@@ -85,7 +85,11 @@ TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
   config.orientation_map = MapUse::kNever;
   config.hold_out_every = 5;
   config.wanted = {1e-3, 2e-3};
+  return config;
+}
 
+TEST(CalibrationConfig, EveryOptionIsReadAndWritten) {
+  const CalibrationConfig config = changedConfig();
   const std::string text = renderCalibrationConfig(config);
   const CalibrationConfig back = parseCalibrationConfig(text, "c.yaml");
   EXPECT_EQ(renderCalibrationConfig(back), text);
