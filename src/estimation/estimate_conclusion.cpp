@@ -179,7 +179,8 @@ void Conclusion::addHeld(const Eigen::MatrixXd& others, const Eigen::MatrixXd& o
   // F×U: ∂estimated/∂held.
   const Eigen::MatrixXd gain = -inverse_ * others(Eigen::all, uncertain);
   with_held_ = gain * of_held(uncertain, Eigen::all);
-  own_covariance_ += with_held_(Eigen::all, uncertain) * gain.transpose();
+  const Eigen::MatrixXd with_uncertain = with_held_(Eigen::all, uncertain);
+  own_covariance_ += with_uncertain * gain.transpose();
 }
 
 /// `own`: of the estimated coordinates; `covariance`: of the held ones, all else zero.
