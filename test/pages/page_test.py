@@ -5,6 +5,7 @@ The reader has a copy of the package, has built it and has called `source build/
 folder of the package, and goes from block to block in one folder with one laboratory. Environment: SOURCE, BUILD.
 """
 
+import contextlib
 import os
 import pathlib
 import re
@@ -261,7 +262,7 @@ class Reader:
 
     def query(self, block):
         """Statements about the session database that a block before has made."""
-        with sqlite3.connect(f"file:{self.session_database()}?mode=ro", uri=True) as connection:
+        with contextlib.closing(sqlite3.connect(f"file:{self.session_database()}?mode=ro", uri=True)) as connection:
             statements = re.sub(r"^--.*$", "", block.text, flags=re.MULTILINE).split(";")
             try:
                 for statement in statements:

@@ -241,7 +241,7 @@ class ImportOfStreams(Folder):
 
 class Export(Folder):
     def test_what_is_no_session_is_refused(self):
-        with sqlite3.connect(self.folder / "other.db") as database:
+        with contextlib.closing(sqlite3.connect(self.folder / "other.db")) as database:
             database.execute("CREATE TABLE a (b)")
         for name, part in (("no.db", "no such file"), ("other.db", "not a session"), ("text.db", "cannot be read")):
             if name == "text.db":

@@ -48,11 +48,26 @@ class Session:
         if not os.path.isfile(path):
             raise ExportError(f"{path}: there is no such file.")
         self._database = sqlite3.connect(pathlib.Path(path).absolute().as_uri() + "?mode=ro", uri=True)
+        try:
+            self._begin()
+        except BaseException:
+            self._database.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._database.close()
+
+    def _begin(self):
         self._database.row_factory = sqlite3.Row
         if self._pragma("application_id") != APPLICATION:
-            raise ExportError(f"{path}: this is not a session database.")
+            raise ExportError(f"{self.path}: this is not a session database.")
         if self._pragma("user_version") not in FORMATS:
-            raise ExportError(f"{path}: a newer version of this package made this session database; update the package.")
+            raise ExportError(
+                f"{self.path}: a newer version of this package made this session database; update the package."
+            )
         # One state of the session, whatever is stored meanwhile.
         self._database.execute("BEGIN")
 
@@ -151,9 +166,9 @@ def export(path, folder, force):
         target = os.path.join(folder, name)
         if os.path.exists(target) and not force:
             raise ExportError(f"{target}: the file exists already; choose another folder or give --force.")
-    session = Session(path)
-    samples = session.samples()
-    texts = (text_of(samples), text_of(session.parameters()), text_of(session.revisions()), session.description())
+    with Session(path) as session:
+        samples = session.samples()
+        texts = (text_of(samples), text_of(session.parameters()), text_of(session.revisions()), session.description())
     for name, text in zip(FILES, texts):
         write_whole(os.path.join(folder, name), text)
     return len(samples[1])
