@@ -137,6 +137,14 @@ class CheckRooms(unittest.TestCase):
                 self.assertEqual(self.complaints(), [])
         self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
 
+    def test_names_a_long_test(self):
+        found = {}
+        for length in (60, 61):
+            self.write("test/base/turn_test.cpp", "TEST_F(Turn, Turns) {\n" + (length - 2) * "  turn();\n" + "}\n")
+            found[length] = [one for one in self.complaints() if "TEST" in one]
+        self.assertEqual(found[60], [])
+        self.assertEqual(found[61], ["test/base/turn_test.cpp:1: TEST_F(Turn, Turns) has 61 lines, more than 60."])
+
     def test_names_a_long_cmake_file(self):
         for name in ("CMakeLists.txt", "src/base/CMakeLists.txt", "cmake/rooms.cmake"):
             with self.subTest(name):
