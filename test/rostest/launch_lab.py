@@ -96,8 +96,11 @@ class LaunchLab(unittest.TestCase):
         wait_for(is_measured, "measured orientation")
         self.assertEqual(measured[0].header.frame_id, "unit_1/stator")
         # The recorder finds its topics one by one.
-        wait_for(lambda: {"/tf_static", f"{NAMESPACE}/parameters"} <= self.recorded(), "topics of the recorder")
-        rospy.sleep(1.0)
+        topics = {"/tf_static", f"{NAMESPACE}/parameters", f"{NAMESPACE}/measured_orientation"}
+        wait_for(lambda: topics <= self.recorded(), "topics of the recorder")
+        for _ in range(100):
+            is_measured()
+            rospy.sleep(0.02)
 
     def recorded(self):
         """Topics that the recorder subscribes to."""
