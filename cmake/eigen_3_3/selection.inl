@@ -1,5 +1,5 @@
 // EIGEN_FUNCTORS_PLUGIN, which Eigen includes in its inner namespace before any matrix: selection by lists of
-// indices, as Eigen has it since 3.4. Reading copies; writing is assignment, += and setZero().
+// indices, as Eigen has it since 3.4. Reading copies; writing is assignment, +=, -= and setZero().
 }  // namespace internal
 
 struct AllIndices {};
@@ -24,6 +24,18 @@ class Selection {
   void operator+=(const Values& values) {
     const auto evaluated = values.eval();
     write([&](Index row, Index column, auto& element) { element += evaluated(row, column); });
+  }
+
+  template <typename Values>
+  void operator-=(const Values& values) {
+    *this += -values;
+  }
+
+  /// Reading what could be written: a copy.
+  template <int Rows, int Columns>
+  operator Eigen::Matrix<typename Matrix::Scalar, Rows, Columns>() const {
+    const Matrix& matrix = matrix_;
+    return matrix(rows_, columns_);
   }
 
   void setZero() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -179,7 +180,7 @@ void Conclusion::addHeld(const Eigen::MatrixXd& others, const Eigen::MatrixXd& o
   // F×U: ∂estimated/∂held.
   const Eigen::MatrixXd gain = -inverse_ * others(Eigen::all, uncertain);
   with_held_ = gain * of_held(uncertain, Eigen::all);
-  const Eigen::MatrixXd with_uncertain = with_held_(Eigen::all, uncertain);
+  const Eigen::MatrixXd with_uncertain = std::as_const(with_held_)(Eigen::all, uncertain);
   own_covariance_ += with_uncertain * gain.transpose();
 }
 

@@ -123,8 +123,8 @@ void Collector::addDwell(const std::vector<std::size_t>& dwell, DwellSum& sum, S
 /// for A = W J, M = I + Σ GᵀG and C = Σ GᵀA, and the shared errors weigh in it as M⁻¹C. Keeps what
 /// the residuals need of it; F×F: YᵀRY.
 Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, const DwellSum& sum) {
-  const Eigen::MatrixXd shares =
-      (sum.elimination().covariance() * sum.crossed())(Eigen::all, solution_.estimated);
+  const Eigen::MatrixXd all_shares = sum.elimination().covariance() * sum.crossed();
+  const Eigen::MatrixXd shares = all_shares(Eigen::all, solution_.estimated);
   Eigen::MatrixXd information = shares.transpose() * shares;
   for (const std::size_t n : dwell) {
     if (!observations_.active()[n]) {
@@ -136,7 +136,9 @@ Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, con
     const SharedLoading& G = observations_.shared().loading[n];
     const Eigen::Matrix3d own_noise = evaluator.ownNoise(n, linear_);
     Eigen::MatrixXd& weighed = weighed_[n];
-    weighed = W.transpose() * (W * linear_.jacobian(Eigen::all, solution_.estimated) - G * shares);
+    const Eigen::Matrix3Xd jacobian =
+        std::as_const(linear_.jacobian)(Eigen::all, solution_.estimated);
+    weighed = W.transpose() * (W * jacobian - G * shares);
     information += weighed.transpose() * own_noise * weighed;
     // Σ over the dwell of cov(e_n, e_m) Y_m.
     weighed = (own_noise * weighed + W.inverse() * G * shares).eval();

@@ -194,14 +194,15 @@ void Estimator::findCovariance() {
   const MotionSums& sums = descent_.sums();
   const auto count = static_cast<Eigen::Index>(estimated.size());
   const Eigen::MatrixXd information = sums.information();
-  const Eigen::MatrixXd inverse = (information + prior)(estimated, estimated)
+  const Eigen::MatrixXd all = information + prior;
+  const Eigen::MatrixXd inverse = Eigen::MatrixXd(all(estimated, estimated))
                                       .ldlt()
                                       .solve(Eigen::MatrixXd::Identity(count, count));
   const double windows = std::pow(result_.estimate.covariance_scale, 2);
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
-  const Eigen::MatrixXd noise =
-      (windows * sums.balance.information + orientations * sums.orientation.information + prior)(
-          estimated, estimated);
+  const Eigen::MatrixXd all_noise =
+      windows * sums.balance.information + orientations * sums.orientation.information + prior;
+  const Eigen::MatrixXd noise = all_noise(estimated, estimated);
   Eigen::MatrixXd held = problem_.prior.covariance;
   for (const Eigen::Index a : estimated) {
     held.row(a).setZero();

@@ -73,7 +73,8 @@ Eigen::MatrixXd MotionDescent::priorInformation() const {
 }
 
 void MotionDescent::judgeOpen() {
-  Eigen::MatrixXd information = sums_.information()(problem_.free, problem_.free);
+  const Eigen::MatrixXd all = sums_.information();
+  Eigen::MatrixXd information = all(problem_.free, problem_.free);
   const ParameterSpace& space = problem_.model->space();
   for (std::size_t k = 0; k < problem_.free.size(); ++k) {
     const Eigen::Index p = problem_.free[k];
@@ -97,8 +98,10 @@ void MotionDescent::judgeOpen() {
 /// Gauss–Newton, P entries.
 Eigen::VectorXd MotionDescent::step() {
   const Eigen::MatrixXd prior = priorInformation();
-  const Eigen::MatrixXd information = (sums_.information() + prior)(estimated_, estimated_);
-  const Eigen::VectorXd gradient = (sums_.gradient() + prior * (x_ - problem_.prior.x))(estimated_);
+  const Eigen::MatrixXd all = sums_.information() + prior;
+  const Eigen::MatrixXd information = all(estimated_, estimated_);
+  const Eigen::VectorXd slope = sums_.gradient() + prior * (x_ - problem_.prior.x);
+  const Eigen::VectorXd gradient = slope(estimated_);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(x_.size());
   result(estimated_) = -information.ldlt().solve(gradient);
   return result;

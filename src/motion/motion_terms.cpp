@@ -205,7 +205,8 @@ void MotionTerms::linearizeOrientations() {
 }
 
 void MotionTerms::moveOrientations(const Eigen::VectorXd& x) {
-  const Eigen::VectorXd apart = (x - linearized_at_)(orienting_);
+  const Eigen::VectorXd moved = x - linearized_at_;
+  const Eigen::VectorXd apart = moved(orienting_);
   for (std::size_t n = 0; n < orientations_.size(); ++n) {
     OrientationTerm& term = orientations_[n];
     if (term.is_known) {
