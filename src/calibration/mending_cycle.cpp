@@ -4,7 +4,9 @@ namespace sac {
 
 bool mends(const CycleReport& later, const CycleReport& earlier) {
   const bool is_same = later.cycle == earlier.cycle && later.coil == earlier.coil;
-  const bool takes_everything = later.cycle == Cycle::kRefine || later.cycle == Cycle::kMotion;
+  // Samples tell nothing of inertia, friction and delays.
+  const bool takes_everything = later.cycle == Cycle::kMotion ||
+                                (later.cycle == Cycle::kRefine && earlier.cycle != Cycle::kMotion);
   return later.success && (is_same || takes_everything);
 }
 
