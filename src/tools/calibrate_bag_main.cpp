@@ -165,6 +165,13 @@ bool takesMotion(const Recording& recording,
   return !has_torque && nominal.hasTorqueModel() && tellsMotion(recording.motion);
 }
 
+/// Whether inertia, friction, unbalance and delays belong to the parameters: not beside cycles of
+/// samples, whose torques are without the one of the same dwell without current, so that they tell
+/// of no unbalance. The cycle motion knows them all the same.
+bool isMotionAlone(const CalibrateBagOptions& options) {
+  return !options.cycles || std::all_of(options.cycles->begin(), options.cycles->end(), isMotion);
+}
+
 std::vector<CycleRequest> cyclesOf(const CalibrationSession& session,
                                    const CalibrateBagOptions& options) {
   const EstimationOptions& estimation = session.config().estimation;
@@ -336,7 +343,7 @@ int calibrateBag(const CalibrateBagOptions& options) {
   }
   const std::vector<std::string> lines = describe(recording.report);
   print(lines);
-  if (takes_motion) {
+  if (takes_motion && isMotionAlone(options)) {
     config.effects = withMotionEffects(config.effects);
   }
   CalibrationSession session(start, std::move(recording.samples), config);

@@ -133,12 +133,17 @@ class Motion(unittest.TestCase):
         write_bag(motion_bag, self.record(), len(self.unit.coils))
         return dwell_bag, motion_bag
 
+    @staticmethod
+    def calibrate_bags(folder, cycles, bags, *options):
+        output = os.path.join(folder, cycles + ".yaml")
+        return run("calibrate_bag", "--actuator", NOMINAL, "--cycles", cycles, "--output", output, *options, *bags)
+
     def errors_and_stddevs(self, folder, cycles, *bags):
         report = os.path.join(folder, cycles)
-        result = run("calibrate_bag", "--actuator", NOMINAL, "--cycles", cycles, "--report", report, *bags)
+        result = self.calibrate_bags(folder, cycles, bags, "--report", report)
         self.assertEqual(result.returncode, 0, result.stdout)
         with open(os.path.join(report, "report.yaml"), encoding="utf-8") as file:
-            rows = {row["name"]: row for row in yaml.safe_load(file)["parameters"]}
+            rows = {row["name"]: row for row in yaml.safe_load(file)["calibration_report"]["parameters"]}
         rows = [rows[name] for name in self.unit.names()]
         apart = np.array([row["value"] for row in rows]) - self.unit.values(self.errors)
         apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
@@ -160,7 +165,7 @@ class Motion(unittest.TestCase):
             errors = self.errors.copy()
             errors[9:11] += 2e-3  # of one pole
             bags = self.dwells_and_motion(folder, errors)
-            result = run("calibrate_bag", "--actuator", NOMINAL, "--cycles", "motion,refine", *bags)
+            result = self.calibrate_bags(folder, "motion,refine", bags)
         self.assertEqual(result.returncode, 1, result.stdout)
         self.assertIn("contradict the motion", result.stdout)
         self.assertIn("grade: contradicted", result.stdout)

@@ -32,7 +32,9 @@ RecordedStreams::RecordedStreams(const Actuator& nominal,
 
 template <typename Measurement>
 void RecordedStreams::take(const Measurement& measurement) {
-  builder_.add(measurement);
+  if (keeps_samples_) {
+    builder_.add(measurement);
+  }
   if (keeps_motion_) {
     motion_.add(measurement);
   }
@@ -58,7 +60,9 @@ void RecordedStreams::add(const geometry_msgs::QuaternionStamped& message) {
 
 void RecordedStreams::add(const geometry_msgs::Vector3Stamped& message) {
   if (const TorqueMeasurement* measurement = reader_.read(message)) {
-    builder_.add(*measurement);
+    if (keeps_samples_) {
+      builder_.add(*measurement);
+    }
     return;
   }
   ++counts_.torques_in_other_frame;

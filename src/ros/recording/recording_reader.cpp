@@ -69,6 +69,7 @@ class Reader {
     streams_.keepMotion(options_.motion == MotionUse::kAlways ||
                         (options_.motion == MotionUse::kWithoutTorques &&
                          !topics_.isRecorded(group, TopicRole::kTorque)));
+    streams_.keepSamples(!from_samples);
     guarded(group, [&] { readMessages(group, rolesToRead(from_samples), step); });
     streams_.finish();
     append(streams_.takeSamples());
@@ -131,6 +132,12 @@ class Reader {
   }
 
   std::vector<TopicRole> rolesToRead(bool from_samples) const {
+    if (from_samples && options_.motion == MotionUse::kAlways) {
+      return {TopicRole::kSamples,
+              TopicRole::kJointStates,
+              TopicRole::kOrientation,
+              TopicRole::kCurrents};
+    }
     if (from_samples) {
       return {TopicRole::kSamples};
     }

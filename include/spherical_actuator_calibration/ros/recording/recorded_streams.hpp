@@ -26,6 +26,9 @@ class RecordedStreams {
   /// Whether what follows is kept for takeMotion(); it is not from the start.
   void keepMotion(bool keep) { keeps_motion_ = keep; }
 
+  /// Whether samples are made of what follows; they are from the start.
+  void keepSamples(bool keep) { keeps_samples_ = keep; }
+
   /// Samples are made of the stretches of these until finish() (SampleBuilder::repeat()).
   void repeat(const std::vector<Sample>& taken) { builder_.repeat(taken); }
 
@@ -61,6 +64,7 @@ class RecordedStreams {
   SampleBuilder builder_;
   MotionRecorder motion_;
   bool keeps_motion_ = false;
+  bool keeps_samples_ = true;
 
   template <typename Measurement>
   void take(const Measurement& measurement);
