@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
+#include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
@@ -35,7 +36,7 @@ void publish(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   constexpr bool kLatched = true;
   ros::NodeHandle advertising = node;
   const ros::Publisher publisher = advertising.advertise<Message>("parameters", 1, kLatched);
-  publisher.publish(message);
+  sac::publishLatched(publisher, message);
   sac::spinUntilTermination();
 }
 

@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
+#include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"
 
 namespace sac {
 namespace {
@@ -41,9 +42,9 @@ void CalibrationTopics::publishSetup(const CalibratedDescription& start,
                                      const CalibrationConfig& config) {
   std_msgs::String message;
   message.data = renderDescription(start, description_.getTopic());
-  description_.publish(message);
+  publishLatched(description_, message);
   message.data = renderCalibrationConfig(config);
-  config_.publish(message);
+  publishLatched(config_, message);
 }
 
 void CalibrationTopics::publishParameters(const LiveSession& session) {
@@ -53,12 +54,12 @@ void CalibrationTopics::publishParameters(const LiveSession& session) {
   message.header = header();
   message.revision = session.revision().number;
   message.source = session.revision().source;
-  parameters_.publish(message);
+  publishLatched(parameters_, message);
 }
 
 void CalibrationTopics::publishReport(const msg::CalibrationReport& report) {
   last_report_ = report;
-  report_.publish(report);
+  publishLatched(report_, report);
 }
 
 void CalibrationTopics::publishStatus(const LiveSession& session,
@@ -86,12 +87,12 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.grade = gradeName(graded.grade);
   message.grade_reason = graded.reason;
   message.next_step = nextStep(calibration.model(), calibration.samples(), progress, estimation);
-  status_.publish(message);
+  publishLatched(status_, message);
   if (last_report_ && (last_report_->grade != message.grade ||
                        last_report_->grade_reason != message.grade_reason)) {
     last_report_->grade = message.grade;
     last_report_->grade_reason = message.grade_reason;
-    report_.publish(*last_report_);
+    publishLatched(report_, *last_report_);
   }
 }
 
