@@ -184,8 +184,10 @@ void Budget::sumKnowledge() {
 
 std::vector<BudgetEntry> Budget::propagated() {
   const auto size = static_cast<Eigen::Index>(chosen_.size());
-  const Eigen::MatrixXd reported = reportedJacobian(space_, belief_.x)(Eigen::all, chosen_) *
-                                   information_.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd all = reportedJacobian(space_, belief_.x);
+  const Eigen::MatrixXd chosen = all(Eigen::all, chosen_);
+  const Eigen::MatrixXd reported =
+      chosen * information_.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   std::vector<BudgetEntry> entries;
   for (const std::string& source : sources_) {
     const Eigen::VectorXd variance =
