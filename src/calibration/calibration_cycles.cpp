@@ -137,7 +137,7 @@ std::string join(const ParameterSpace& space,
     report.message = format(
         "All parameters: the samples contradict the motion before them (probability %.2g); at "
         "least one of both is wrong. Check registrations, torque curve and force/torque sensor; "
-        "calibrate from one of both alone to see which.",
+        "calibrate from one of both alone to see which (a running node forgets a motion by reset).",
         all.probability);
     return {};
   }

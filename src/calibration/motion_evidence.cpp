@@ -1,14 +1,12 @@
 #include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include <boost/math/distributions/chi_squared.hpp>
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 namespace {
@@ -86,6 +84,9 @@ CombinedBelief combined(const ParameterSpace& space,
     return result;
   }
   const WhitenedEvidence own = ownEvidence(space, motion);
+  if (own.value.size() == 0) {
+    return result;
+  }
   const Eigen::MatrixXd spread = by_samples.covariance(Eigen::all, motion.told) * own.factor;
   const Eigen::VectorXd apart = own.value - own.factor.transpose() * by_samples.x(motion.told);
   const Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(apart.size(), apart.size()) +
@@ -98,9 +99,8 @@ CombinedBelief combined(const ParameterSpace& space,
   kept(Eigen::all, motion.told) -= gain * own.factor.transpose();
   result.belief.covariance =
       kept * by_samples.covariance * kept.transpose() + gain * gain.transpose();
-  const boost::math::chi_squared distribution(static_cast<double>(apart.size()));
   const double misfit = factor.matrixL().solve(apart).squaredNorm();
-  result.probability = boost::math::cdf(boost::math::complement(distribution, misfit));
+  result.probability = chiSquareProbability(static_cast<double>(apart.size()), misfit);
   return result;
 }
 

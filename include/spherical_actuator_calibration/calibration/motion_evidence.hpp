@@ -15,7 +15,7 @@ namespace sac {
 struct MotionEvidence {
   ParameterBelief belief;          ///< after the motion
   std::vector<Eigen::Index> told;  ///< coordinates that it identified, ascending
-  Eigen::MatrixXd covariance;      ///< of all coordinates [rad²] before any cycle
+  Eigen::MatrixXd covariance;      ///< of all coordinates before any cycle, in their units
 };
 
 /// The evidence of a successful cycle `motion`: its report and the state after it. `start`: the
@@ -32,7 +32,7 @@ ParameterBelief withoutMotion(ParameterBelief belief, const MotionEvidence& moti
 /// Two independent beliefs in one.
 struct CombinedBelief {
   ParameterBelief belief;
-  /// That values at least so far apart come by chance: chi-square of their difference.
+  /// With which values at least so far apart come by chance: chi-square of their difference.
   double probability = 1.0;
 };
 
