@@ -56,7 +56,9 @@ class BagLoop(unittest.TestCase):
 
     def report_tells_the_grade_of_what_is_in_force_now(self):
         wait_for(lambda: self.grades() == {"not_validated"}, "report and status of the cycle")
-        identified = self.client.revision()
+        # Each topic has a connection of its own: the parameters may come after the report of them.
+        identified = self.client.latest("status").revision
+        wait_for(lambda: self.client.revision() == identified, "parameters of the cycle")
         self.assertTrue(self.client.call("reset").success)
         wait_for(lambda: self.grades() == {"failed"}, "report and status of nominal parameters")
         self.assertTrue(self.client.call("restore", revision=identified).success)
