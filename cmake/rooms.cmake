@@ -14,6 +14,8 @@ function(use_project_options target)
     CXX_EXTENSIONS OFF
     POSITION_INDEPENDENT_CODE ON
     INSTALL_RPATH "$ORIGIN:$ORIGIN/..")
+  # A library of its own before glibc 2.34.
+  target_link_libraries(${target} PRIVATE Threads::Threads)
 endfunction()
 
 option(PRECOMPILED_HEADERS "Parse the headers of Eigen, ROS and GoogleTest once, which halves the build" ON)
