@@ -269,8 +269,12 @@ TEST(StreamDefects, NoiseOfEveryKindCrashesNothing) {
 }
 
 std::size_t heapInUse() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
+#if __GLIBC_PREREQ(2, 33)
+  const auto info = mallinfo2();
+#else
+  const auto info = mallinfo();  // in int, enough below 2 GB
+#endif
+  return static_cast<std::size_t>(info.uordblks) + static_cast<std::size_t>(info.hblkhd);
 }
 
 /// Heap in use after each half of a long run of `tick`, which is called 200 times a second.
