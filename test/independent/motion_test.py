@@ -10,40 +10,11 @@ import free_motion
 import laboratory
 import numpy as np
 import yaml
+from motion_bag import write_bag
 from motion_cases import NOMINAL, calibrate
 
 SECONDS = 12.0
 SEED = 5
-
-
-def write_bag(path, recording, coils):
-    """As a laboratory records it."""
-    import genpy
-    import rosbag
-    from geometry_msgs.msg import QuaternionStamped
-    from sensor_msgs.msg import JointState
-    from spherical_actuator_calibration.msg import CoilCurrents
-
-    messages = []
-
-    def add(topic, message, t):
-        message.header.stamp = genpy.Time.from_sec(100.0 + t)
-        messages.append((message.header.stamp, topic, message))
-
-    for t, q in zip(*recording["joints"]):
-        add("joint_states", JointState(name=["joint_1", "joint_2", "joint_3"], position=list(q)), t)
-    for t, current in zip(*recording["currents"]):
-        add("coil_currents", CoilCurrents(current=list(current)), t)
-    for t, R in zip(*recording["orientations"]):
-        message = QuaternionStamped()
-        message.header.frame_id = "stator"
-        q = message.quaternion
-        q.x, q.y, q.z, q.w = laboratory.quaternion_xyzw(R)
-        add("measured_orientation", message, t)
-    assert len(recording["currents"][1][0]) == coils
-    with rosbag.Bag(path, "w") as bag:
-        for stamp, topic, message in sorted(messages, key=lambda one: one[0]):
-            bag.write("/actuator/" + topic, message, stamp)
 
 
 def run(program, *arguments):

@@ -37,6 +37,7 @@ SERVICES = {
     "calibrate_coil": Calibrate,
     "calibrate_joint": Calibrate,
     "calibrate_motion": Calibrate,
+    "calibrate_motion": Calibrate,
     "calibrate_poles": Calibrate,
     "capture": Capture,
     "clear_samples": Trigger,
@@ -215,6 +216,11 @@ class CalibrationClient:
         status = self._diagnostics.get(f"{NODE[1:]}: {task}")
         return {value.key: value.value for value in status.values} if status else {}
 
+    def received(self, stream):
+        """Messages of a stream that the node has accepted, and refused."""
+        values = self.diagnostic(stream)
+        return int(values.get("accepted", 0)), int(values.get("refused", 0))
+
     def call(self, service, **fields):
         proxy = rospy.ServiceProxy(f"{NODE}/{service}", SERVICES[service])
         return proxy(**fields)
@@ -242,6 +248,23 @@ class CalibrationClient:
 
     def revision(self):
         return self.latest("parameters").revision
+
+
+class Reception:
+    """What comes of a recording to the node; `counts`: its messages by stream."""
+
+    def __init__(self, client, counts):
+        self._client = client
+        self._counts = counts
+        self._last = (0, time.monotonic())
+
+    def is_going_on(self):
+        """Whether messages are still to come: not all were received, and some were a moment ago."""
+        received = sum(sum(self._client.received(stream)) for stream in self._counts)
+        now = time.monotonic()
+        if received != self._last[0]:
+            self._last = (received, now)
+        return received < sum(self._counts.values()) and now - self._last[1] < SILENCE
 
 
 def values_of(parameters):

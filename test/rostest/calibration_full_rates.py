@@ -18,10 +18,10 @@ import rostest
 from calibration_client import (
     NAMESPACE,
     PACKAGE,
-    SILENCE,
     STREAMS,
     CalibrationClient,
     CalibrationNode,
+    Reception,
     play,
     run_tool,
     stop_player,
@@ -71,10 +71,10 @@ class FullRates(unittest.TestCase):
         node = CalibrationNode(directory, auto_capture=True, diagnostic_period=0.1)
         self.addCleanup(node.stop)
         self.client.start(node)
-        self.last_received = (0, time.monotonic())
+        self.reception = Reception(self.client, self.counts)
         player = play(self.bag, "--rate", str(rate))
         self.addCleanup(stop_player, player)
-        wait_for(lambda: sum(self.received("joint_states")), "the first measurements")
+        wait_for(lambda: sum(self.client.received("joint_states")), "the first measurements")
         begin, cpu_before = time.monotonic(), node.cpu_seconds()
         latencies = self.use_services()
         cpu = (node.cpu_seconds() - cpu_before) / (time.monotonic() - begin)
@@ -82,7 +82,7 @@ class FullRates(unittest.TestCase):
         stop_player(player)
         node.stop()
         self.report(rate, cpu, latencies)
-        received = {stream: self.received(stream) for stream in STREAMS}
+        received = {stream: self.client.received(stream) for stream in STREAMS}
         all_taken = {stream: (sent, 0) for stream, sent in self.counts.items()}
         if received != all_taken and was_starved:
             return False
@@ -90,15 +90,10 @@ class FullRates(unittest.TestCase):
         self.assertGreater(len(latencies["sample to parameters"]), 0)
         return True
 
-    def received(self, stream):
-        """Messages that the node has accepted, and refused."""
-        values = self.client.diagnostic(stream)
-        return int(values.get("accepted", 0)), int(values.get("refused", 0))
-
     def use_services(self):
         """Calls services until every message was received; returns seconds by what was waited for."""
         latencies = {"list_samples": [], "sample to parameters": [], "solve": []}
-        while self.is_playing():
+        while self.reception.is_going_on():
             begin = time.monotonic()
             held = self.client.call("list_samples").samples
             latencies["list_samples"].append(time.monotonic() - begin)
@@ -107,18 +102,10 @@ class FullRates(unittest.TestCase):
             time.sleep(PAUSE)
         return latencies
 
-    def is_playing(self):
-        """Whether messages are still to come: not all were received, and some were a moment ago."""
-        received = sum(sum(self.received(stream)) for stream in STREAMS)
-        now = time.monotonic()
-        if received != self.last_received[0]:
-            self.last_received = (received, now)
-        return received < sum(self.counts.values()) and now - self.last_received[1] < SILENCE
-
     def calibrate_after_next_sample(self, latencies):
         before = len(self.client.samples)
         while len(self.client.samples) == before:
-            if not self.is_playing():
+            if not self.reception.is_going_on():
                 return
             time.sleep(0.001)
         begin = time.monotonic()

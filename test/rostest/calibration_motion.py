@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""calibrate_motion of the running node, by the streams of a free rotor that the package did not simulate."""
+
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from calibration_client import (
+    PACKAGE,
+    CalibrationClient,
+    CalibrationNode,
+    Reception,
+    play,
+    stop_player,
+    values_of,
+    wait_for,
+)
+
+# Its laboratory is shared with the tests of independent data.
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "independent"))
+import free_motion  # noqa: E402
+import laboratory  # noqa: E402
+import numpy as np  # noqa: E402
+from motion_bag import write_bag  # noqa: E402
+
+SECONDS = 10.0
+SEED = 8
+RATE = 200.0  # [Hz]
+
+
+class LiveMotion(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.client = CalibrationClient()
+        self.node = CalibrationNode(os.path.join(self.folder.name, "calibration"), diagnostic_period=0.1)
+        self.addCleanup(self.node.stop)
+
+    def record(self):
+        """Draws a unit, and records its motion; returns the bag and the number of its messages by stream."""
+        self.unit = laboratory.paper_unit()
+        self.errors = np.random.default_rng(SEED).uniform(-0.03, 0.03, self.unit.size())
+        motion = free_motion.simulate(self.unit, self.errors, free_motion.Machine(), SECONDS, SEED)
+        streams = free_motion.Streams(joint_rate=RATE, current_rate=RATE)
+        bag = os.path.join(self.folder.name, "motion.bag")
+        recording = free_motion.record(self.unit, self.errors, motion, streams, SEED)
+        return bag, write_bag(bag, recording, len(self.unit.coils))
+
+    def listen(self, bag, counts):
+        """Lets the node hear a recording to its end."""
+        reception = Reception(self.client, counts)
+        player = play(bag)
+        self.addCleanup(stop_player, player)
+        wait_for(lambda: sum(self.client.received("joint_states")), "the first measurements")
+        wait_for(lambda: not reception.is_going_on(), "the last measurements")
+
+    def expect_the_truth(self, report):
+        estimates = {estimate.name: estimate for estimate in report.estimates}
+        rows = [estimates[name] for name in self.unit.names()]
+        self.assertTrue(all(row.observable for row in rows))
+        apart = np.array([row.value for row in rows]) - self.unit.values(self.errors)
+        apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
+        normalised = np.sqrt(np.mean((apart / [row.stddev for row in rows]) ** 2))
+        self.assertGreater(normalised, 0.5)
+        self.assertLess(normalised, 1.6)
+        self.assertLess(max(abs(apart)), 1e-3)
+
+    def test_motion_gives_parameters_that_outlive_the_node(self):
+        self.client.start(self.node)
+        refused = self.client.call("calibrate_motion")
+        self.assertFalse(refused.success)
+        self.assertIn("No motion is recorded", refused.message)
+        self.listen(*self.record())
+        answer = self.client.call("calibrate_motion")
+        self.assertTrue(answer.success, answer.message)
+        self.expect_the_truth(answer.report)
+        wait_for(lambda: self.client.revision() == 1, "the parameters")
+        found = values_of(self.client.latest("parameters"))
+        self.node.kill()
+        self.client.start(self.node)
+        self.assertEqual(values_of(self.client.latest("parameters")), found)
+        self.assertEqual(self.client.latest("status").grade, answer.report.grade)
+        # What it heard is gone with it; what it found is not.
+        self.assertFalse(self.client.call("calibrate_motion").success)
+        self.assertEqual(self.client.revision(), 1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("calibration_motion")
+    rostest.rosrun(PACKAGE, "calibration_motion", LiveMotion, sys.argv)
