@@ -72,18 +72,6 @@ class Diagonal {
   Eigen::VectorXd variance_;
 };
 
-/// What the laboratory adds to measurements, and the weight of the rotor: no part of what coils and
-/// joints do.
-bool isOfLaboratory(const std::string& effect) {
-  static constexpr std::array<const char*, 5> kOfLaboratory = {"torque_bias",
-                                                               "rotor_unbalance",
-                                                               "marker_registration",
-                                                               "tracker_registration",
-                                                               "torque_registration"};
-  return std::any_of(
-      kOfLaboratory.begin(), kOfLaboratory.end(), [&](const char* name) { return effect == name; });
-}
-
 }  // namespace
 
 CovarianceRecord covarianceRecord(const ParameterSpace& space, const ParameterBelief& belief) {
@@ -148,7 +136,7 @@ Eigen::MatrixXd machineCovariance(const ParameterSpace& space,
                                   const CalibratedDescription& description) {
   Eigen::MatrixXd covariance = coordinateCovariance(space, description);
   for (const PlacedEffect& placed : space.effects().effects()) {
-    if (isOfLaboratory(placed.name)) {
+    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kActuator) {
       const Eigen::Index first = space.effect() + placed.first;
       covariance.middleRows(first, placed.size()).setZero();
       covariance.middleCols(first, placed.size()).setZero();

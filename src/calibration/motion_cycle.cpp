@@ -71,12 +71,18 @@ CalibrationState narrowed(const CalibrationState& state, const std::vector<Eigen
   return result;
 }
 
-/// Whether the data of a recording of motion can tell an effect at all.
-bool isToldByMotion(const PlacedEffect& placed, bool has_orientations) {
-  const bool is_of_sensor = placed.name == "torque_bias" || placed.name == "torque_registration";
-  const bool is_of_tracker =
-      placed.name == "tracker_delay" || placed.acts_on == LaboratoryEffect::ActsOn::kOrientations;
-  return !is_of_sensor && (has_orientations || !is_of_tracker);
+/// Whether a recording of motion feels an effect at all.
+bool actsOnMotion(const PlacedEffect& placed, bool has_orientations) {
+  switch (placed.belongs_to) {
+    case LaboratoryEffect::BelongsTo::kTorqueSensor:
+      return false;
+    case LaboratoryEffect::BelongsTo::kTracker:
+      return has_orientations;
+    case LaboratoryEffect::BelongsTo::kActuator:
+    case LaboratoryEffect::BelongsTo::kLoad:
+      break;
+  }
+  return true;
 }
 
 /// Whether an effect changes the strength of coils, poles or curve: motion tells only its ratio to
@@ -102,7 +108,7 @@ std::vector<Eigen::Index> requestedCoordinates(const ParameterSpace& space,
   for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
     // Beside strengths one inertia is the reference; else all could shrink to nothing.
     const bool is_reference = strength_moves && space.effects().name(e) == "rotor_inertia/zz";
-    if (!is_reference && isToldByMotion(space.effects().at(e), has_orientations)) {
+    if (!is_reference && actsOnMotion(space.effects().at(e), has_orientations)) {
       coordinates.push_back(space.effect() + e);
     }
   }

@@ -116,13 +116,6 @@ std::string valuesInWords(const std::string& effect,
   return own.size() > kMostShown ? text + ", …" : text;
 }
 
-/// Registrations and sensors of torque leave motion as it is, and strength is told by its ratio to
-/// inertia only.
-bool isToldByMotion(const std::string& effect) {
-  return effect != "torque_bias" && effect != "strength_scale" &&
-         effect.find("_registration") == std::string::npos;
-}
-
 /// Single effects that explain a misfit of the refinement, or of the motion, the best first.
 std::vector<Diagnosis> effectsThatExplain(const CalibrationSession& session,
                                           const RefinedFit& unchanged) {

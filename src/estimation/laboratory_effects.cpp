@@ -14,6 +14,7 @@ struct EffectKind {
   const char* name;
   const char* unit;
   LaboratoryEffect::ActsOn acts_on;
+  LaboratoryEffect::BelongsTo belongs_to;
   std::shared_ptr<const LaboratoryEffect> (*make)(const Actuator&, const EffectSelection&);
 };
 
@@ -22,6 +23,7 @@ EffectKind kindOf() {
   return {Effect::kName,
           Effect::kUnit,
           Effect::kActsOn,
+          Effect::kBelongsTo,
           [](const Actuator& nominal,
              const EffectSelection& selection) -> std::shared_ptr<const LaboratoryEffect> {
             return std::make_shared<Effect>(nominal, selection);
@@ -43,6 +45,15 @@ const std::vector<EffectKind>& kinds() {
   static const std::vector<EffectKind> kinds =
       kindsOf(static_cast<const effects::Registered*>(nullptr));
   return kinds;
+}
+
+const EffectKind& kindOf(const std::string& effect) {
+  const auto kind = std::find_if(
+      kinds().begin(), kinds().end(), [&](const EffectKind& each) { return each.name == effect; });
+  if (kind == kinds().end()) {
+    throw ConfigError("effects." + effect + ": there is no such laboratory effect.");
+  }
+  return *kind;
 }
 
 }  // namespace
@@ -67,9 +78,16 @@ EffectSelection withMotionEffects(EffectSelection selection) {
       selection[kind.name] = true;
     }
   }
-  selection["rotor_unbalance"] = true;
-  selection["rotor_inertia"] = !selection.has("strength_scale");
+  selection[effects::RotorUnbalance::kName] = true;
+  selection[effects::RotorInertia::kName] = !selection.has(effects::StrengthScale::kName);
   return selection;
+}
+
+bool isToldByMotion(const std::string& effect) {
+  const EffectKind& kind = kindOf(effect);
+  const bool is_of_rotor = kind.belongs_to == LaboratoryEffect::BelongsTo::kActuator ||
+                           kind.belongs_to == LaboratoryEffect::BelongsTo::kLoad;
+  return is_of_rotor && effect != effects::StrengthScale::kName;
 }
 
 std::vector<std::string> modelledEffects(const EffectSelection& selection) {
@@ -96,17 +114,11 @@ std::string describe(const EffectSelection& selection) {
 }
 
 EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selection) {
-  const auto require = [](const std::string& name) {
-    const auto has_name = [&](const EffectKind& kind) { return kind.name == name; };
-    if (std::none_of(kinds().begin(), kinds().end(), has_name)) {
-      throw ConfigError("effects." + name + ": there is no such laboratory effect.");
-    }
-  };
   for (const auto& entry : selection.all()) {
-    require(entry.first);
+    kindOf(entry.first);
   }
   for (const auto& entry : selection.stddevs()) {
-    require(entry.first);
+    kindOf(entry.first);
   }
   for (const EffectKind& kind : kinds()) {
     if (!selection.has(kind.name) && !isStatedBy(nominal, kind)) {
@@ -126,6 +138,7 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
     effects_.push_back({kind.name,
                         kind.unit,
                         kind.acts_on,
+                        kind.belongs_to,
                         size_,
                         effect,
                         stated > 0.0 ? stated : effect->priorStddev()});

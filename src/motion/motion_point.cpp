@@ -191,7 +191,7 @@ void MotionPoint::addLoads(const Eigen::Matrix3d& R, StatorTorque& out) const {
   const Eigen::Matrix3d R_rotor_stator = R.transpose();
   for (const PlacedEffect& placed : space_->effects().effects()) {
     // A bias of the force/torque sensor is no torque on the rotor.
-    if (placed.name != "rotor_unbalance") {
+    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kLoad) {
       continue;
     }
     Eigen::Matrix3Xd columns = Eigen::Matrix3Xd::Zero(3, placed.size());

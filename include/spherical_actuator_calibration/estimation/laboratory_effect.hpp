@@ -22,6 +22,13 @@ class LaboratoryEffect {
 
   /// Observations that an effect acts on.
   enum class ActsOn { kEverything, kOrientations, kTorques, kMotion };
+  /// What has an effect: only what the actuator itself has changes what coils and joints do.
+  enum class BelongsTo {
+    kActuator,
+    kLoad,  ///< the weight that the rotor carries
+    kTracker,
+    kTorqueSensor,
+  };
 
   virtual ~LaboratoryEffect() = default;
 

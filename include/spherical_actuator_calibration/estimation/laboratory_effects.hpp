@@ -23,6 +23,11 @@ EffectSelection withMotionEffects(EffectSelection selection);
 /// The modelled ones among them, in the same order.
 std::vector<std::string> modelledEffects(const EffectSelection& selection);
 
+/// Whether motion tells an effect of this name beside those that it always models. It uses no
+/// force/torque sensor and needs no tracker, and knows a common strength only by its ratio to
+/// inertia. Throws ConfigError when there is no such effect.
+bool isToldByMotion(const std::string& effect);
+
 /// "torque_bias, coil_gains", or "none".
 std::string describe(const EffectSelection& selection);
 
@@ -31,6 +36,7 @@ struct PlacedEffect {
   std::string name;
   std::string unit;  ///< of its values: rad, N·m, or 1
   LaboratoryEffect::ActsOn acts_on = LaboratoryEffect::ActsOn::kEverything;
+  LaboratoryEffect::BelongsTo belongs_to = LaboratoryEffect::BelongsTo::kActuator;
   Eigen::Index first = 0;  ///< among the coordinates of all effects
   std::shared_ptr<const LaboratoryEffect> effect;
   double stddev = 0.0;  ///< of each value, as stated beforehand; 0: nothing is known

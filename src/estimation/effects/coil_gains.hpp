@@ -13,6 +13,7 @@ class CoilGains final : public LaboratoryEffect {
   static constexpr auto kName = "coil_gains";
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   CoilGains(const Actuator& nominal, const EffectSelection& selection)
       : LaboratoryEffect(gainNames(nominal, firstCoil(selection)), 1.0),

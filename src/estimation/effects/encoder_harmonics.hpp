@@ -16,6 +16,7 @@ class EncoderHarmonics final : public LaboratoryEffect {
   static constexpr auto kName = "encoder_harmonics";
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kEverything;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   EncoderHarmonics(const Actuator& /*nominal*/, const EffectSelection& selection)
       : LaboratoryEffect(harmonicNames(selection.harmonicJoints()), kScale),

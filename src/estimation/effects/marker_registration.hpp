@@ -12,6 +12,7 @@ class MarkerRegistration final : public LaboratoryEffect {
   static constexpr auto kName = "marker_registration";
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kOrientations;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kTracker;
 
   MarkerRegistration(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect(components(kName), 1.0) {}

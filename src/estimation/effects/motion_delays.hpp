@@ -11,6 +11,7 @@ class CurrentDelay final : public LaboratoryEffect {
   static constexpr auto kName = "current_delay";
   static constexpr auto kUnit = "s";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   CurrentDelay(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 0.1) {}
@@ -24,6 +25,7 @@ class CurrentDispersion final : public LaboratoryEffect {
   static constexpr auto kName = "current_dispersion";
   static constexpr auto kUnit = "s²";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   CurrentDispersion(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 1e-4) {}
@@ -35,6 +37,7 @@ class TrackerDelay final : public LaboratoryEffect {
   static constexpr auto kName = "tracker_delay";
   static constexpr auto kUnit = "s";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kTracker;
 
   TrackerDelay(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 0.1) {}

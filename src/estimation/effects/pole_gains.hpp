@@ -12,6 +12,7 @@ class PoleGains final : public LaboratoryEffect {
   static constexpr auto kName = "pole_gains";
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   PoleGains(const Actuator& nominal, const EffectSelection& /*selection*/)
       : LaboratoryEffect(gainNames(nominal), 1.0) {}

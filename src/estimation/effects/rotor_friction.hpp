@@ -11,6 +11,7 @@ class ViscousFriction final : public LaboratoryEffect {
   static constexpr auto kName = "viscous_friction";
   static constexpr auto kUnit = "N·m·s/rad";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   ViscousFriction(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 0.03) {}
@@ -22,6 +23,7 @@ class CoulombFriction final : public LaboratoryEffect {
   static constexpr auto kName = "coulomb_friction";
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   CoulombFriction(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 0.03) {}

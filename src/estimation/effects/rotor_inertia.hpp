@@ -13,6 +13,7 @@ class RotorInertia final : public LaboratoryEffect {
   static constexpr auto kName = "rotor_inertia";
   static constexpr auto kUnit = "kg·m²";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   RotorInertia(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({"rotor_inertia/xx",

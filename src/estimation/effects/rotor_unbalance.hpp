@@ -12,6 +12,7 @@ class RotorUnbalance final : public LaboratoryEffect {
   static constexpr auto kName = "rotor_unbalance";
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kLoad;
 
   RotorUnbalance(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect(components(kName), 0.3) {}

@@ -11,6 +11,7 @@ class StrengthScale final : public LaboratoryEffect {
   static constexpr auto kName = "strength_scale";
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   StrengthScale(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({kName}, 1.0) {}

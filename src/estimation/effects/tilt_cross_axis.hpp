@@ -11,6 +11,7 @@ class TiltCrossAxis final : public LaboratoryEffect {
   static constexpr auto kName = "tilt_cross_axis";
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kEverything;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   TiltCrossAxis(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect({"tilt_matrix/11", "tilt_matrix/12", "tilt_matrix/21", "tilt_matrix/22"},

@@ -11,6 +11,7 @@ class TorqueBias final : public LaboratoryEffect {
   static constexpr auto kName = "torque_bias";
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kTorqueSensor;
 
   TorqueBias(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect(components(kName), 0.3) {}

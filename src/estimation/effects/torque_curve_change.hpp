@@ -14,6 +14,7 @@ class TorqueCurveChange final : public LaboratoryEffect {
   static constexpr auto kName = "torque_curve";
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   TorqueCurveChange(const Actuator& nominal, const EffectSelection& selection);
 

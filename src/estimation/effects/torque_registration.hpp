@@ -12,6 +12,7 @@ class TorqueRegistration final : public LaboratoryEffect {
   static constexpr auto kName = "torque_registration";
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kTorqueSensor;
 
   TorqueRegistration(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect(components(kName), 1.0) {}

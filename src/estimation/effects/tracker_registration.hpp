@@ -11,6 +11,7 @@ class TrackerRegistration final : public LaboratoryEffect {
   static constexpr auto kName = "tracker_registration";
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kOrientations;
+  static constexpr BelongsTo kBelongsTo = BelongsTo::kTracker;
 
   TrackerRegistration(const Actuator& /*nominal*/, const EffectSelection& /*selection*/)
       : LaboratoryEffect(components(kName), 1.0) {}
