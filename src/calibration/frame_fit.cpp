@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -142,10 +143,10 @@ FrameFit::Row FrameFit::row(const ModelPoint& point,
   row.residual = point.orientationResidual(sample, &d_machine);
   // X → e^{ξ̂}X turns e^{ŷ} into e^{ξ̂}e^{ŷ}; Z → e^{ζ̂}Z turns it into e^{ŷ}e^{−(Rζ)^}.
   const Eigen::Matrix3d R_predicted = rotationExp(row.residual).transpose() * sample.R_stator_rotor;
-  row.jacobian.resize(3, unknowns());
-  row.jacobian.leftCols<3>() = leftJacobianInverse(row.residual);
-  row.jacobian.middleCols<3>(3) = -leftJacobianInverse(-row.residual) * R_predicted;
-  row.jacobian.rightCols(root_.cols()) = d_machine * root_;
+  Eigen::Matrix3Xd jacobian(3, unknowns());
+  jacobian.leftCols<3>() = leftJacobianInverse(row.residual);
+  jacobian.middleCols<3>(3) = -leftJacobianInverse(-row.residual) * R_predicted;
+  jacobian.rightCols(root_.cols()) = d_machine * root_;
 
   const double stddev = measured.orientation_stddev > 0.0 ? measured.orientation_stddev
                                                           : options_.default_orientation_stddev;
@@ -160,9 +161,11 @@ FrameFit::Row FrameFit::row(const ModelPoint& point,
     const OrientationMap::Uncertainty left_open = map->uncertainty(measured.joint_position);
     noise.diagonal() += left_open.variance + left_open.noise;
   }
-  const Eigen::LLT<Eigen::Matrix3d> root(noise_scale * noise_scale * noise);
-  row.whitened = root.matrixL().solve(row.residual);
-  root.matrixL().solveInPlace(row.jacobian);
+  const Eigen::Matrix3d W = whiteningOf(noise_scale * noise_scale * noise);
+  row.whitened.residual = W * row.residual;
+  row.whitened.jacobian = W * jacobian;
+  row.whitened.columns.resize(static_cast<std::size_t>(unknowns()));
+  std::iota(row.whitened.columns.begin(), row.whitened.columns.end(), 0);
   return row;
 }
 
@@ -171,7 +174,7 @@ double FrameFit::cost(const Solution& at, const PoseSelection& used, double nois
   double sum = at.w.squaredNorm();
   for (std::size_t n = 0; n < poses_.size(); ++n) {
     if (used[n]) {
-      sum += row(point, at.frames, n, noise_scale).whitened.squaredNorm();
+      sum += row(point, at.frames, n, noise_scale).whitened.residual.squaredNorm();
     }
   }
   return sum;
@@ -188,17 +191,16 @@ FrameFit::Solution FrameFit::solve(const Frames& start,
   double damping = 1e-6;
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     const ModelPoint point = pointOf(solution);
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns(), unknowns());
-    information.diagonal().tail(root_.cols()).setOnes();
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns());
-    gradient.tail(root_.cols()) = solution.w;
+    InformationSum sum(unknowns());
     for (std::size_t n = 0; n < poses_.size(); ++n) {
       if (used[n]) {
-        const Row each = row(point, solution.frames, n, noise_scale);
-        information += each.jacobian.transpose() * each.jacobian;
-        gradient += each.jacobian.transpose() * each.whitened;
+        sum.add(row(point, solution.frames, n, noise_scale).whitened);
       }
     }
+    Eigen::MatrixXd information = sum.information();
+    information.diagonal().tail(root_.cols()).array() += 1.0;
+    Eigen::VectorXd gradient = sum.gradient();
+    gradient.tail(root_.cols()) += solution.w;
     bool has_improved = false;
     double step_size = 0.0;
     while (!has_improved && damping < kLargestDamping) {
@@ -229,16 +231,17 @@ FrameFit::Solution FrameFit::solve(const Frames& start,
 FrameFit::Judgement FrameFit::judge(const Solution& solution,
                                     const PoseSelection& used,
                                     double noise_scale) const {
-  Eigen::MatrixXd measured = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+  InformationSum sum(unknowns());
   const ModelPoint point = pointOf(solution);
   std::vector<Row> rows;
   rows.reserve(poses_.size());
   for (std::size_t n = 0; n < poses_.size(); ++n) {
     rows.push_back(row(point, solution.frames, n, noise_scale));
     if (used[n]) {
-      measured += rows.back().jacobian.transpose() * rows.back().jacobian;
+      sum.add(rows.back().whitened);
     }
   }
+  const Eigen::MatrixXd measured = sum.information();
   Eigen::MatrixXd information = measured;
   information.diagonal().tail(root_.cols()).array() += 1.0;
   const Eigen::MatrixXd covariance =
@@ -252,8 +255,9 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
     // What the pose itself did not pull: the residual's covariance is smaller where it took part.
     const double sign = used[n] ? -1.0 : 1.0;
     const Eigen::Matrix3d spread =
-        Eigen::Matrix3d::Identity() + sign * each.jacobian * covariance * each.jacobian.transpose();
-    const double squared = each.whitened.dot(spread.ldlt().solve(each.whitened));
+        Eigen::Matrix3d::Identity() +
+        sign * each.whitened.times(each.whitened.timesTransposed(covariance));
+    const double squared = each.whitened.residual.dot(spread.ldlt().solve(each.whitened.residual));
     judgement.poses.push_back(
         {poses_[n].id, each.residual, std::sqrt(std::max(0.0, squared) / 3.0), !used[n]});
     judgement.gain.push_back(used[n] ? squared : 0.0);

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
@@ -64,11 +65,9 @@ class FrameFit {
   const std::vector<Eigen::Matrix3d>& orientations() const { return R_stator_rotor_; }
 
  private:
-  /// Whitened: unknowns are (ξ, ζ, w), residual + jacobian · change.
   struct Row {
-    Eigen::Vector3d residual;  ///< as measured [rad]
-    Eigen::Vector3d whitened;  ///< without unit
-    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;
+    Eigen::Vector3d residual;      ///< as measured [rad]
+    WhitenedObservation whitened;  ///< in all unknowns (ξ, ζ, w)
   };
   ModelPoint pointOf(const Solution& at) const { return {model_, root_ * at.w}; }
   Row row(const ModelPoint& point,
