@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/covariance_file.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
@@ -14,6 +12,7 @@
 #include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 #include <tinyxml2.h>
 
@@ -307,8 +306,8 @@ void Certificate::covarianceMatrix() {
       leaf("si:unitXMLList", joined(units));
     }
   }
-  const boost::math::chi_squared_distribution<double> chi(static_cast<double>(results_.size()));
-  leaf("si:coverageFactorXMLList", factorText(std::sqrt(boost::math::quantile(chi, kProbability))));
+  const double limit = chiSquareLimit(static_cast<double>(results_.size()), 1.0 - kProbability);
+  leaf("si:coverageFactorXMLList", factorText(std::sqrt(limit)));
   leaf("si:coverageProbabilityXMLList", kCoverage);
   leaf("si:distributionXMLList", "normal");
 }

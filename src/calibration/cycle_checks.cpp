@@ -6,13 +6,13 @@
 #include <functional>
 
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 namespace {
@@ -147,9 +147,7 @@ std::string rejections(const std::vector<Group>& groups, const EstimationOptions
 
 /// Whether a sum of squares is no accident, where so many groups are looked at.
 bool isMisfit(double squares, double degrees_of_freedom, std::size_t groups) {
-  const boost::math::chi_squared_distribution<double> accident(degrees_of_freedom);
-  const double probability = boost::math::cdf(boost::math::complement(accident, squares));
-  return probability * static_cast<double>(groups) < kChance;
+  return chiSquareProbability(degrees_of_freedom, squares) * static_cast<double>(groups) < kChance;
 }
 
 std::string misfits(const std::vector<Group>& groups,

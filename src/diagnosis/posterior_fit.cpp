@@ -7,10 +7,9 @@
 
 #include <Eigen/Cholesky>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "torque_scale.hpp"
 
@@ -280,8 +279,7 @@ double gainByChance(Eigen::Index values) {
   if (values == 0) {
     return -std::log(level);
   }
-  const boost::math::chi_squared distribution(static_cast<double>(values));
-  return 0.5 * boost::math::quantile(boost::math::complement(distribution, level));
+  return 0.5 * chiSquareLimit(static_cast<double>(values), level);
 }
 
 double studentLoss(double squared_misfit) {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 namespace {
@@ -28,10 +28,7 @@ struct Group {
   double freedom() const { return 3.0 * static_cast<double>(observations); }
 
   /// Of a misfit at least this large by chance.
-  double probability() const {
-    const boost::math::chi_squared distribution(freedom());
-    return boost::math::cdf(boost::math::complement(distribution, chi_square));
-  }
+  double probability() const { return chiSquareProbability(freedom(), chi_square); }
 
   /// Largest rms norm of a common error that passes as these residuals did with 1 %.
   double bound() const {
