@@ -12,7 +12,7 @@ namespace sac {
 namespace {
 
 double radiansPerUnit(AngleUnit unit) {
-  return unit == AngleUnit::kDegree ? kPi / 180.0 : 1.0;
+  return unit == AngleUnit::kDegree ? kOneDegree : 1.0;
 }
 
 bool areFinite(const std::vector<double>& values) {

@@ -24,7 +24,6 @@ namespace {
 constexpr double kComponents = 3.0;
 constexpr double kUnknownFrames = 6.0;
 constexpr double kMilliradian = 1e-3;
-constexpr double kDegree = kPi / 180.0;  // [rad]
 
 /// A joint that was turned by a degree more than another is no better advice [rad].
 constexpr double kSlightTurn = 0.02;
@@ -76,7 +75,7 @@ std::string jointAdvice(const CalibratedDescription& description,
   return format("turn joint %zu (%s) further: so far it was turned by %.0f degrees",
                 numberOf(best),
                 description.actuator.joints[best].name.c_str(),
-                best_range / kDegree);
+                best_range / kOneDegree);
 }
 
 /// A mistake of wiring that would explain poses which fit nothing.
@@ -90,7 +89,7 @@ std::vector<Mistake> mistakes() {
       {"the tracker publishes the pose of its base in the marker: invert it",
        [](TrackedPose& pose) { pose.R_tracker_marker.transposeInPlace(); }},
       {"the joints are read in degrees: publish radians",
-       [](TrackedPose& pose) { pose.joint_position *= kDegree; }}};
+       [](TrackedPose& pose) { pose.joint_position *= kOneDegree; }}};
   // Two reversed joints look like half a turn of both frames, so that one is as good as another.
   all.push_back({"one joint counts the wrong way round",
                  [](TrackedPose& pose) { pose.joint_position[2] *= -1.0; }});
@@ -158,7 +157,7 @@ class Registrar {
            refuse(
                format("The poses are turned about one axis alone, by %.1f degrees across it, and "
                       "leave a turn about it open: %s.",
-                      spread.across / kDegree,
+                      spread.across / kOneDegree,
                       jointAdvice(description_, poses_, spread.axis_stator).c_str()));
   }
 

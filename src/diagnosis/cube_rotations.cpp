@@ -31,7 +31,7 @@ std::vector<Eigen::Matrix3d> cubeRotations() {
 std::string rotationInWords(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   Eigen::Vector3d axis = turn.axis();
-  std::string text = format("%.4g deg about ", turn.angle() * 180.0 / kPi);
+  std::string text = format("%.4g deg about ", turn.angle() / kOneDegree);
   constexpr double kOnAxis = 1e-6;
   for (int k = 0; k < 3; ++k) {
     if (std::abs(axis[k]) > 1.0 - kOnAxis) {

@@ -9,7 +9,6 @@
 namespace sac {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
 /// A mistake is further from none than tolerances explain.
 constexpr double kMaterial = 3.0;
 
@@ -135,7 +134,7 @@ Hypothesis index(std::size_t joint, const std::string& name, double tolerance) {
                "joint sensor's file (joint_sensor.yaml) at the index mark again, or "
                "add %.6g to its `offset` in the description.",
                angle,
-               angle / kDegree,
+               angle / kOneDegree,
                angle);
   };
   return result;
@@ -154,8 +153,8 @@ std::vector<Hypothesis> jointHypotheses(const Actuator& actuator,
       all.push_back(swap(k, l, actuator));
     }
   }
-  all.push_back(unit(kDegree, "the joint angles are degrees, not radians"));
-  all.push_back(unit(1.0 / kDegree, "the joint angles were converted to radians twice"));
+  all.push_back(unit(kOneDegree, "the joint angles are degrees, not radians"));
+  all.push_back(unit(1.0 / kOneDegree, "the joint angles were converted to radians twice"));
   for (std::size_t k = 0; k < kJoints; ++k) {
     all.push_back(scale(k, actuator.joints[k].name, tolerance.joint_offset));
   }

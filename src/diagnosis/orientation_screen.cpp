@@ -58,7 +58,7 @@ void scan(Hypothesis& hypothesis,
 }
 
 std::vector<double> scaleGrid() {
-  std::vector<double> grid = {0.01, kPi / 180.0, 180.0 / kPi, 10.0, 100.0};
+  std::vector<double> grid = {0.01, kOneDegree, 1.0 / kOneDegree, 10.0, 100.0};
   constexpr double kStep = 0.04;
   for (double scale = -2.5; scale < 4.5; scale += kStep) {
     grid.push_back(scale);

@@ -70,7 +70,7 @@ std::string planStep(const std::vector<PlannedPose>& poses,
     return "";
   }
   const Eigen::Vector3d& q = next->joint_position;
-  const Eigen::Vector3d degrees = q * 180.0 / kPi;
+  const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
       "Go on with the plan, %zu of %zu poses are measured: turn the rotor to "
       "joints %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture",

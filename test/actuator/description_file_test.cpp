@@ -272,7 +272,7 @@ TEST(DescriptionFile, TheShippedActuatorIsTheOneOfThePaper) {
     EXPECT_EQ(actuator.coils[j].polar, j < 12 ? 0.2618 : -0.2618);
     EXPECT_NEAR(actuator.coils[j].azimuth, static_cast<double>(j % 12) * kPi / 6.0, 1e-15);
   }
-  EXPECT_NEAR(TorqueCurve(*actuator.torque_curve).value(10.0 * kPi / 180.0), 0.2843, 1e-3);
+  EXPECT_NEAR(TorqueCurve(*actuator.torque_curve).value(10.0 * kOneDegree), 0.2843, 1e-3);
 }
 
 }  // namespace

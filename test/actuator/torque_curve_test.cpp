@@ -12,8 +12,6 @@
 namespace sac {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
-
 TorqueCurveDescription paperCurve() {
   return *scenarios::paperNominal().torque_curve;
 }
@@ -32,9 +30,9 @@ double paperPolynomial(double degrees) {
 TEST(TorqueCurve, IsThePolynomialOnItsSupport) {
   const TorqueCurve curve(paperCurve());
   for (double degrees = 2.0; degrees <= 28.0; degrees += 0.5) {
-    EXPECT_NEAR(curve.value(degrees * kDegree), paperPolynomial(degrees), 1e-14);
+    EXPECT_NEAR(curve.value(degrees * kOneDegree), paperPolynomial(degrees), 1e-14);
   }
-  EXPECT_NEAR(curve.value(10.0 * kDegree), 0.2843, 1e-4);  // peak of the published curve
+  EXPECT_NEAR(curve.value(10.0 * kOneDegree), 0.2843, 1e-4);  // peak of the published curve
 }
 
 TEST(TorqueCurve, HasThePublishedCoefficientsNearZero) {
@@ -46,18 +44,18 @@ TEST(TorqueCurve, HasThePublishedCoefficientsNearZero) {
 TEST(TorqueCurve, StaysCloseToThePolynomialWhereItLeavesIt) {
   const TorqueCurve curve(paperCurve());
   for (double degrees = 0.0; degrees < 2.0; degrees += 0.01) {
-    EXPECT_LE(std::abs(curve.value(degrees * kDegree) - paperPolynomial(degrees)), 5.4e-3);
+    EXPECT_LE(std::abs(curve.value(degrees * kOneDegree) - paperPolynomial(degrees)), 5.4e-3);
   }
   for (double degrees = 28.0; degrees < 29.93; degrees += 0.01) {
-    EXPECT_LE(std::abs(curve.value(degrees * kDegree) - paperPolynomial(degrees)), 1.65e-3);
+    EXPECT_LE(std::abs(curve.value(degrees * kOneDegree) - paperPolynomial(degrees)), 1.65e-3);
   }
 }
 
 TEST(TorqueCurve, IsContinuousWithItsSlopeAtEveryBlend) {
   const TorqueCurve curve(paperCurve());
   for (const double degrees : {2.0, 28.0, 32.0}) {
-    const double below = (degrees - 1e-9) * kDegree;
-    const double above = (degrees + 1e-9) * kDegree;
+    const double below = (degrees - 1e-9) * kOneDegree;
+    const double above = (degrees + 1e-9) * kOneDegree;
     EXPECT_NEAR(curve.value(below), curve.value(above), 1e-9) << degrees;
     EXPECT_NEAR(curve.derivative(below), curve.derivative(above), 1e-7) << degrees;
   }
@@ -66,15 +64,15 @@ TEST(TorqueCurve, IsContinuousWithItsSlopeAtEveryBlend) {
 TEST(TorqueCurve, IsZeroBeyondItsSupport) {
   const TorqueCurve curve(paperCurve());
   for (const double degrees : {32.0, 33.0, 60.0, 179.0}) {
-    EXPECT_EQ(curve.value(degrees * kDegree), 0.0);
-    EXPECT_EQ(curve.derivative(degrees * kDegree), 0.0);
+    EXPECT_EQ(curve.value(degrees * kOneDegree), 0.0);
+    EXPECT_EQ(curve.derivative(degrees * kOneDegree), 0.0);
   }
 }
 
 TEST(TorqueCurve, DerivativeIsTheSlopeOfTheValue) {
   const TorqueCurve curve(paperCurve());
   for (double degrees = 0.5; degrees < 34.0; degrees += 0.97) {
-    const double psi = degrees * kDegree;
+    const double psi = degrees * kOneDegree;
     const double step = 1e-6;
     const double slope = (curve.value(psi + step) - curve.value(psi - step)) / (2.0 * step);
     EXPECT_NEAR(curve.derivative(psi), slope, 1e-7) << degrees;
@@ -87,8 +85,8 @@ TEST(TorqueCurve, SafeFormIsValueOverSineAndItsSlope) {
     return curve.value(std::acos(kappa)) / std::sin(std::acos(kappa));
   };
   for (double degrees = 1.0; degrees < 34.0; degrees += 0.83) {
-    const double kappa = std::cos(degrees * kDegree);
-    const TorqueCurve::Safe safe = curve.safe(kappa, std::sin(degrees * kDegree));
+    const double kappa = std::cos(degrees * kOneDegree);
+    const TorqueCurve::Safe safe = curve.safe(kappa, std::sin(degrees * kOneDegree));
     EXPECT_NEAR(safe.h, h(kappa), 1e-12) << degrees;
     const double step = 1e-7;
     EXPECT_NEAR(safe.dh, (h(kappa + step) - h(kappa - step)) / (2.0 * step), 1e-5) << degrees;
@@ -115,11 +113,11 @@ TEST(TorqueCurve, TakesRadiansToo) {
   double power = 1.0;
   for (double& c : radians.coefficients) {
     c /= power;
-    power *= kDegree;
+    power *= kOneDegree;
   }
-  radians.blend_start *= kDegree;
-  radians.support_begin *= kDegree;
-  radians.support_end *= kDegree;
+  radians.blend_start *= kOneDegree;
+  radians.support_begin *= kOneDegree;
+  radians.support_end *= kOneDegree;
   const TorqueCurve in_degrees(paperCurve());
   const TorqueCurve in_radians(radians);
   for (double psi = 0.0; psi < 0.7; psi += 0.01) {
@@ -160,7 +158,7 @@ TorqueCurveDescription tableOfThePaper(int points) {
 /// its second derivative jumps.
 void expectSameCurve(const TorqueCurve& table, const TorqueCurve& curve) {
   for (double degrees = 0.0; degrees <= 33.0; degrees += 0.1) {
-    const double psi = degrees * kDegree;
+    const double psi = degrees * kOneDegree;
     EXPECT_NEAR(table.value(psi), curve.value(psi), 2.5e-4) << degrees;
     if (degrees > 4.0 && degrees < 26.0) {
       EXPECT_NEAR(table.value(psi), curve.value(psi), 1e-5) << degrees;
@@ -179,7 +177,7 @@ TEST(TorqueTable, OfTheBlendedCurveIsThatCurve) {
   const TorqueCurve blended(paperCurve());
   for (std::size_t n = 0; n < table.table.angles.size(); ++n) {
     table.table.angles[n] = 32.0 * static_cast<double>(n) / 39.0;
-    table.table.torques[n] = blended.value(table.table.angles[n] * kDegree);
+    table.table.torques[n] = blended.value(table.table.angles[n] * kOneDegree);
   }
   expectSameCurve(TorqueCurve(table), blended);
 }
@@ -195,22 +193,22 @@ TEST(TorqueTable, GoesThroughItsPointsWithTwoContinuousDerivatives) {
   const TorqueCurve curve(description);
   constexpr double kStep = 1e-6;
   for (std::size_t n = 0; n + 1 < description.table.angles.size(); ++n) {
-    const double psi = description.table.angles[n] * kDegree;
+    const double psi = description.table.angles[n] * kOneDegree;
     EXPECT_NEAR(curve.value(psi), description.table.torques[n], 1e-14);
   }
   for (const double degrees : {3.0, 7.0, 10.0, 16.0}) {
-    const double psi = degrees * kDegree;
+    const double psi = degrees * kOneDegree;
     const double below = (curve.derivative(psi) - curve.derivative(psi - kStep)) / kStep;
     const double above = (curve.derivative(psi + kStep) - curve.derivative(psi)) / kStep;
     EXPECT_NEAR(below, above, 1e-3) << degrees;  // the third derivative jumps
   }
-  EXPECT_NEAR(curve.derivative(30.0 * kDegree - 1e-9), 0.0, 1e-6);
+  EXPECT_NEAR(curve.derivative(30.0 * kOneDegree - 1e-9), 0.0, 1e-6);
 }
 
 TEST(TorqueTable, HasTheSafeFormOfItsDerivative) {
   const TorqueCurve curve(tableOfThePaper(12));
   for (const double degrees : {0.01, 1.0, 5.0, 13.7, 29.0}) {
-    const double psi = degrees * kDegree;
+    const double psi = degrees * kOneDegree;
     EXPECT_NEAR(curve.safe(std::cos(psi), std::sin(psi)).h, curve.value(psi) / std::sin(psi), 1e-9);
     const double step = 1e-4 * psi;
     const auto h = [&](double at) { return curve.safe(std::cos(at), std::sin(at)).h; };

@@ -71,7 +71,7 @@ TEST(TorqueModel, PairDerivativesAreThoseOfThePairTorque) {
   const Eigen::Vector3d r = axisFromAngles(0.1, 0.4);
   // At a blend the second derivative jumps: finite differences stay clear of it.
   for (const double degrees : {0.0, 0.02, 1.0, 5.0, 15.0, 25.0, 30.0, 33.0}) {
-    const double psi = degrees * kPi / 180.0;
+    const double psi = degrees * kOneDegree;
     const Eigen::Vector3d s =
         Eigen::AngleAxisd(psi, r.cross(Eigen::Vector3d(0.3, -0.5, 0.7)).normalized()) * r;
     const PairTorque pair = linearizePairTorque(curve, r, s);

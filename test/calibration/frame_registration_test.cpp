@@ -170,7 +170,7 @@ TEST_F(FrameRegistrationTest, NamesMistakesOfWiring) {
   for (std::size_t n = 0; n < poses.size(); ++n) {
     inverted[n].R_tracker_marker.transposeInPlace();
     reversed[n].joint_position[2] *= -1.0;
-    in_degrees[n].joint_position *= 180.0 / kPi;
+    in_degrees[n].joint_position /= kOneDegree;
   }
   EXPECT_NE(registered(inverted).message.find("base in the marker"), std::string::npos);
   EXPECT_NE(registered(reversed).message.find("one joint counts the wrong way"), std::string::npos)

@@ -40,7 +40,7 @@ class PoleCalibration : public testing::Test {
     double smallest = kPi;
     for (Eigen::Index i = 0; i < 8; ++i) {
       const double psi = std::acos(coil_rotor.dot(geometry.poles_rotor.col(i)));
-      smallest = std::min(smallest, std::abs(psi - 32.0 * kPi / 180.0));
+      smallest = std::min(smallest, std::abs(psi - 32.0 * kOneDegree));
     }
     return smallest;
   }
@@ -105,7 +105,7 @@ TEST_F(PoleCalibration, NamesThePolesThatNoSampleSees) {
       // the support is neither seen nor missed: such poses are left out.
       Eigen::Vector3d q = scenarios::randomPose(0.3, generator);
       q[2] = q[2] / 2.0 + static_cast<double>(seed);
-      if (distanceFromSupportEnd(q) > 2.0 * kPi / 180.0) {
+      if (distanceFromSupportEnd(q) > 2.0 * kOneDegree) {
         poses.push_back(q);
       }
     }

@@ -33,7 +33,7 @@ std::vector<PositionerMistake> nineMistakes() {
       {"joint_sign:2", [](Sample& sample) { sample.joint_position[1] *= -1.0; }},
       {"joint_swap:1:2",
        [](Sample& sample) { std::swap(sample.joint_position[0], sample.joint_position[1]); }},
-      {"joint_degrees", [](Sample& sample) { sample.joint_position *= 180.0 / kPi; }},
+      {"joint_degrees", [](Sample& sample) { sample.joint_position /= kOneDegree; }},
       {"joint_scale:2", [](Sample& sample) { sample.joint_position[1] *= 2.0; }},
       {"orientation_inverted", [](Sample& sample) { sample.R_stator_rotor.transposeInPlace(); }},
       {"quaternion_order",

@@ -16,7 +16,6 @@
 namespace sac {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
 constexpr std::uint64_t kSeed = 3;
 
 /// Coil of a pattern that excites just one, counted from 0.
@@ -43,11 +42,11 @@ std::vector<double> anglesToPoles(const Actuator& actuator,
 }
 
 bool isInformative(double psi) {
-  return psi >= 4.0 * kDegree && psi <= 24.0 * kDegree;
+  return psi >= 4.0 * kOneDegree && psi <= 24.0 * kOneDegree;
 }
 
 bool isUncertain(double psi) {
-  return psi <= 3.0 * kDegree || (psi >= 26.1 * kDegree && psi <= 34.2 * kDegree);
+  return psi <= 3.0 * kOneDegree || (psi >= 26.1 * kOneDegree && psi <= 34.2 * kOneDegree);
 }
 
 TEST(SessionPlan, FollowsThePapersProtocol) {

@@ -102,8 +102,8 @@ std::vector<Eigen::Vector3d> posesThatSeeEveryPole(const Actuator& actuator,
                                                    std::size_t count,
                                                    double tilt,
                                                    Generator& generator) {
-  constexpr double kNear = 4.0 * kPi / 180.0;
-  constexpr double kFar = 24.0 * kPi / 180.0;
+  constexpr double kNear = 4.0 * kOneDegree;
+  constexpr double kFar = 24.0 * kOneDegree;
   const TorqueGeometry geometry = torqueGeometry(actuator);
   const JointGeometry joints = jointGeometry(actuator.joints);
   std::vector<Eigen::Vector3d> poses;
