@@ -103,10 +103,18 @@ void torqueAutodiff(benchmark::State& state) {
   evaluateAll(state, costs, {x.data(), x.data() + space.pole(0), x.data() + space.coil(coil)});
 }
 
-BENCHMARK(orientationAnalytic)->Name("orientationCost/analytic");
-BENCHMARK(orientationAutodiff)->Name("orientationCost/autodiff");
-BENCHMARK(torqueAnalytic)->Name("torqueCost/analytic");
-BENCHMARK(torqueAutodiff)->Name("torqueCost/autodiff");
+/// What the names begin with.
+void orientationCost(benchmark::State& state, void (*evaluate)(benchmark::State&)) {
+  evaluate(state);
+}
+void torqueCost(benchmark::State& state, void (*evaluate)(benchmark::State&)) {
+  evaluate(state);
+}
+
+BENCHMARK_CAPTURE(orientationCost, analytic, orientationAnalytic);
+BENCHMARK_CAPTURE(orientationCost, autodiff, orientationAutodiff);
+BENCHMARK_CAPTURE(torqueCost, analytic, torqueAnalytic);
+BENCHMARK_CAPTURE(torqueCost, autodiff, torqueAutodiff);
 
 }  // namespace
 }  // namespace sac::benchmarks

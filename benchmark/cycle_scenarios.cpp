@@ -190,7 +190,8 @@ std::string toJson(const TorqueCurve& curve) {
 std::string toJson(const Sample& sample) {
   JsonWriter json;
   json.add("q", sample.joint_position);
-  json.add("R", Eigen::Matrix<double, 9, 1>(sample.R_stator_rotor.transpose().reshaped()));
+  const Eigen::Matrix3d by_rows = sample.R_stator_rotor.transpose();
+  json.add("R", Eigen::Map<const Eigen::Matrix<double, 9, 1>>(by_rows.data()));
   json.add("torque", sample.torque);
   json.add("current", sample.current);
   return json.text();
