@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/calibration/session_progress.hpp"
 
 namespace sac {
 namespace {
@@ -140,8 +141,7 @@ class Judge {
     if (progress.joint_done && torque_done) {
       return;
     }
-    steps.push_back(
-        nextStep(session_.model(), session_.samples(), progress, session_.config().estimation));
+    steps.push_back(nextStep(session_.model(), progress));
   }
 
   void addRejected(std::vector<std::string>& steps) const {

@@ -4,9 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <iterator>
-#include <utility>
 
-#include "samples_per_coil.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
@@ -52,62 +50,54 @@ CycleRequest parseCycle(const std::string& word) {
   return {name == "poles" ? Cycle::kPoles : Cycle::kCoil, parseCoil(word.substr(colon + 1), word)};
 }
 
-/// Samples that serve, of one pose at most so many, up to `enough` in all. Poses differ by the
-/// least motion in some joint.
-template <typename Serves>
-std::size_t samplesOfPoses(const std::vector<Sample>& samples,
-                           double least_motion,
-                           std::size_t most_of_a_pose,
-                           std::size_t enough,
-                           const Serves& serves) {
-  std::vector<std::pair<Eigen::Vector3d, std::size_t>> poses;
-  std::size_t count = 0;
-  for (const Sample& sample : samples) {
-    if (count == enough) {
-      break;
+/// expandCoils() by counts.
+std::vector<CycleRequest> expanded(const std::vector<CycleRequest>& requests,
+                                   const std::vector<std::size_t>& per_coil) {
+  std::vector<CycleRequest> result;
+  std::vector<bool> is_covered(per_coil.size(), false);
+  const auto take = [&](const CycleRequest& request) {
+    result.push_back(request);
+    if (request.coil && *request.coil < is_covered.size()) {
+      is_covered[*request.coil] = true;
     }
-    if (sample.validation || !serves(sample)) {
+  };
+  for (const CycleRequest& request : requests) {
+    if (request.cycle != Cycle::kCoil || request.coil) {
+      take(request);
       continue;
     }
-    auto pose = std::find_if(poses.begin(), poses.end(), [&](const auto& known) {
-      return (known.first - sample.joint_position).cwiseAbs().maxCoeff() < least_motion;
-    });
-    if (pose == poses.end()) {
-      pose = poses.insert(poses.end(), {sample.joint_position, 0});
+    for (std::size_t coil = 0; coil < per_coil.size(); ++coil) {
+      if (per_coil[coil] > 0 && !is_covered[coil]) {
+        take({Cycle::kCoil, coil});
+      }
     }
-    count += ++pose->second <= most_of_a_pose ? 1 : 0;
   }
-  return count;
+  return result;
 }
 
-bool hasOrientation(const Sample& sample) {
-  return sample.has_orientation;
-}
-
-bool hasTorque(const Sample& sample) {
-  return sample.has_torque;
+/// possibleCycles() by counts.
+std::vector<CycleRequest> possible(const CalibrationModel& model, const SampleCounts& counts) {
+  std::vector<CycleRequest> requests;
+  const bool has_orientations = counts.orientations() > 0;
+  if (has_orientations) {
+    requests.push_back({Cycle::kJoint});
+  }
+  const std::vector<std::size_t>& per_coil = counts.perCoil();
+  const auto most = std::max_element(per_coil.begin(), per_coil.end());
+  const bool has_torques = most != per_coil.end() && *most > 0;
+  if (has_torques) {
+    const auto coil = static_cast<std::size_t>(std::distance(per_coil.begin(), most));
+    requests.push_back({Cycle::kPoles, coil});
+    requests.push_back({Cycle::kCoil});
+  }
+  const bool models_effects = model.space().effects().size() > 0;
+  if (has_torques || (has_orientations && models_effects)) {
+    requests.push_back({Cycle::kRefine});
+  }
+  return expanded(requests, per_coil);
 }
 
 }  // namespace
-
-std::vector<std::size_t> samplesPerCoil(const CalibrationModel& model,
-                                        const std::vector<Sample>& samples,
-                                        const EstimationOptions& options) {
-  std::vector<std::size_t> counts(model.hasTorqueModel() ? model.space().coils() : 0, 0);
-  if (counts.empty()) {
-    return counts;
-  }
-  for (const Sample& sample : samples) {
-    if (sample.validation || !sample.has_torque) {
-      continue;
-    }
-    const std::vector<Excitation> excited = excitedCoils(sample, options.current_threshold);
-    if (excited.size() == 1) {
-      ++counts.at(excited.front().coil);
-    }
-  }
-  return counts;
-}
 
 std::vector<CycleRequest> parseCycles(const std::string& text) {
   std::vector<CycleRequest> requests;
@@ -123,85 +113,34 @@ std::vector<CycleRequest> expandCoils(const std::vector<CycleRequest>& requests,
                                       const CalibrationModel& model,
                                       const std::vector<Sample>& samples,
                                       const EstimationOptions& options) {
-  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
-  std::vector<CycleRequest> expanded;
-  const auto is_covered = [&](std::size_t coil) {
-    return std::any_of(expanded.begin(), expanded.end(), [&](const CycleRequest& request) {
-      return request.coil == coil;
-    });
-  };
-  for (const CycleRequest& request : requests) {
-    if (request.cycle != Cycle::kCoil || request.coil) {
-      expanded.push_back(request);
-      continue;
-    }
-    for (std::size_t coil = 0; coil < counts.size(); ++coil) {
-      if (counts[coil] > 0 && !is_covered(coil)) {
-        expanded.push_back({Cycle::kCoil, coil});
-      }
-    }
-  }
-  return expanded;
+  return expanded(requests, SampleCounts(model, options, samples).perCoil());
 }
 
 std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
                                          const std::vector<Sample>& samples,
                                          const EstimationOptions& options) {
-  std::vector<CycleRequest> requests;
-  const bool has_orientations =
-      std::any_of(samples.begin(), samples.end(), [](const Sample& sample) {
-        return sample.has_orientation && !sample.validation;
-      });
-  if (has_orientations) {
-    requests.push_back({Cycle::kJoint});
-  }
-  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
-  const auto most = std::max_element(counts.begin(), counts.end());
-  const bool has_torques = most != counts.end() && *most > 0;
-  if (has_torques) {
-    const auto coil = static_cast<std::size_t>(std::distance(counts.begin(), most));
-    requests.push_back({Cycle::kPoles, coil});
-    requests.push_back({Cycle::kCoil});
-  }
-  const bool models_effects = model.space().effects().size() > 0;
-  if (has_torques || (has_orientations && models_effects)) {
-    requests.push_back({Cycle::kRefine});
-  }
-  return expandCoils(requests, model, samples, options);
+  return possible(model, SampleCounts(model, options, samples));
 }
 
-std::size_t usefulOrientations(const std::vector<Sample>& samples,
-                               const EstimationOptions& options,
-                               std::size_t enough) {
-  constexpr std::size_t kMostOfAPose = 3;
-  return samplesOfPoses(samples, options.min_joint_motion, kMostOfAPose, enough, hasOrientation);
-}
-
-std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
-                                     const std::vector<Sample>& samples,
-                                     const EstimationOptions& options) {
-  const std::vector<std::size_t> counts = samplesPerCoil(model, samples, options);
-  const auto has_poses = [&](std::size_t needed, const auto& serves) {
-    return samplesOfPoses(samples, options.min_joint_motion, 1, needed, serves) == needed;
-  };
+std::vector<CycleRequest> nextCycles(const CalibrationModel& model, const SampleCounts& counts) {
   std::vector<CycleRequest> cycles;
   const auto has_samples = [&](const CycleRequest& request) {
-    const std::size_t needed = demandOf(request.cycle, model.space().poles()).needed;
     switch (request.cycle) {
       case Cycle::kJoint:
-        return has_poses(needed, hasOrientation);
+        return counts.enoughForJoint();
       case Cycle::kPoles:
       case Cycle::kCoil:
-        return counts.at(request.coil.value()) >= needed;
+        return counts.perCoil().at(request.coil.value()) >=
+               demandOf(request.cycle, model.space().poles()).needed;
       case Cycle::kRefine:
       case Cycle::kMotion:
         break;
     }
     // What one cycle has enough of, all at once have; without, torques of several coils at a time.
-    return !cycles.empty() || has_poses(needed, hasTorque);
+    return !cycles.empty() || counts.enoughForRefinement();
   };
   bool has_poles = false;
-  for (const CycleRequest& request : possibleCycles(model, samples, options)) {
+  for (const CycleRequest& request : possible(model, counts)) {
     if (!has_samples(request)) {
       continue;
     }

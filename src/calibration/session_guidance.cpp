@@ -5,24 +5,11 @@
 #include <iterator>
 #include <optional>
 
-#include "samples_per_coil.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
-#include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 
 namespace sac {
 namespace {
-
-bool allIdentified(const CalibrationState& state, Eigen::Index first, Eigen::Index last) {
-  const auto begin = state.identified.begin();
-  return std::find(begin + first, begin + last, false) == begin + last;
-}
-
-bool anyIdentified(const CalibrationState& state, Eigen::Index first, Eigen::Index last) {
-  const auto begin = state.identified.begin();
-  return std::find(begin + first, begin + last, true) != begin + last;
-}
 
 std::string number(std::size_t value) {
   return std::to_string(value);
@@ -36,21 +23,14 @@ std::string missing(std::size_t held, std::size_t advised) {
 /// then refinement, validation, file.
 class Guide {
  public:
-  Guide(const CalibrationModel& model,
-        const std::vector<Sample>& samples,
-        const SessionProgress& progress,
-        const EstimationOptions& options)
-      : model_(model),
-        samples_(samples),
-        progress_(progress),
-        options_(options),
-        samples_per_coil_(samplesPerCoil(model, samples, options)) {}
+  Guide(const CalibrationModel& model, const SessionProgress& progress)
+      : model_(model), progress_(progress) {}
 
   std::string step() const {
     if (!progress_.plan_step.empty()) {
       return progress_.plan_step;
     }
-    if (progress_.saved && samples_.empty()) {
+    if (progress_.saved && progress_.samples == 0) {
       return "The parameters in force are saved, and no sample is in use: there is nothing to do. "
              "To calibrate anew, capture at new poses.";
     }
@@ -80,7 +60,7 @@ class Guide {
   /// those of a planned session, which no paper's protocol is to follow.
   bool isSeenEverywhere() const {
     const auto is_seen = [](const Coverage& one) { return one.samples > 0; };
-    return samples_per_coil_.at(referenceCoil()) < advised(Cycle::kPoles) &&
+    return progress_.samples_per_coil.at(referenceCoil()) < advised(Cycle::kPoles) &&
            std::all_of(progress_.poles.begin(), progress_.poles.end(), is_seen) &&
            std::all_of(progress_.coils.begin(), progress_.coils.end(), is_seen);
   }
@@ -90,8 +70,7 @@ class Guide {
   std::string jointStep() const {
     const std::size_t held = progress_.joint.samples;
     if (progress_.joint.isSeenWell()) {
-      return "Call calibrate_joint: " +
-             number(selectObservations(samples_, {Cycle::kJoint}, options_).size()) +
+      return "Call calibrate_joint: " + number(progress_.joint_samples) +
              " samples have an orientation.";
     }
     return "Move the rotor to a new pose with each joint turned, let it rest, and call capture: " +
@@ -100,13 +79,14 @@ class Guide {
 
   /// Coil that was excited alone most often; the first when none was.
   std::size_t referenceCoil() const {
-    const auto most = std::max_element(samples_per_coil_.begin(), samples_per_coil_.end());
-    return static_cast<std::size_t>(std::distance(samples_per_coil_.begin(), most));
+    const auto most =
+        std::max_element(progress_.samples_per_coil.begin(), progress_.samples_per_coil.end());
+    return static_cast<std::size_t>(std::distance(progress_.samples_per_coil.begin(), most));
   }
 
   std::string polesStep() const {
     const std::size_t coil = referenceCoil();
-    const std::size_t held = samples_per_coil_.at(coil);
+    const std::size_t held = progress_.samples_per_coil.at(coil);
     if (held >= advised(Cycle::kPoles)) {
       return "Call calibrate_poles with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
@@ -126,7 +106,7 @@ class Guide {
   }
 
   std::string coilStep(std::size_t coil) const {
-    const std::size_t held = samples_per_coil_.at(coil);
+    const std::size_t held = progress_.samples_per_coil.at(coil);
     if (held >= advised(Cycle::kCoil)) {
       return "Call calibrate_coil with coil " + number(numberOf(coil)) + ": " + number(held) +
              " samples have a torque of this coil alone.";
@@ -155,75 +135,13 @@ class Guide {
   }
 
   const CalibrationModel& model_;
-  const std::vector<Sample>& samples_;
   const SessionProgress& progress_;
-  const EstimationOptions& options_;
-  std::vector<std::size_t> samples_per_coil_;
 };
-
-std::uint32_t count(std::size_t value) {
-  return static_cast<std::uint32_t>(value);
-}
-
-void addCoverage(const CalibrationModel& model,
-                 const SampleCoverage& seen,
-                 std::size_t orientations,
-                 const CalibrationState& state,
-                 SessionProgress& progress) {
-  const ParameterSpace& space = model.space();
-  progress.joint = {count(orientations),
-                    count(demandOf(Cycle::kJoint, space.poles()).advised),
-                    allIdentified(state, space.joint(0), space.pole(0))};
-  for (std::size_t i = 0; i < seen.poles.size(); ++i) {
-    progress.poles.push_back({seen.poles[i],
-                              count(kAdvisedTorquesPerPole),
-                              allIdentified(state, space.pole(i), space.pole(i + 1))});
-  }
-  for (std::size_t j = 0; j < seen.coils.size(); ++j) {
-    progress.coils.push_back({seen.coils[j],
-                              count(kAdvisedTorquesPerCoil),
-                              allIdentified(state, space.coil(j), space.coil(j + 1))});
-  }
-}
 
 }  // namespace
 
-SessionProgress progressOf(const CalibrationModel& model,
-                           const std::vector<Sample>& samples,
-                           const CalibrationState& state,
-                           const EstimationOptions& options) {
-  const ParameterSpace& space = model.space();
-  SessionProgress progress;
-  progress.torque_samples.resize(space.coils(), 0);
-  for (const Sample& sample : samples) {
-    progress.orientation_samples += sample.has_orientation ? 1U : 0U;
-    progress.validation_samples += sample.validation ? 1U : 0U;
-    if (!sample.has_torque) {
-      continue;
-    }
-    for (const Excitation& excitation : excitedCoils(sample, options.current_threshold)) {
-      ++progress.torque_samples[excitation.coil];
-    }
-  }
-  progress.joint_done = anyIdentified(state, space.joint(0), space.pole(0));
-  progress.poles_done = anyIdentified(state, space.pole(0), space.coil(0));
-  for (std::size_t j = 0; j < space.coils(); ++j) {
-    progress.coil_done.push_back(anyIdentified(state, space.coil(j), space.coil(j + 1)));
-  }
-  addCoverage(model,
-              sampleCoverage(model, samples, state.belief.x, options.current_threshold),
-              usefulOrientations(samples, options, demandOf(Cycle::kJoint, space.poles()).advised),
-              state,
-              progress);
-  progress.next_cycles = nextCycles(model, samples, options);
-  return progress;
-}
-
-std::string nextStep(const CalibrationModel& model,
-                     const std::vector<Sample>& samples,
-                     const SessionProgress& progress,
-                     const EstimationOptions& options) {
-  return Guide(model, samples, progress, options).step();
+std::string nextStep(const CalibrationModel& model, const SessionProgress& progress) {
+  return Guide(model, progress).step();
 }
 
 }  // namespace sac

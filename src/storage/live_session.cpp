@@ -68,16 +68,23 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   stored.id = database_.nextSampleId();
   database_.addSample(stored, date);
   session_.add(stored);
+  counter_->add(stored);
+  if (stored.validation) {
+    grade_.reset();
+  }
   return stored;
 }
 
 bool LiveSession::removeSample(std::uint32_t id, const std::string& date) {
-  return database_.removeSample(id, date) && session_.remove(id);
+  const bool is_removed = database_.removeSample(id, date) && session_.remove(id);
+  countAnew();
+  return is_removed;
 }
 
 std::size_t LiveSession::clearSamples(const std::string& date) {
   const std::size_t count = database_.clearSamples(date);
   session_.clearSamples();
+  countAnew();
   return count;
 }
 
@@ -96,8 +103,10 @@ CycleReport LiveSession::run(const CycleRequest& request, const std::string& dat
     }
   } catch (...) {
     session_.resume(std::move(before), std::move(reports), std::move(motion));
+    countAnew();
     throw;
   }
+  countAnew();
   return report;
 }
 
@@ -125,10 +134,23 @@ void LiveSession::restore(std::uint32_t number, const std::string& date) {
 }
 
 SessionProgress LiveSession::progress() const {
-  SessionProgress progress = progressOf(
-      session_.model(), session_.samples(), session_.state(), session_.config().estimation);
+  SessionProgress progress = counter_->progress();
   progress.refined = revision_.refined;
   return progress;
+}
+
+const GradedCalibration& LiveSession::grade() const {
+  if (!grade_) {
+    grade_ = gradeCalibration(session_);
+  }
+  return *grade_;
+}
+
+/// After what changes more than one sample more: other parameters look at other poles.
+void LiveSession::countAnew() {
+  counter_.emplace(session_.model(), session_.state(), session_.config().estimation);
+  counter_->add(session_.samples());
+  grade_.reset();
 }
 
 CalibratedDescription LiveSession::description(const std::string& date) const {
@@ -160,6 +182,7 @@ void LiveSession::putInForce(const Revision& revision) {
                   withUnits(database_.cyclesOfRevision(revision.number), session_.model().space()),
                   motionBefore(revision.number));
   revision_ = revision;
+  countAnew();
 }
 
 }  // namespace sac

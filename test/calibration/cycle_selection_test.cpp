@@ -58,6 +58,11 @@ CalibrationModel paperModel() {
   return CalibrationModel(ParameterSpace(scenarios::paperNominal()));
 }
 
+std::vector<CycleRequest> nextOf(const std::vector<Sample>& samples) {
+  const CalibrationModel model = paperModel();
+  return nextCycles(model, SampleCounts(model, {}, samples));
+}
+
 TEST(CycleSelection, ReadsCyclesInTheOrderGiven) {
   const std::string text = "refine,joint,poles:7,coil:12,joint";
   EXPECT_EQ(textOf(parseCycles(text)), text);
@@ -104,39 +109,39 @@ TEST(CycleSelection, PolesGoWithTheCoilThatHasMostSamples) {
 TEST(CycleSelection, APlannedSessionGoesFromTheJointToTheRefinement) {
   const std::vector<Sample> samples =
       joined(samplesWithCoils({2, 2, 3, 3, 3}), orientationSamples(3));
-  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,refine");
+  EXPECT_EQ(textOf(nextOf(samples)), "joint,refine");
 }
 
 TEST(CycleSelection, PolesAndOtherCoilsFollowWhereOneCoilCanTellEveryPole) {
   std::vector<Sample> samples =
       joined(samplesWithCoils({1, 4, 4, 2, 2, 2, 2, 2, 2, 2, 2, 2}), orientationSamples(3));
-  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,poles:2,coil:1,coil:4,refine");
+  EXPECT_EQ(textOf(nextOf(samples)), "joint,poles:2,coil:1,coil:4,refine");
   samples.erase(samples.begin() + 3);
-  EXPECT_EQ(textOf(nextCycles(paperModel(), samples, {})), "joint,refine");
+  EXPECT_EQ(textOf(nextOf(samples)), "joint,refine");
 }
 
 TEST(CycleSelection, TheJointNeedsThreeOrientationsAtDifferentPoses) {
-  EXPECT_EQ(textOf(nextCycles(paperModel(), orientationSamples(2), {})), "");
-  EXPECT_EQ(textOf(nextCycles(paperModel(), orientationSamples(3), {})), "joint");
+  EXPECT_EQ(textOf(nextOf(orientationSamples(2))), "");
+  EXPECT_EQ(textOf(nextOf(orientationSamples(3))), "joint");
   const std::vector<Sample> still(20, orientationSample());
-  EXPECT_EQ(textOf(nextCycles(paperModel(), still, {})), "");
+  EXPECT_EQ(textOf(nextOf(still)), "");
 }
 
 TEST(CycleSelection, TheRefinementNeedsWhatAnotherCycleNeedsOrTorquesAtManyPoses) {
   std::vector<Sample> torques = samplesWithCoils({2});
   torques.front().has_orientation = true;
-  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+  EXPECT_EQ(textOf(nextOf(torques)), "");
   // Two coils at a time: no other cycle can take them.
   torques = samplesWithCoils({1, 2, 3, 4, 5, 6, 7, 8, 9});
   for (std::size_t n = 0; n < torques.size(); ++n) {
     torques[n].current[20] = 2.0;
     torques[n].joint_position[0] = 0.2 * static_cast<double>(n);
   }
-  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+  EXPECT_EQ(textOf(nextOf(torques)), "");
   torques = joined(torques, samplesWithCoils({1}));
-  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "refine");
+  EXPECT_EQ(textOf(nextOf(torques)), "refine");
   torques[3].joint_position = torques[4].joint_position;
-  EXPECT_EQ(textOf(nextCycles(paperModel(), torques, {})), "");
+  EXPECT_EQ(textOf(nextOf(torques)), "");
 }
 
 TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {

@@ -17,7 +17,7 @@ SessionProgress progressOf(const CalibrationSession& session) {
 }
 
 std::string nextStep(const CalibrationSession& session, const SessionProgress& progress) {
-  return nextStep(session.model(), session.samples(), progress, session.config().estimation);
+  return nextStep(session.model(), progress);
 }
 
 std::string nextStep(const CalibrationSession& session) {

@@ -67,6 +67,63 @@ TEST_F(LiveSessionTest, GoesOnWhereItEnded) {
   EXPECT_TRUE(session.progress().poles_done);
 }
 
+/// What is kept up to date against what all samples tell anew.
+void expectUpToDate(const LiveSession& session, const char* after) {
+  const CalibrationSession& calibration = session.calibration();
+  const SessionProgress progress = session.progress();
+  const SessionProgress anew = progressOf(calibration.model(),
+                                          calibration.samples(),
+                                          calibration.state(),
+                                          calibration.config().estimation);
+  const auto numbers = [](const SessionProgress& one) {
+    std::vector<std::size_t> all = {one.samples,
+                                    one.joint_samples,
+                                    one.joint.samples,
+                                    one.orientation_samples,
+                                    one.validation_samples,
+                                    one.next_cycles.size()};
+    for (const auto& parts : {one.poles, one.coils}) {
+      for (const Coverage& part : parts) {
+        all.push_back(part.samples);
+        all.push_back(part.identified ? 1 : 0);
+      }
+    }
+    all.insert(all.end(), one.torque_samples.begin(), one.torque_samples.end());
+    all.insert(all.end(), one.samples_per_coil.begin(), one.samples_per_coil.end());
+    return all;
+  };
+  EXPECT_EQ(numbers(progress), numbers(anew)) << after;
+  const GradedCalibration grade = gradeCalibration(calibration);
+  EXPECT_EQ(session.grade().grade, grade.grade) << after;
+  EXPECT_EQ(session.grade().reason, grade.reason) << after;
+}
+
+TEST_F(LiveSessionTest, ProgressAndGradeAreUpToDateAfterEachStep) {
+  LiveSession session = open();
+  expectUpToDate(session, "opening");
+  for (const Sample& sample : samples()) {
+    session.addSample(sample, kDate);
+    expectUpToDate(session, "a sample");
+  }
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  expectUpToDate(session, "the joint");
+  ASSERT_TRUE(session.run({Cycle::kPoles, 0}, kDate).success);
+  expectUpToDate(session, "the poles");
+  Sample held_out = samples().back();
+  held_out.validation = true;
+  held_out.stamp += 100'000'000'000;
+  session.addSample(held_out, kDate);
+  expectUpToDate(session, "a held-out sample");
+  ASSERT_TRUE(session.removeSample(3, kDate));
+  expectUpToDate(session, "a removal");
+  session.reset(kDate);
+  expectUpToDate(session, "reset");
+  session.restore(2, kDate);
+  expectUpToDate(session, "restore");
+  session.clearSamples(kDate);
+  expectUpToDate(session, "clearing");
+}
+
 TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
   {
     LiveSession session = open();

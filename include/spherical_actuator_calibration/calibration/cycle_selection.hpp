@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/sample_counts.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
@@ -29,18 +30,10 @@ std::vector<CycleRequest> possibleCycles(const CalibrationModel& model,
                                          const std::vector<Sample>& samples,
                                          const EstimationOptions& options);
 
-/// Samples in use with an orientation, up to `enough`; of one pose no more than three count, for
-/// they tell nothing new. Poses differ by min_joint_motion in some joint.
-std::size_t usefulOrientations(const std::vector<Sample>& samples,
-                               const EstimationOptions& options,
-                               std::size_t enough);
-
 /// Those of the possible cycles that have as many samples as they need (CycleDemand; at
 /// different poses), in their order. Each presumes that those before it have run: other coils
 /// need the poles.
-std::vector<CycleRequest> nextCycles(const CalibrationModel& model,
-                                     const std::vector<Sample>& samples,
-                                     const EstimationOptions& options);
+std::vector<CycleRequest> nextCycles(const CalibrationModel& model, const SampleCounts& counts);
 
 /// "joint", "poles:1", "coil:3", "refine": inverse of parseCycles() for one request.
 std::string cycleText(const CycleRequest& request);

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
@@ -26,6 +28,33 @@ struct SampleCoverage {
   std::vector<std::uint32_t> poles;
   /// Torque samples in which the coil is excited and reaches some pole.
   std::vector<std::uint32_t> coils;
+};
+
+/// Counts sample by sample. `x` are the coordinates in force, `threshold` the current from which on
+/// a coil counts as excited [A]. Keeps the torque curve of `model`.
+class CoverageCounter {
+ public:
+  CoverageCounter(const CalibrationModel& model, const Eigen::VectorXd& x, double threshold);
+
+  /// All that a sample tells; one that is held out does not count.
+  void add(const Sample& sample);
+  /// One of its quantities.
+  void add(const Sample& sample, Quantity quantity);
+
+  const SampleCoverage& coverage() const { return coverage_; }
+
+ private:
+  void addMotion(const Sample& sample);
+  void addOrientation() { ++coverage_.orientations; }
+  void addTorque(const Sample& sample);
+  bool markSeen(const Eigen::Vector3d& coil_rotor, std::vector<bool>& is_pole_seen) const;
+
+  const TorqueCurve* curve_;  ///< null without a torque model
+  double threshold_;
+  JointGeometry joints_;
+  TorqueGeometry geometry_;
+  SampleCoverage coverage_;
+  bool is_first_ = true;
 };
 
 /// Counts over all samples that are not held out. `x` are the coordinates in force, `threshold` the

@@ -7,9 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
-#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 
 namespace sac {
@@ -26,6 +27,10 @@ class LiveSession {
               const CalibrationConfig& config,
               const std::string& database_path,
               const std::string& software);
+
+  // Its counter refers to its model.
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
 
   const CalibrationSession& calibration() const { return session_; }
   const SessionDatabase& database() const { return database_; }
@@ -61,8 +66,10 @@ class LiveSession {
   /// there is none of this number.
   void restore(std::uint32_t number, const std::string& date);
 
-  /// Without `saved`, which only its user knows.
+  /// Without `saved`, `contradicted` and `plan_step`, which only its user knows.
   SessionProgress progress() const;
+  /// Of the parameters in force, by the samples held out.
+  const GradedCalibration& grade() const;
 
   /// The calibrated description, with its record.
   CalibratedDescription description(const std::string& date) const;
@@ -71,12 +78,16 @@ class LiveSession {
 
  private:
   std::optional<MotionEvidence> motionBefore(std::uint32_t number) const;
+  void countAnew();
   void putInForce(const Revision& revision);
 
   std::string software_;
   SessionDatabase database_;
   Revision revision_;
   CalibrationSession session_;
+  // Kept up to date, as they are asked for at every capture.
+  std::optional<ProgressCounter> counter_;
+  mutable std::optional<GradedCalibration> grade_;
 };
 
 }  // namespace sac

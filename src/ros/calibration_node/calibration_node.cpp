@@ -44,8 +44,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   topics_.publishSetup(start, options.calibration);
   topics_.publishParameters(session_);
   if (const auto report = session_.lastReport()) {
-    topics_.publishReport(
-        topics_.stamped(reportToRos(*report, gradeCalibration(session_.calibration()))));
+    topics_.publishReport(topics_.stamped(reportToRos(*report, session_.grade())));
   }
   publishStatus();
 
@@ -198,8 +197,7 @@ void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response&
     storeWaitingSamples();
     refuseMistakes(request, response);
     const CycleReport report = session_.run(request, utcDate());
-    response.report =
-        topics_.stamped(reportToRos(report, gradeCalibration(session_.calibration())));
+    response.report = topics_.stamped(reportToRos(report, session_.grade()));
     if (!report.success) {
       explainFailure(response.report);
     }
@@ -223,7 +221,7 @@ bool CalibrationNode::validate(msg::Calibrate::Request& /*request*/,
   const std::lock_guard<std::mutex> lock(session_mutex_);
   const CalibrationSession& calibration = session_.calibration();
   const HeldOutValidation validation = calibration.validation().value_or(HeldOutValidation{});
-  response.report = topics_.stamped(validationToRos(validation, gradeCalibration(calibration)));
+  response.report = topics_.stamped(validationToRos(validation, session_.grade()));
   response.success = response.report.success;
   response.message = response.report.message;
   return true;
@@ -259,8 +257,8 @@ bool CalibrationNode::save(std_srvs::Trigger::Request& /*request*/,
     const std::string message = files_.save(session_, robotDescription());
     report_folder = files_.saveReport(session_);
     publishStatus();
-    const GradedCalibration graded = gradeCalibration(session_.calibration());
-    return message + " Grade: " + gradeName(graded.grade) + ". " + graded.reason;
+    return message + " Grade: " + gradeName(session_.grade().grade) + ". " +
+           session_.grade().reason;
   });
   // Nothing waits for the page: the session is free again.
   if (response.success != 0 && options_.report_page) {
@@ -335,7 +333,7 @@ void CalibrationNode::publishStatus() {
   try {
     SessionProgress progress = session_.progress();
     const CalibrationSession& calibration = session_.calibration();
-    const GradedCalibration graded = gradeCalibration(calibration);
+    const GradedCalibration& graded = session_.grade();
     progress.saved = files_.isSaved(session_.revision().number);
     progress.contradicted = graded.grade == Grade::kContradicted;
     progress.plan_step =

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
@@ -63,7 +62,7 @@ void CalibrationNode::refuseMistakes(const CycleRequest& request,
   refused.cycle = request.cycle;
   refused.coil = request.coil;
   refused.message = "The cycle is refused. " + inWords(mistakes);
-  response.report = topics_.stamped(reportToRos(refused, gradeCalibration(session)));
+  response.report = topics_.stamped(reportToRos(refused, session_.grade()));
   response.report.diagnoses = diagnosesToRos(mistakes);
   topics_.publishReport(response.report);
   throw DataError(refused.message);

@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
+#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"
@@ -86,7 +87,7 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   }
   message.grade = gradeName(graded.grade);
   message.grade_reason = graded.reason;
-  message.next_step = nextStep(calibration.model(), calibration.samples(), progress, estimation);
+  message.next_step = nextStep(calibration.model(), progress);
   publishLatched(status_, message);
   if (last_report_ && (last_report_->grade != message.grade ||
                        last_report_->grade_reason != message.grade_reason)) {

@@ -9,7 +9,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
-#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/storage/live_session.hpp"

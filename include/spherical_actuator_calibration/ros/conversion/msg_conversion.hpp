@@ -29,7 +29,7 @@
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
-#include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
