@@ -69,7 +69,10 @@ class InformationSum {
                const std::vector<Eigen::Index>& columns,
                const Covariance& covariance,
                double misfit) {
-    const Eigen::MatrixXd own = crossed(Eigen::all, columns);
+    Eigen::MatrixXd own(crossed.rows(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      own.col(static_cast<Eigen::Index>(k)) = crossed.col(columns[k]);
+    }
     const Eigen::MatrixXd spent = covariance * own;
     for (std::size_t b = 0; b < columns.size(); ++b) {
       for (std::size_t a = 0; a <= b; ++a) {
