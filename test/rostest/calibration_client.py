@@ -203,10 +203,16 @@ class CalibrationClient:
             self._diagnostics[status.name] = status
 
     def forget(self):
-        """What comes from now on is of a node that is started after this."""
+        """What comes from now on is of a node that is started after this; those before have ended."""
+        # What an ended node sent may still wait to be received, and would be taken for the next one's.
+        wait_for(self._has_received_all, "the end of all connections")
         self._latest.clear()
         self._diagnostics.clear()
         del self.samples[:]
+
+    def _has_received_all(self):
+        # A connection that was cut while it was made stays among them, done.
+        return all(link.done for subscriber in self._subscribers for link in subscriber.impl.connections)
 
     def latest(self, topic):
         return self._latest.get(topic)
