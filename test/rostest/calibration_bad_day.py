@@ -24,8 +24,8 @@ from calibration_client import (
     values_of,
     wait_for,
 )
-from emulated_lab import free_port
 from emulated_streams import EmulatedStreams, rotation
+from links import free_port
 
 POSES = ((0.2, 0.0, 0.0), (0.0, 0.2, 1.0), (-0.2, 0.1, -1.0), (0.1, -0.2, 2.0), (0.0, 0.1, 0.5))
 DURATION = 0.3  # [s] of a capture

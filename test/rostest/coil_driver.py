@@ -14,7 +14,8 @@ import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
 from driver_node import ERROR, OK, DriverNode
-from modbus_device import Block, ModbusDevice, RudeServer, SerialPair, free_port
+from links import free_port
+from modbus_device import Block, ModbusDevice, RudeServer, SerialPair
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 

@@ -2,12 +2,12 @@
 
 import os
 import pathlib
-import socket
 
 import rospy
 import yaml
 from calibration_client import NAMESPACE, wait_for
 from launch_client import Launch, launch_file
+from links import free_port
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
@@ -19,12 +19,6 @@ WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 5.0  # [s] of the joint sensor, on however busy a computer
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
 PATIENT_BEATS = 5000  # of the comparison of currents, as threads of the emulator may have to wait
-
-
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
 
 
 def configuration_with_free_ports(folder):

@@ -21,7 +21,7 @@ from typing import Callable
 import hostile_peer
 import rospy
 from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command
-from modbus_device import free_port
+from links import free_port
 from sensor_faults import sensor_fault
 
 SIMULATED = rospy.Time(978307200)  # the year 2001

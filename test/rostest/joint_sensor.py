@@ -9,7 +9,8 @@ import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
 from driver_node import ERROR, OK, RESPONSE_TIMEOUT, DriverNode
-from modbus_device import ModbusDevice, RudeServer, SerialPair, free_port
+from links import free_port
+from modbus_device import ModbusDevice, RudeServer, SerialPair
 from sensor_msgs.msg import JointState
 
 UNIT = 1

@@ -14,12 +14,6 @@ from pymodbus_servers import serve_serial, serve_tcp
 REGISTERS = 200
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class Block(ModbusSequentialDataBlock):
     """Registers that remember every request which wrote them."""
 
