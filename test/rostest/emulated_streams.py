@@ -50,6 +50,7 @@ class EmulatedStreams:
         self.silent = set()  # streams that publish nothing
         self.spoil = {}  # stream -> function that changes its messages
         self.stamp_offset = 0.0  # [s]
+        self.newest = rospy.Time()  # stamp of what was measured last
         self._period = 1.0 / rate
         self._count = 0  # measurements of each stream so far
         self._random = random.Random(seed)
@@ -83,10 +84,13 @@ class EmulatedStreams:
 
     def _publish(self, stamp):
         messages = self._measure()
+        self.newest = stamp
         for topic, message in messages.items():
             message.header.stamp = stamp
-            if topic in self.spoil:
-                self.spoil[topic](message)
+            # Looked up once: a test may take it away meanwhile.
+            spoil = self.spoil.get(topic)
+            if spoil:
+                spoil(message)
             if topic not in self.silent:
                 self._publishers[topic].publish(message)
 

@@ -43,7 +43,7 @@ class NextStep(unittest.TestCase):
         self.addCleanup(self.streams.stop)
 
     def says(self, part):
-        wait_for(lambda: part in self.client.latest("status").next_step, part, deadline=30.0)
+        wait_for(lambda: part in self.client.latest("status").next_step, part)
 
     def capture(self, pose, validation=False):
         """Until a sample of this pose is held: on a busy computer streams may be late."""
