@@ -15,7 +15,7 @@ import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
 from driver_node import ERROR, OK, DriverNode
 from links import free_port
-from modbus_device import Block, ModbusDevice, RudeServer, SerialPair
+from modbus_device import Block, ModbusDevice, RudeServer, SerialPair, Setpoints
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
@@ -32,20 +32,6 @@ PATIENT_BEATS = 100000  # of the comparison of currents, where it is not what is
 
 def amperes(word):
     return (word - 0x10000 if word & 0x8000 else word) * MILLI
-
-
-class Setpoints(Block):
-    """Registers of an amplifier without inductance: what is set is measured at once."""
-
-    def __init__(self, measured):
-        super().__init__()
-        self.measured = measured
-        self.are_applied = True
-
-    def setValues(self, address, values):  # noqa: N802, pylint: disable=invalid-name
-        super().setValues(address, values)
-        if self.are_applied and address < COILS:
-            self.measured.setValues(address, values)
 
 
 class Commander:
@@ -78,7 +64,7 @@ class CoilDriver(unittest.TestCase):
     def setUp(self):
         self.measured = []
         measured = Block()
-        self.device = ModbusDevice(UNIT, measured, Setpoints(measured))
+        self.device = ModbusDevice(UNIT, measured, Setpoints(measured, COILS))
         self.port = free_port()
         self.commander = Commander()
         subscriber = rospy.Subscriber(
@@ -134,15 +120,14 @@ class CoilDriver(unittest.TestCase):
     def test_follows_commands_and_publishes_what_is_measured(self):
         node = self.started(watchdog=PATIENT)
         self.follow(3, 1.5)
-        self.device.holding.are_applied = False
-        self.device.input.setValues(2, [1490])
+        self.device.holding.stick(3, 1490)
         wait_for(lambda: self.measured and abs(self.measured[-1].current[2] - 1.49) < 1e-9, "1.49 A")
         self.assertEqual(len(self.measured[-1].current), COILS)
         stamps = [message.header.stamp for message in self.measured]
         self.assertEqual(stamps, sorted(set(stamps)))
         self.device.holding.are_applied = True
         self.follow(3, -0.7)
-        self.assertEqual(self.device.holding_at(ENABLE), [1])
+        wait_for(lambda: self.device.holding_at(ENABLE) == [1], "stages that are on")
         node.wait_for_level("output", OK)
         wait_for(lambda: node.message("output") == "commands are followed", "that it follows")
 
@@ -231,8 +216,7 @@ class CoilDriver(unittest.TestCase):
 
     def test_zero_first_when_the_link_is_back(self):
         node = self.started(watchdog=PATIENT)
-        self.follow()
-        self.device.stop()
+        wait_for(self.vanishes_with_current, "a device that goes with its current")
         node.wait_for_level("link", ERROR)
         # The amplifier keeps what it was told last; commands go on, and must not act on return.
         self.assertFalse(self.is_zero())
@@ -244,6 +228,15 @@ class CoilDriver(unittest.TestCase):
         self.assertEqual(self.device.holding.history[0], (ENABLE, [0]))
         node.wait_for_level("link", OK)
         self.follow()
+
+    def vanishes_with_current(self):
+        """Unless commands were late just then, and it was told zero."""
+        self.follow()
+        self.device.stop()
+        if self.is_zero():
+            self.device.start_tcp(self.port)
+            return False
+        return True
 
     def test_zero_when_the_amplifier_trips(self):
         node = self.started(watchdog=PATIENT)
@@ -274,20 +267,26 @@ class CoilDriver(unittest.TestCase):
         self.device.holding.are_applied = False
         self.commander.command = None
         self.wait_for_zero()
-        node.wait_for_level("output", ERROR)
-        self.assertIn("coil 3 carries 1.50 A where 0.00 A are set", node.message("output"))
+        self.wait_for_deviation(node)
+        self.assertEqual(node.level("output"), ERROR)
         self.assertIn("not measured", node.message("output"))
         heartbeat = self.device.holding_at(HEARTBEAT)
         measured = len(self.measured)
         wait_for(lambda: len(self.measured) > measured + 5, "further beats")
         self.assertEqual(self.device.holding_at(HEARTBEAT), heartbeat)
 
+    @staticmethod
+    def wait_for_deviation(node):
+        """Until it is told; a link that is lost, as on a busy computer, is an error as well."""
+        told = "coil 3 carries 1.50 A where 0.00 A are set"
+        wait_for(lambda: told in node.message("output"), told)
+
     def test_a_deviation_that_only_a_watchdog_can_have_ended_stays(self):
         node = self.started(watchdog=PATIENT, deviation={"tolerance": 0.15, "beats": 20})
         self.follow()
         self.device.holding.are_applied = False
         self.commander.command = None
-        node.wait_for_level("output", ERROR)
+        self.wait_for_deviation(node)
         measured = len(self.measured)
         wait_for(lambda: len(self.measured) > measured + 100, "further beats")
         self.device.holding.are_applied = True
@@ -342,12 +341,16 @@ class CoilDriver(unittest.TestCase):
         )
         self.addCleanup(other.wait)
         self.addCleanup(other.terminate)
-        wait_for(lambda: "rostopic" in node.value("output", "last refusal"), "a refusal by name")
-        self.assertIn(rospy.get_name() + " commands", node.value("output", "last refusal"))
+        wait_for(lambda: self.is_refused_for_us(node.value("output", "last refusal")), "a refusal by name")
         self.assertEqual(node.value("output", "commander"), rospy.get_name())
         self.assertAlmostEqual(self.setpoints()[2], 1.5, delta=MILLI)
         self.commander.command = None
         wait_for(lambda: self.setpoints()[2] < -0.9, "the second one's turn")
+
+    @staticmethod
+    def is_refused_for_us(refusal):
+        """On a busy computer it may be refused for its age, too."""
+        return "rostopic" in refusal and rospy.get_name() + " commands" in refusal
 
     def test_stale_commands_are_refused(self):
         node = self.started()

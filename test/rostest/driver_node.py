@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 OK = DiagnosticStatus.OK
 ERROR = DiagnosticStatus.ERROR
-RESPONSE_TIMEOUT = 5.0  # [s] for a device that answers, on however busy a computer
+RESPONSE_TIMEOUT = 10.0  # [s] for a device that answers, on however busy a computer: the longest that there is
 
 
 class DriverNode:

@@ -26,6 +26,29 @@ class Block(ModbusSequentialDataBlock):
         super().setValues(address, values)
 
 
+class Setpoints(Block):
+    """Registers of an amplifier without inductance: what is set is measured at once."""
+
+    def __init__(self, measured, coils):
+        super().__init__()
+        self.measured = measured
+        self._coils = coils
+        self.are_applied = True
+        self._lock = threading.Lock()
+
+    def setValues(self, address, values):  # noqa: N802, pylint: disable=invalid-name
+        super().setValues(address, values)
+        with self._lock:
+            if self.are_applied and address < self._coils:
+                self.measured.setValues(address, values)
+
+    def stick(self, coil, word):
+        """From now on nothing is applied, and this is measured."""
+        with self._lock:
+            self.are_applied = False
+            self.measured.setValues(coil - 1, [word])
+
+
 class Registers(ModbusSlaveContext):
     """Blocks that begin at address 0 of a request; pymodbus 3.8 has no zero_mode any more, and adds one."""
 
