@@ -49,7 +49,13 @@ class Commands:
         self.last = 0.0
         self.count = 0
         self.largest = 0.0
-        rospy.Subscriber(f"{NAMESPACE}/coil_command", CoilCurrents, self._keep, queue_size=1000)
+        self._subscriber = rospy.Subscriber(
+            f"{NAMESPACE}/coil_command", CoilCurrents, self._keep, queue_size=1000
+        )
+
+    def close(self):
+        """What still comes is of no controller that the next commands are of."""
+        self._subscriber.unregister()
 
     def _keep(self, message):
         self.last = max(map(abs, message.current))
