@@ -23,7 +23,7 @@ constexpr std::uint32_t kQueueLength = 10000;
 /// calibration; what is too old or too slow for a dwell is.
 constexpr StreamLimits kLimits = {20.0, 0.5};
 
-/// Nothing came for so long, by this machine's clock: the streams have ended [s].
+/// Nothing came for so long while this process ran: the streams have ended [s].
 constexpr double kStreamsEnded = 2.0;
 
 constexpr double kCapturePoll = 0.01;  // [s]
@@ -80,14 +80,11 @@ std::vector<Sample> MeasurementIntake::takeSamples() {
 }
 
 bool MeasurementIntake::haveStreamsEnded() {
-  const double now = steadySeconds();
-  if (received_ != received_before_) {
-    received_before_ = received_;
-    last_received_ = now;
+  if (arrivals_.look(received_, steadySeconds())) {
     finished_ = false;
     return false;
   }
-  return !finished_ && now - last_received_ > kStreamsEnded;
+  return !finished_ && arrivals_.silence() > kStreamsEnded;
 }
 
 void MeasurementIntake::finish() {
@@ -100,8 +97,7 @@ void MeasurementIntake::finish() {
 
 CaptureProgress MeasurementIntake::waitForCapture(double duration) const {
   const Stamp from = newest().value_or(0);
-  std::uint64_t received = received_;
-  double last_received = steadySeconds();
+  ArrivalWatch arrivals(received_, steadySeconds());
   for (;;) {
     CaptureProgress progress = capture(from, duration);
     if (progress.state != CaptureProgress::State::kWaiting) {
@@ -110,10 +106,8 @@ CaptureProgress MeasurementIntake::waitForCapture(double duration) const {
     if (!ros::ok() || terminationRequested()) {
       return {CaptureProgress::State::kRefused, std::nullopt, "The node is being shut down."};
     }
-    if (received_ != received) {
-      received = received_;
-      last_received = steadySeconds();
-    } else if (steadySeconds() - last_received > kStreamsEnded) {
+    arrivals.look(received_, steadySeconds());
+    if (arrivals.silence() > kStreamsEnded) {
       return {CaptureProgress::State::kRefused,
               std::nullopt,
               "No measurement arrives any more: check the sensor nodes."};

@@ -17,6 +17,7 @@
 #include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
+#include "spherical_actuator_calibration/streams/arrival_watch.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
 #include "spherical_actuator_calibration/streams/stream_merger.hpp"
 
@@ -75,9 +76,8 @@ class MeasurementIntake {
   StreamMerger merger_;
   SampleBuilder builder_;
   MotionMemory motion_;
-  std::uint64_t received_before_ = 0;  ///< when samples were last taken
-  double last_received_ = 0.0;         ///< noted then, by a clock that never jumps [s]
-  bool finished_ = true;               ///< nothing came since finish()
+  ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
+  bool finished_ = true;           ///< nothing came since finish()
 
   // Used by the receiving thread alone, or thread-safe by themselves.
   MeasurementReader reader_;
