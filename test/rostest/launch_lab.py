@@ -8,12 +8,12 @@ import tempfile
 import unittest
 
 import rosbag
-import rosgraph
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from geometry_msgs.msg import PoseStamped, QuaternionStamped
 from launch_client import Launch, configuration_of, launch_file, missing_programs, nodes_of
+from recorder_links import received
 
 NODES = ["calibration", "coil_driver", "joint_sensor", "tracker_bridge"]
 RECORDED = {"measured_orientation", "parameters", "status", "tracker/pose"}
@@ -95,17 +95,12 @@ class LaunchLab(unittest.TestCase):
 
         wait_for(is_measured, "measured orientation")
         self.assertEqual(measured[0].header.frame_id, "unit_1/stator")
-        # The recorder finds its topics one by one.
-        topics = {"/tf_static", f"{NAMESPACE}/parameters", f"{NAMESPACE}/measured_orientation"}
-        wait_for(lambda: topics <= self.recorded(), "topics of the recorder")
-        for _ in range(100):
-            is_measured()
-            rospy.sleep(0.02)
+        for topic in self.recorded_topics():
+            wait_for(lambda: is_measured() and received(topic), f"a recorded message of {topic}")  # noqa: B023
 
-    def recorded(self):
-        """Topics that the recorder subscribes to."""
-        _, subscribers, _ = rosgraph.Master("/launch_lab").getSystemState()
-        return {topic for topic, nodes in subscribers if any("record" in node for node in nodes)}
+    @staticmethod
+    def recorded_topics():
+        return {f"{NAMESPACE}/{stream}" for stream in RECORDED} | {"/tf_static"}
 
     def check_recording(self, directory):
         self.assertTrue(os.path.exists(os.path.join(directory, "session.db")))
@@ -113,8 +108,7 @@ class LaunchLab(unittest.TestCase):
         self.assertEqual(len(bags), 1, os.listdir(directory))
         with rosbag.Bag(bags[0]) as bag:
             recorded = set(bag.get_type_and_topic_info().topics)
-        self.assertLessEqual({f"{NAMESPACE}/{stream}" for stream in RECORDED}, recorded)
-        self.assertIn("/tf_static", recorded)
+        self.assertLessEqual(self.recorded_topics(), recorded)
 
 
 if __name__ == "__main__":

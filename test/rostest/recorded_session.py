@@ -9,12 +9,12 @@ import sys
 import tempfile
 import unittest
 
-import rosgraph
 import rospy
 import rostest
 import yaml
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, program, wait_for
 from emulated_lab import EmulatedLab
+from recorder_links import wait_until_connected, wait_until_received
 
 TOLERANCE = 1e-9
 COIL = 3
@@ -46,18 +46,12 @@ class RecordedSession(unittest.TestCase):
             yaml.safe_dump(config, file)
         cls.lab.start()
         rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
-        wait_for(cls.all_is_recorded, "topics of the recorder")
+        wait_until_connected([f"{NAMESPACE}/{topic}" for topic in STREAMS + SETUP])
 
     @classmethod
     def tearDownClass(cls):
         cls.lab.stop()
         cls.folder.cleanup()
-
-    @classmethod
-    def all_is_recorded(cls):
-        _, subscribers, _ = rosgraph.Master("/recorded_session").getSystemState()
-        recorded = {topic for topic, nodes in subscribers if any("record" in node for node in nodes)}
-        return {f"{NAMESPACE}/{topic}" for topic in STREAMS + SETUP} <= recorded
 
     def capture(self, duration, validation=False):
         def is_taken():
@@ -66,7 +60,6 @@ class RecordedSession(unittest.TestCase):
         wait_for(is_taken, "a sample")
 
     def measure(self):
-        rospy.sleep(1.0)  # the recorder's connections
         for pose in POSES:
             self.lab.excite(0, 0.0)
             self.lab.move(pose)
@@ -96,6 +89,7 @@ class RecordedSession(unittest.TestCase):
         self.measure()
         live = [self.client.call(service, coil=0).report for service in ("calibrate_joint", "validate")]
         self.assertTrue(live[0].success, live[0].message)
+        wait_until_received([f"{NAMESPACE}/{topic}" for topic in STREAMS + SETUP])
         self.lab.stop()
         self.streams_give_the_same(live)
         self.streams_follow_another_configuration(live)
