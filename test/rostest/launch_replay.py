@@ -8,7 +8,7 @@ import unittest
 
 import rospy
 import rostest
-from calibration_client import PACKAGE, CalibrationClient, run_tool, wait_for
+from calibration_client import DEADLINE, NODE, PACKAGE, CalibrationClient, run_tool, wait_for
 from launch_client import Launch, launch_file, missing_programs, nodes_of
 
 POSES = 5
@@ -41,6 +41,7 @@ class LaunchReplay(unittest.TestCase):
     def samples_of(self, directory, **arguments):
         """Samples of the whole recording, in their order."""
         client = CalibrationClient()
+        client.forget()  # what the launch before has published
         launch = Launch(
             launch_file("replay.launch"),
             bag=self.bag,
@@ -50,6 +51,7 @@ class LaunchReplay(unittest.TestCase):
         )
         self.addCleanup(launch.stop)
         wait_for(lambda: client.latest("status"), "status")
+        rospy.wait_for_service(f"{NODE}/save", DEADLINE)
         wait_for(
             lambda: client.latest("status").orientation_samples >= POSES, f"{POSES} samples"
         )

@@ -13,7 +13,8 @@ import rosbag
 import rospy
 import rostest
 import yaml
-from calibration_client import DEADLINE, NAMESPACE, PACKAGE, program, run_tool, stop_player, wait_for
+from calibration_client import DEADLINE, NAMESPACE, PACKAGE, program, run_tool, stop_player
+
 SESSION = {
     "seed": 3,
     "joint-poses": 9,
@@ -23,8 +24,6 @@ SESSION = {
     "tracker-rate": 100,
     "joint-rate": 100,
 }
-
-
 TOPICS = [f"{NAMESPACE}/joint_states", f"{NAMESPACE}/tracker/pose"]
 
 
@@ -97,9 +96,9 @@ class RegisterFrames(unittest.TestCase):
             text=True,
         )
         self.assertIn("Turn the rotor", live.stdout.readline())
-        wait_for(self.is_listening, "register_frames to listen")
         player = subprocess.Popen(
-            ["rosbag", "play", self.bag, "--quiet", "--queue", "100000", "--keep-alive", "--topics", *TOPICS],
+            ["rosbag", "play", self.bag, "--quiet", "--queue", "100000", "--keep-alive", "--wait-for-subscribers"]
+            + ["--topics", *TOPICS],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
         )
@@ -118,11 +117,6 @@ class RegisterFrames(unittest.TestCase):
                 turn_between(offline_one["quaternion_xyzw"], live_one["quaternion_xyzw"]),
                 3.0 * np.linalg.norm(offline_one["stddev"]),
             )
-
-    def is_listening(self):
-        _, _, (_, subscribers, _) = rospy.get_master().getSystemState()
-        heard = {name for name, nodes in subscribers if nodes}
-        return heard.issuperset(TOPICS)
 
     def test_what_cannot_be_used_is_told(self):
         few = os.path.join(self.folder.name, "few.bag")
