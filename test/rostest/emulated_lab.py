@@ -5,7 +5,7 @@ import pathlib
 
 import rospy
 import yaml
-from calibration_client import NAMESPACE, wait_for
+from calibration_client import DEADLINE, NAMESPACE, wait_for
 from launch_client import Launch, launch_file
 from links import free_port
 from sensor_msgs.msg import JointState
@@ -16,7 +16,7 @@ from std_srvs.srv import SetBool, Trigger
 COILS = 24
 JOINTS = ["joint_1", "joint_2", "joint_3"]
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
-RESPONSE_TIMEOUT = 5.0  # [s] of the joint sensor, on however busy a computer
+RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
 PATIENT_BEATS = 5000  # of the comparison of currents, as threads of the emulator may have to wait
 
@@ -72,6 +72,8 @@ class EmulatedLab:
         wait_for(lambda: self._position is not None, "joint angles")
         wait_for(lambda: self._targets.get_num_connections() > 0, "the fixture")
         wait_for(lambda: self._commands.get_num_connections() > 0, "the coil driver")
+        # Of its services the last to be advertised.
+        rospy.wait_for_service(f"{NAMESPACE}/lab_emulator/inject_outlier", DEADLINE)
 
     def stop(self):
         if self._timer:

@@ -106,6 +106,7 @@ class LiveView(unittest.TestCase):
         cls.samples = []
         rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
         cls.lab.start()
+        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
 
     @classmethod
     def tearDownClass(cls):
@@ -135,6 +136,7 @@ class LiveView(unittest.TestCase):
     def test_frames_follow_the_joints(self):
         self.lab.move([0.0, 0.0, 0.0])
         self.lab.move([0.0, 0.0, 1.0])
+        wait_for(lambda: {"rotor_nominal", "rotor"} <= self.frames.keys(), "frames of the rotor")
         wait_for(lambda: abs(self.frames["rotor_nominal"].transform.rotation.z) > 0.47, "the nominal rotor")
         self.assertEqual(self.frames["rotor_nominal"].header.frame_id, "stator")
         self.assertEqual(self.frames["rotor"].header.frame_id, "joint_2")
@@ -146,7 +148,8 @@ class LiveView(unittest.TestCase):
         wait_for(captured, "a sample")
 
         def is_drawn():
-            groups = [marker for marker in self.markers[-1].markers if marker.ns == "samples"]
+            newest = self.markers[-1].markers if self.markers else []
+            groups = [marker for marker in newest if marker.ns == "samples"]
             return groups and groups[0].points
 
         wait_for(is_drawn, "the dot of the sample")
@@ -157,16 +160,15 @@ class LiveView(unittest.TestCase):
         before = len(self.samples)
 
         def captured():
-            # Refused while the fixture still settles, and pale while it waits for the answer: as an operator
-            # would, click again.
+            # Refused while the fixture still settles, of the pose before where the node is behind, and pale while it
+            # waits for the answer: as an operator would, click again.
             place = find_button(self.screen.pixels())
             if place:
                 self.screen.click(*place)
                 time.sleep(1.0)
-            return len(self.samples) > before
+            return any(abs(sample.joint_position[2] - 0.5) < 0.1 for sample in self.samples[before:])
 
         wait_for(captured, "the sample of the click")
-        self.assertAlmostEqual(self.samples[-1].joint_position[2], 0.5, delta=0.1)
 
 
 if __name__ == "__main__":

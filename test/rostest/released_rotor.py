@@ -32,6 +32,7 @@ class ReleasedRotor(unittest.TestCase):
         rospy.Subscriber(f"{NAMESPACE}/lab_emulator/true_orientation", QuaternionStamped, cls.keep)
         cls.commands = Commands()
         cls.lab.start()
+        wait_for(lambda: cls.true_orientation, "the true orientation")
         with open(cls.lab.truth, encoding="utf-8") as file:
             cls.truth = yaml.safe_load(file)["actuator"]
         cls.controller = Controller(rotor={"unbalance": LOAD})
@@ -61,8 +62,8 @@ class ReleasedRotor(unittest.TestCase):
         reports = []
         rospy.Subscriber(f"{NAMESPACE}/report", CalibrationReport, reports.append)
         self.hold_and_try_again(self.run_level_1)
-        report = wait_for(lambda: reports and reports[-1], "the report")
-        self.assertTrue(report.success)
+        # Those of attempts before may come first.
+        report = wait_for(lambda: next((each for each in reversed(reports) if each.success), None), "the report")
         self.assertEqual(report.cycle, "joint")
         values = {estimate.name: estimate for estimate in report.estimates}
         for joint in self.truth["joints"]:
@@ -90,8 +91,8 @@ class ReleasedRotor(unittest.TestCase):
     def turns_to(self, goal):
         """Lets the rotor go; whether it came to the goal, and is held there."""
         self.parameters.publish(self.nominal)
-        self.controller.wait_until_enabled()
-        wait_for(lambda: not self.has_stopped(), "the control")
+        # Again where it stops before it is seen to be active: on a busy computer joint angles are late.
+        wait_for(lambda: self.controller.enable().success and not self.has_stopped(), "the control")
         self.lab.fault("release_fixture", True)
         self.controller.send(goal)
 
