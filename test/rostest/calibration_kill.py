@@ -19,8 +19,10 @@ from calibration_client import PACKAGE, CalibrationClient, CalibrationNode, valu
 from emulated_streams import EmulatedStreams
 
 KILLS = 100
+FURTHER_KILLS = 100  # at most, where lives were too short for a call to be confirmed: on a busy computer
 SEED = 20240611
 LONGEST_LIFE = 0.5  # [s] of one node after it is up
+LONGEST_FURTHER_LIFE = 5.0  # [s]
 CAPTURE_DURATION = 0.1  # [s]
 FIRST_POSES = 6  # enough for the joint cycle
 # The two services that put parameters in force again, and what else a user may call meanwhile.
@@ -70,23 +72,28 @@ class Kill(unittest.TestCase):
         for _ in range(FIRST_POSES):
             self.move()
             wait_for(self.capture, "a sample")
-        for kill in range(KILLS):
+        for kill in range(KILLS + FURTHER_KILLS):
+            if kill >= KILLS and not self.unconfirmed():
+                break
             with self.subTest(kill=kill):
-                self.work_until_killed()
+                self.work_until_killed(LONGEST_LIFE if kill < KILLS else LONGEST_FURTHER_LIFE)
                 self.check_database()
                 self.check_files()
                 self.client.start(self.node)
                 self.check_state()
         self.check_revisions()
         print("acknowledged before kills:", self.known.counts)
-        for service in set(ACTIONS) | {"capture"}:
-            self.assertGreater(self.known.counts.get(service, 0), 0, service)
+        self.assertEqual(self.unconfirmed(), set())
+
+    def unconfirmed(self):
+        """Services of which no call was confirmed yet."""
+        return (set(ACTIONS) | {"capture"}) - set(self.known.counts)
 
     # -- life of one node ----------------------------------------------------------------------------
 
-    def work_until_killed(self):
+    def work_until_killed(self, longest_life):
         self.move()
-        life = self.random.uniform(0.0, LONGEST_LIFE)
+        life = self.random.uniform(0.0, longest_life)
         workers = [in_one_thread(self.keep_capturing), in_one_thread(self.keep_calling)]
         # The moment of the kill is what is random here, nothing waits for it.
         time.sleep(life)
