@@ -122,11 +122,9 @@ class HostileMessages(unittest.TestCase):
 
     def test_b_publishers(self):
         for kind, welcome in PUBLISHERS.items():
-            publishers = []
-            for topic in ("joint_states", "coil_command", "parameters", "tracker/pose"):
-                publisher = HostilePublisher(self.name_of(topic), type(good(topic)))
-                publisher._welcome = lambda link, p=publisher: welcome(p, link)  # noqa: B023
-                publishers.append(publisher)
+            topics = ("joint_states", "coil_command", "parameters", "tracker/pose")
+            # With its welcome from the first visit on.
+            publishers = [HostilePublisher(self.name_of(topic), type(good(topic)), welcome) for topic in topics]
             for publisher in publishers:
                 publisher.wait_for_visits(1)
             self.expect_all_well(kind)

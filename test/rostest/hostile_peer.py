@@ -33,13 +33,14 @@ def receive_framed(link):
 
 
 class HostilePublisher:
-    """Publishes bytes on a topic. `welcome(link)` answers each subscriber's header; without it, as it should be."""
+    """Publishes bytes on a topic. `welcome(publisher, link)` answers each subscriber's header; without it, as it should
+    be."""
 
     def __init__(self, topic, message_class, welcome=None):
         self._caller = f"{CALLER}_{next(NUMBERS)}"
         self._topic = topic
         self._class = message_class
-        self._welcome = welcome or self._greet
+        self._welcome = welcome or HostilePublisher.greet
         self._links = []
         self._lock = threading.Lock()
         self.visits = 0  # connections of subscribers so far
@@ -60,12 +61,9 @@ class HostilePublisher:
         with contextlib.suppress(OSError, EOFError):
             receive_framed(link)
             self.visits += 1
-            self._welcome(link)
+            self._welcome(self, link)
             with self._lock:
                 self._links.append(link)
-
-    def _greet(self, link):
-        self.greet(link)
 
     def greet(self, link, **changes):
         fields = {
