@@ -65,6 +65,11 @@ class EmulatedLab:
         rospy.Subscriber(f"{NAMESPACE}/joint_states", JointState, self._keep)
         rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, self._keep_currents)
 
+    def change_emulator(self, **sections):
+        """Sections of the emulator's configuration, before the start."""
+        path = pathlib.Path(self.config) / "lab_emulator.yaml"
+        path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), **sections}))
+
     def start(self):
         self._launch = Launch(
             launch_file("emulated_lab.launch"), environment=self._environment, **self._arguments
