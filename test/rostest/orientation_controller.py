@@ -110,8 +110,7 @@ class OrientationController(unittest.TestCase):
         self.joints.silent = False
         self.joints.wait_for_further(50)
         self.assertTrue(self.commands.ended_with_zero())
-        controller.wait_until_enabled()
-        controller.wait_for_level("control", OK)
+        wait_for(lambda: controller.enable().success and controller.level("control") == OK, "the control to go on")
 
     def pulls(self, controller):
         """Whether there is current, so that a zero is that of a stop; where angles came late, it is enabled again."""
