@@ -68,15 +68,12 @@ class GuidedSession(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.client = CalibrationClient()
         cls.lab = EmulatedLab(cls.folder.name, seed=5, commands=False)
+        cls.addClassCleanup(cls.lab.stop)
         cls.lab.start()
         rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.lab.stop()
-        cls.folder.cleanup()
 
     def samples(self):
         """Waits while the node is away."""

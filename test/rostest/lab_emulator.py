@@ -49,15 +49,12 @@ class LabEmulator(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.client = CalibrationClient()
         cls.lab = EmulatedLab(cls.folder.name, seed=3)
+        cls.addClassCleanup(cls.lab.stop)
         cls.lab.start()
         rospy.wait_for_service(f"{NAMESPACE}/calibration/capture")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.lab.stop()
-        cls.folder.cleanup()
 
     def setUp(self):
         self.lab.excite(0, 0.0)

@@ -95,10 +95,13 @@ class LiveView(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.screen = Screen()
+        cls.addClassCleanup(cls.screen.stop)
         cls.client = CalibrationClient()
         environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
         cls.lab = EmulatedLab(cls.folder.name, environment=environment, rviz=True)
+        cls.addClassCleanup(cls.lab.stop)
         cls.markers = []
         cls.frames = {}
         rospy.Subscriber(f"{NAMESPACE}/calibration_markers", MarkerArray, cls.markers.append)
@@ -107,12 +110,6 @@ class LiveView(unittest.TestCase):
         rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
         cls.lab.start()
         rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.lab.stop()
-        cls.screen.stop()
-        cls.folder.cleanup()
 
     @classmethod
     def keep_frames(cls, message):

@@ -51,11 +51,14 @@ class MotionPlan(unittest.TestCase):
     def setUpClass(cls):
         cls.refusal = ""
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4)
+        cls.addClassCleanup(cls.lab.stop)
         cls.make_it_patient()
         cls.commands = Commands()
         cls.lab.start()
         cls.controller = Controller(largest_age=1.0)
+        cls.addClassCleanup(cls.controller.close)
         cls.status, cls.begun = None, rospy.Time()
         rospy.Subscriber(f"{NAMESPACE}/orientation_controller/motion_status", MotionStatus, cls.keep)
         rospy.wait_for_message(f"{NAMESPACE}/parameters", ActuatorParameters)
@@ -68,12 +71,6 @@ class MotionPlan(unittest.TestCase):
         content["friction"] = {"viscous": FRICTION}
         content["load"]["unbalance"] = [0.0, 0.0, 0.0]
         path.write_text(yaml.safe_dump(content))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.controller.close()
-        cls.lab.stop()
-        cls.folder.cleanup()
 
     @classmethod
     def keep(cls, message):

@@ -35,8 +35,10 @@ class RecordedSession(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.client = CalibrationClient()
         cls.lab = EmulatedLab(cls.folder.name, seed=6, record=True)
+        cls.addClassCleanup(cls.lab.stop)
         # A configuration that is not the shipped one: the recording must tell it.
         path = os.path.join(cls.lab.config, "calibration.yaml")
         with open(path, encoding="utf-8") as file:
@@ -47,11 +49,6 @@ class RecordedSession(unittest.TestCase):
         cls.lab.start()
         rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
         wait_until_connected([f"{NAMESPACE}/{topic}" for topic in STREAMS + SETUP])
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.lab.stop()
-        cls.folder.cleanup()
 
     def capture(self, duration, validation=False):
         def is_taken():

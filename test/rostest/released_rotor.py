@@ -29,7 +29,9 @@ class ReleasedRotor(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4)
+        cls.addClassCleanup(cls.lab.stop)
         cls.lab.change_emulator(friction={"viscous": FRICTION})
         cls.true_orientation = None
         rospy.Subscriber(f"{NAMESPACE}/lab_emulator/true_orientation", QuaternionStamped, cls.keep)
@@ -39,14 +41,9 @@ class ReleasedRotor(unittest.TestCase):
         with open(cls.lab.truth, encoding="utf-8") as file:
             cls.truth = yaml.safe_load(file)["actuator"]
         cls.controller = Controller(rotor={"unbalance": LOAD}, largest_age=LARGEST_AGE)
+        cls.addClassCleanup(cls.controller.close)
         cls.nominal = rospy.wait_for_message(f"{NAMESPACE}/parameters", ActuatorParameters)
         cls.parameters = rospy.Publisher(f"{NAMESPACE}/parameters", ActuatorParameters, queue_size=1, latch=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.controller.close()
-        cls.lab.stop()
-        cls.folder.cleanup()
 
     def setUp(self):
         self.lab.fault("release_fixture", False)
