@@ -23,3 +23,7 @@ if(Eigen3_VERSION VERSION_LESS 3.4)
     EIGEN_FUNCTORS_PLUGIN="${CMAKE_CURRENT_LIST_DIR}/eigen_3_3/selection.inl"
     EIGEN_PLAINOBJECTBASE_PLUGIN="${CMAKE_CURRENT_LIST_DIR}/eigen_3_3/plain_object.inl")
 endif()
+
+if(yaml-cpp_VERSION VERSION_LESS 0.7)
+  add_compile_definitions(YAML_CPP_BEFORE_0_7)
+endif()

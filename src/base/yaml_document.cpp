@@ -101,9 +101,26 @@ class Census : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::size_t> sizes_;  ///< of collections that have ended, in nodes
 };
 
+#ifdef YAML_CPP_BEFORE_0_7
+/// yaml-cpp never gets past a colon before the end of a list in brackets, and takes memory without
+/// end meanwhile.
+void refuseColonBeforeBracket(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.find(":]") < line.find('#')) {
+      throw YamlDefect(number, "a colon stands before \"]\": write what follows it.");
+    }
+  }
+}
+#endif
+
 }  // namespace
 
 YAML::Node parseSingleDocument(const std::string& text) {
+#ifdef YAML_CPP_BEFORE_0_7
+  refuseColonBeforeBracket(text);
+#endif
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);

@@ -150,6 +150,15 @@ TEST(YamlReader, RejectsWhatIsNoFileOfOneMap) {
             std::string::npos);
 }
 
+/// yaml-cpp 0.6 takes all memory for these.
+TEST(YamlReader, RefusesAColonBeforeTheEndOfAList) {
+  const auto nothing = [](const YamlMap&) {};
+  for (const std::string text : {"a: {b: 1, c:]}\n", "{a:]", "[a:]", "[a::]", "[:]"}) {
+    EXPECT_NE(messageOf(text, nothing), "") << text;
+  }
+  EXPECT_EQ(YamlMap::parse("a: 1  # in [V:]\n", "f.yaml").has("a"), true);
+}
+
 TEST(YamlReader, TellsWhyAFileCannotBeRead) {
   const TemporaryFolder folder;
   const auto message = [](const std::string& path) {
