@@ -17,7 +17,7 @@ SMALLEST = 1e-17  # that a logarithmic scale shows
 
 
 def new(xlabel, ylabel):
-    figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(6.4, 4.0), constrained_layout=True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)

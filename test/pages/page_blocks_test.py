@@ -2,6 +2,7 @@
 """The test of pages fails when a page is wrong."""
 
 import pathlib
+import shutil
 import tempfile
 import unittest
 
@@ -19,9 +20,9 @@ def page(how, text, language="bash"):
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.reader = Reader(pathlib.Path(cls.folder.name))
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder, ignore_errors=True)
+        cls.reader = Reader(pathlib.Path(folder))
 
     def failures(self, text):
         (self.reader.package / "page.md").write_text(text)

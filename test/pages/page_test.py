@@ -288,10 +288,14 @@ class Reader:
 
 def main():
     failures = []
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as root:
+    root = tempfile.mkdtemp()
+    try:
         reader = Reader(pathlib.Path(root))
         for page in sys.argv[1:]:
             failures += reader.read(page)
+    finally:
+        # What a block started may still be writing there.
+        shutil.rmtree(root, ignore_errors=True)
     print("\n".join(failures))
     return 1 if failures else 0
 

@@ -68,7 +68,7 @@ class Figure:
         self._name = name
         self._context = matplotlib.rc_context({**STYLE, "svg.hashsalt": name})
         self._context.__enter__()
-        self.figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
+        self.figure = matplotlib.figure.Figure(figsize=size, constrained_layout=True)
         axes = self.figure.subplots(rows, 1, squeeze=False, sharex=sharex)
         self.panels = list(axes[:, 0])
         self.axes = self.panels[0]
