@@ -1,8 +1,10 @@
 #include "calibrate_bag_options.hpp"
 
+#include <filesystem>
 #include <regex>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
@@ -70,6 +72,28 @@ void check(const CalibrateBagOptions& options) {
   if (options.date) {
     requireDate(*options.date);
   }
+}
+
+/// No output may replace what the run reads, or another output.
+void requireSeparateFiles(const CalibrateBagOptions& options) {
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--config", options.config_path);
+  files.read("--truth", options.truth_path);
+  files.read("--urdf-template", options.urdf_template_path);
+  files.read("--issuer", options.issuer_path);
+  files.read("BAG", options.bags);
+  files.write("--output", options.output_path);
+  files.write("--urdf", options.urdf_path);
+  files.write("--covariance", options.covariance_path);
+  files.write("--certificate", options.certificate_path);
+  files.write("--apply-diagnosis", options.corrected_path);
+  if (options.report_folder) {
+    const std::filesystem::path folder(*options.report_folder);
+    files.write("--report", (folder / "report.yaml").string());
+    files.write("--report", (folder / "report.html").string());
+  }
+  files.requireSeparate();
 }
 
 /// What is understood only after all has been read.
@@ -164,6 +188,7 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
   }
   options.output_path = words.output.value_or("");
   check(options);
+  requireSeparateFiles(options);
   if (words.source) {
     options.source = parseSource(*words.source);
   }

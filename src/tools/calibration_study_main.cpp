@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -96,6 +97,17 @@ void addErrorOptions(CommandLine& line, Options& options) {
   line.add("coil-error", options.errors.coil_angle, "RAD", "the same of coil angles");
 }
 
+/// The study must replace nothing that it is made of.
+void requireSeparateFiles(const Options& options) {
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--config", options.config_path);
+  files.read("--plan", options.plan_path);
+  files.read("SHARD", options.shard_paths);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
+}
+
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options options;
   options.plan.validation_poses = 0;
@@ -113,6 +125,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   if (options.merge == options.shard_paths.empty()) {
     throw ConfigError("--merge takes the files of the shards, and nothing else does; see --help.");
   }
+  requireSeparateFiles(options);
   return options;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
@@ -35,7 +36,15 @@ std::optional<Options> parseOptions(int argc, char** argv) {
            "robot description to write; without it, the standard output");
   line.add("frame-prefix", options.frame_prefix, "TEXT", "before the names of all links");
   line.addForce(options.overwrite);
-  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
+  if (!line.parse(argc, argv, std::cout)) {
+    return std::nullopt;
+  }
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--dimensions", options.dimensions_path);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
+  return options;
 }
 
 void writeUrdf(const Options& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
@@ -51,7 +52,15 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   line.addRequired("output", options.output_path, "YAML", "results to write");
   line.add("seeds", options.seeds, "N", "random sets of orientations per simulation");
   line.addForce(options.overwrite);
-  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
+  if (!line.parse(argc, argv, std::cout)) {
+    return std::nullopt;
+  }
+  FileRoles files;
+  files.read("--actuator", options.nominal_path);
+  files.read("--truth", options.truth_path);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
+  return options;
 }
 
 /// Quantiles of kProbabilities, "[...]".

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_dimensions.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
@@ -85,6 +86,11 @@ std::optional<PlanMotionOptions> parseOptions(int argc, char** argv) {
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--dimensions", options.dimensions_path);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
   return options;
 }
 

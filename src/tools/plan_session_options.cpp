@@ -1,6 +1,7 @@
 #include "plan_session_options.hpp"
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
@@ -93,6 +94,13 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--config", options.config_path);
+  files.read("--samples", options.samples_path);
+  files.read("BAG", options.bags);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
   options.cycle = parseCycle(raw.cycle);
   options.plan.tracker_on = choose<bool>("tracker", raw.tracker, {{"on", true}, {"off", false}});
   options.plan.criterion = choose<PlanCriterion>(

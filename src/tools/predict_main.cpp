@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/csv_file.hpp"
@@ -50,7 +51,16 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   line.addRequired("output", options.output_path, "CSV", "orientations (and torques) to write");
   line.add("currents", options.currents_path, "CSV", "coil currents [A], a line for each pose");
   line.addForce(options.overwrite);
-  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
+  if (!line.parse(argc, argv, std::cout)) {
+    return std::nullopt;
+  }
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--joints", options.joints_path);
+  files.read("--currents", options.currents_path);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
+  return options;
 }
 
 /// Currents of each pose; none where none are asked for.

@@ -8,6 +8,7 @@
 #include <ros/init.h>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "register_frames_live.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -42,6 +43,17 @@ struct Options {
   std::vector<std::string> bags;
   bool isLive() const { return bags.empty() && !samples_path; }
 };
+
+/// The registration must replace nothing that it is made of.
+void requireSeparateFiles(const Options& options) {
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--config", options.config_path);
+  files.read("--samples", options.samples_path);
+  files.read("BAG", options.bags);
+  files.write("--output", options.output_path);
+  files.requireSeparate();
+}
 
 std::optional<Options> parseOptions(int argc, char** argv) {
   std::vector<std::string> words;
@@ -87,6 +99,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
         options.live.duration < SampleBuilderOptions().largest_dwell)) {
     throw ConfigError("--duration: more than 0 s, and less than the longest dwell.");
   }
+  requireSeparateFiles(options);
   return options;
 }
 

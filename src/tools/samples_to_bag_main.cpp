@@ -7,6 +7,7 @@
 #include <rosbag/bag.h>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -39,7 +40,16 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   line.addRequired("output", options.output_path, "BAG", "recording to write");
   line.add("ns", options.ns, "NAME", "namespace of the topics");
   line.addForce(options.overwrite);
-  return line.parse(argc, argv, std::cout) ? std::optional(options) : std::nullopt;
+  if (!line.parse(argc, argv, std::cout)) {
+    return std::nullopt;
+  }
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--samples", options.samples_path);
+  files.write("--output", options.output_path);
+  files.write("--output", options.output_path + ".active");
+  files.requireSeparate();
+  return options;
 }
 
 void writeBag(const Options& options) {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "command_line.hpp"
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
@@ -224,6 +225,18 @@ void apply(const RawValues& raw, SimulateRecordingOptions& options) {
   options.bag.begin = options.simulation.begin;
 }
 
+/// The recording and its truth must replace nothing that they are made of, and not each other.
+void requireSeparateFiles(const SimulateRecordingOptions& options) {
+  FileRoles files;
+  files.read("--actuator", options.actuator_path);
+  files.read("--truth-in", options.truth_in_path);
+  files.read("--plan", options.plan_path);
+  files.write("--output", options.output_path);
+  files.write("--output", options.output_path + ".active");
+  files.write("--truth-out", options.truth_path);
+  files.requireSeparate();
+}
+
 }  // namespace
 
 std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
@@ -250,6 +263,7 @@ std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
     requireNoOtherPlan(line);
   }
   apply(raw, options);
+  requireSeparateFiles(options);
   return options;
 }
 

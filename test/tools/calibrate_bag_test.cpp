@@ -362,6 +362,7 @@ TEST_F(CalibrateBag, RefusesBadUsage) {
   expectRefusal(good + " --output " + output(), "--output");
   expectRefusal(good + " --date yesterday", "--date: \"yesterday\" is not of the form");
   expectRefusal(good + " --urdf-template x.urdf", "--urdf-template serves --urdf only");
+  expectRefusal("--force --output in.bag in.bag", "--output: in.bag is the file that BAG reads");
 }
 
 TEST_F(CalibrateBag, RefusesFilesThatItCannotRead) {
