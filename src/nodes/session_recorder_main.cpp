@@ -12,9 +12,12 @@
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 #include "spherical_actuator_calibration/ros/recording/session_recorder.hpp"
 
+#include <malloc.h>
+
 namespace {
 
-constexpr double kLookPeriod = 1.0;  // [s]
+constexpr double kLookPeriod = 1.0;      // [s]
+constexpr int kLargeBlock = 128 * 1024;  // [byte]
 
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
@@ -27,7 +30,7 @@ void record(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   const std::string output = map.nonEmptyText("output");
   const std::vector<std::string> topics = wordsOf(map.nonEmptyText("topics"));
   map.finish();
-  const sac::SessionRecorder recorder(node, topics, output);
+  sac::SessionRecorder recorder(node, topics, output);
   const ros::WallTimer look = node.createWallTimer(ros::WallDuration(kLookPeriod),
                                                    [&](const ros::WallTimerEvent& /*event*/) {
                                                      const std::string failure = recorder.failure();
@@ -36,11 +39,14 @@ void record(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
                                                      }
                                                    });
   sac::spinUntilTermination();
+  recorder.finish();
 }
 
 }  // namespace
 
 /// scripts/record_session starts it.
 int main(int argc, char** argv) {
+  // Set, it stays: else memory of long messages that are gone would be kept for others.
+  ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
   return sac::runNode(argc, argv, "session_recorder", record);
 }

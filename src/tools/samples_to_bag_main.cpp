@@ -1,17 +1,22 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <rosbag/bag.h>
 
 #include "command_line.hpp"
 #include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/recording/bag_closing.hpp"
 #include "tool_main.hpp"
 
 namespace sac {
@@ -52,12 +57,10 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   return options;
 }
 
-void writeBag(const Options& options) {
-  const Actuator actuator = loadActuator(options.actuator_path);
-  const std::vector<Sample> samples = loadSamples(options.samples_path, actuator.coils.size());
-  requireNewFile(options.output_path, options.overwrite);
-  const std::string active_path = options.output_path + ".active";
-  rosbag::Bag bag(active_path, rosbag::bagmode::Write);
+void writeSamples(const Options& options,
+                  const Actuator& actuator,
+                  const std::vector<Sample>& samples,
+                  rosbag::Bag& bag) {
   ros::Time stamp(kFirstStamp);
   msg::ActuatorParameters parameters = parametersToRos(actuator);
   parameters.header.stamp = stamp;
@@ -71,7 +74,24 @@ void writeBag(const Options& options) {
     bag.write(options.ns + "/samples", stamp, message);
     stamp += ros::Duration(kSampleSpacing);
   }
-  bag.close();
+}
+
+void writeBag(const Options& options) {
+  const Actuator actuator = loadActuator(options.actuator_path);
+  const std::vector<Sample> samples = loadSamples(options.samples_path, actuator.coils.size());
+  requireNewFile(options.output_path, options.overwrite);
+  const std::string active_path = options.output_path + ".active";
+  auto bag = std::make_unique<rosbag::Bag>();
+  try {
+    bag->open(active_path, rosbag::bagmode::Write);
+    writeSamples(options, actuator, samples, *bag);
+    bag->close();
+  } catch (const std::exception& error) {
+    closeBag(bag);
+    std::error_code ignored;
+    std::filesystem::remove(active_path, ignored);
+    throw DataError(options.output_path + ": cannot be written: " + error.what() + ".");
+  }
   std::filesystem::rename(active_path, options.output_path);
   std::printf("%s: %zu samples\n", options.output_path.c_str(), samples.size());
 }

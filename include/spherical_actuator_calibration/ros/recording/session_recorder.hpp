@@ -1,6 +1,5 @@
 #pragma once
 
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -8,18 +7,20 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
-#include <rosbag/bag.h>
+
+#include "spherical_actuator_calibration/ros/recording/recording_writer.hpp"
 
 namespace sac {
 
 /// Keeps a bag of topics of any type. Unlike `rosbag record`, whose queues hold 100 messages, it
 /// loses none of a fast stream while the computer is busy for seconds: what the calibration node
-/// got is in the recording.
+/// got is in the recording. Messages that are longer than any reader takes, or more than the disk
+/// takes, are left out with a warning.
 ///
-/// The bag has the ending .bag.active until it is closed, by the destructor.
+/// The bag has the ending .bag.active until it is closed, by finish() or the destructor.
 class SessionRecorder {
  public:
-  /// Records what comes from now on, in a thread of its own. Throws DataError, naming the file,
+  /// Records what comes from now on, in threads of its own. Throws DataError, naming the file,
   /// when the bag cannot be written or exists already.
   SessionRecorder(const ros::NodeHandle& node,
                   const std::vector<std::string>& topics,
@@ -29,16 +30,13 @@ class SessionRecorder {
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
   /// What went wrong: a full disk, say. Empty while nothing has.
-  std::string failure() const;
+  std::string failure() const { return writer_.failure(); }
+
+  /// Ends the recording. Throws DataError with failure().
+  void finish();
 
  private:
-  template <typename Event>
-  void write(const std::string& topic, const Event& event);
-
-  std::string path_;
-  rosbag::Bag bag_;
-  mutable std::mutex mutex_;  ///< of failure_
-  std::string failure_;
+  RecordingWriter writer_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   std::vector<ros::Subscriber> subscribers_;
