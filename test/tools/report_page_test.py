@@ -227,7 +227,7 @@ class ReportPage(unittest.TestCase):
     def test_refuses_what_is_no_report(self):
         page = os.path.join(self.folder.name, "none.html")
         for content, part in (
-            ("calibration_report: [", "cannot be read"),
+            ("calibration_report: [", "this is not valid YAML"),
             ("{a: 1}", "not the report of a calibration"),
             ("calibration_report: {actuator: a}", "of another version of this package, or damaged"),
         ):

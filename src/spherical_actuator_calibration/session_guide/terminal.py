@@ -2,6 +2,8 @@
 
 import sys
 
+from spherical_actuator_calibration.text_files import printable
+
 
 class Terminal:
     """Writes to a stream; a progress line is written over in a terminal, and left out elsewhere."""
@@ -23,7 +25,7 @@ class Terminal:
 
     def say(self, sentence):
         self._clear_line()
-        self._write(sentence + "\n")
+        self._write(printable(sentence) + "\n")
         self._last = sentence
 
     def say_once(self, sentence):
@@ -35,8 +37,8 @@ class Terminal:
         if not self._stream.isatty():
             return
         self._clear_line()
-        self._line = text
-        self._write(text)
+        self._line = printable(text)
+        self._write(self._line)
 
     def ask(self, question):
         """Waits for the return key."""
@@ -44,5 +46,5 @@ class Terminal:
         if self._assume_yes:
             self.say(question)
             return
-        self._write(question + " Then press Return. ")
+        self._write(printable(question) + " Then press Return. ")
         sys.stdin.readline()

@@ -4,10 +4,10 @@ import os
 
 import genpy
 import rosbag
-import yaml
 from std_msgs.msg import String
 
 from spherical_actuator_calibration.msg import ActuatorParameters
+from spherical_actuator_calibration.text_files import parsed_yaml, read_text, read_yaml, require_separate_files
 
 from .sample_messages import SPACING, SampleTable
 from .stream_messages import streams_of
@@ -16,29 +16,15 @@ from .table import TableError
 LARGEST = 1 << 24  # [bytes] of a YAML file
 
 
-def load(path):
-    """Text and content of a YAML file."""
-    try:
-        with open(path, "rb") as file:
-            text = file.read(LARGEST + 1)
-        if len(text) > LARGEST:
-            raise TableError(f"{path}: is larger than {LARGEST} bytes.")
-        return text.decode("utf-8"), yaml.safe_load(text)
-    except OSError as error:
-        raise TableError(f"{path}: cannot be read: {error.strerror}.") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
-        mark = getattr(error, "problem_mark", None)
-        raise TableError(f"{path}{f':{mark.line + 1}' if mark else ''}: this is not valid YAML.") from error
-
-
 class Recording:
     """A bag that appears when it is whole."""
 
     def __init__(self, path, ns, actuator_path):
-        self._path = path
+        self.path = path
         self._active = path + ".active"
         self._prefix = "/" + ns.strip("/") + "/" if ns.strip("/") else "/"
-        self._text, content = load(actuator_path)
+        self._text = read_text(actuator_path, LARGEST)
+        content = parsed_yaml(self._text, actuator_path)
         if not isinstance(content, dict) or not isinstance(content.get("actuator"), dict):
             raise TableError(f"{actuator_path}: it is no description: the key actuator is missing.")
         self.actuator = content["actuator"]
@@ -46,21 +32,27 @@ class Recording:
         are_maps = isinstance(joints, list) and all(isinstance(joint, dict) for joint in joints)
         if not isinstance(self.actuator.get("name"), str) or not (are_maps and all("name" in joint for joint in joints)):
             raise TableError(f"{actuator_path}: it is no description: actuator and joints need names.")
+        if not isinstance(self.actuator.get("coils", []), list):
+            raise TableError(f"{actuator_path}: it is no description: coils is no list.")
         self._bag = None
 
     def __enter__(self):
         try:
             self._bag = rosbag.Bag(self._active, "w")
         except OSError as error:
-            raise TableError(f"{self._path}: cannot be written: {error.strerror}.") from error
+            raise TableError(f"{self.path}: cannot be written: {error.strerror}.") from error
         return self
 
     def __exit__(self, kind, _error, _trace):
         self._bag.close()
         if kind is None:
-            os.replace(self._active, self._path)
+            os.replace(self._active, self.path)
         else:
             os.unlink(self._active)
+
+    def files(self):
+        """That it writes, and by which option."""
+        return [("--output", self.path), ("--output", self._active)]
 
     def write(self, topic, stamp, message):
         self._bag.write(self._prefix + topic, message, stamp)
@@ -93,7 +85,8 @@ def record_samples(recording, path):
 
 def record_streams(recording, path):
     """Writes the streams that a YAML file describes; returns what was written, in words."""
-    streams = streams_of(path, load(path)[1], recording.actuator)
+    streams = streams_of(path, read_yaml(path, LARGEST), recording.actuator)
+    require_separate_files([(path, stream.path) for stream in streams], recording.files())
     lines = []
     with recording:
         described = False

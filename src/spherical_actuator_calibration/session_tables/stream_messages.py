@@ -61,8 +61,8 @@ class Stream:
         unknown = set(entry) - KEYS - FURTHER_KEYS[self.topic]
         if unknown:
             self._fail(sorted(map(str, unknown))[0], f"a stream {self.topic} has no such key.")
-        path = os.path.join(folder, self._get("file", str))
-        self._table = Table(path, self._get("headings", int, 1), self._separator())
+        self.path = os.path.join(folder, self._get("file", str))
+        self._table = Table(self.path, self._get("headings", int, 1), self._separator())
         self._time, self._time_factor, self._offset = self._time_column()
         self._columns, self._factors = self._value_columns("values", self._width(), UNIT_OF[self.topic], "unit")
         self.left_out = 0

@@ -4,6 +4,8 @@ import csv
 import io
 import math
 
+from spherical_actuator_calibration.text_files import read_bytes
+
 from .columns import UNITS
 
 LARGEST = 1 << 30  # [bytes] of a file
@@ -81,14 +83,7 @@ class Table:
         self.titles = [title.strip() or f"column {number}" for number, title in enumerate(self.titles, 1)]
 
     def _read(self, headings, separator):
-        try:
-            with open(self.path, "rb") as file:
-                content = file.read(LARGEST + 1)
-        except OSError as error:
-            raise TableError(f"{self.path}: cannot be read: {error.strerror}.") from error
-        if len(content) > LARGEST:
-            raise TableError(f"{self.path}: is larger than {LARGEST} bytes.")
-        text = content.decode("utf-8-sig", errors="replace")
+        text = read_bytes(self.path, LARGEST).decode("utf-8-sig", errors="replace")
         csv.field_size_limit(LONGEST_TEXT)
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
         while True:

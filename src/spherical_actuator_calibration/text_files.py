@@ -1,0 +1,173 @@
+"""Text that comes from outside: files that are read whole, YAML documents of bounded size, and what a terminal shows.
+
+The rules are those of the programs in C++ (readInputFile(), YamlMap, printable()).
+"""
+
+import os
+import re
+import stat
+import sys
+
+import yaml
+
+LARGEST = 64 << 20  # [bytes] of a text file
+DEEPEST = 64  # maps and lists within each other
+MOST_NODES = 1_000_000  # of a document; an alias counts as much as what it stands for
+LONGEST_NUMBER = 1024  # [characters]; Python needs the square of it
+KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"))
+# Obeyed by terminals, or no character at all: bytes of a file name that are no UTF-8 are surrogates.
+NOT_SHOWN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
+
+
+class TextFileError(ValueError):
+    """What is wrong with a file, in a sentence that names it."""
+
+
+def printable(text):
+    """Text that a terminal shows and does not obey: control characters but line feed and tab become "\\x1b"."""
+    return NOT_SHOWN.sub(_escaped, str(text))
+
+
+def _escaped(match):
+    errors = "surrogateescape" if "\udc80" <= match[0] <= "\udcff" else "surrogatepass"
+    return "".join(f"\\x{byte:02x}" for byte in match[0].encode("utf-8", errors))
+
+
+def tell_error(program, sentence):
+    """Says on the standard error why a program ends."""
+    print(f"{program}: {printable(sentence)}", file=sys.stderr)
+
+
+def read_bytes(path, largest=LARGEST):
+    """Content of a regular file: a FIFO would wait for ever, a device never end. Raises TextFileError."""
+    try:
+        with open(path, "rb", opener=_opened) as file:
+            content = file.read(largest + 1)
+    except TextFileError:
+        raise
+    except (OSError, ValueError) as error:
+        raise TextFileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}.") from error
+    if len(content) > largest:
+        raise TextFileError(f"{path}: is larger than {largest} bytes, the most that is read of such a file.")
+    return content
+
+
+def _opened(path, flags):
+    """Descriptor of a regular file."""
+    # Not blocking: opening a FIFO would wait for somebody who writes.
+    descriptor = os.open(path, flags | os.O_NONBLOCK | os.O_NOCTTY)
+    mode = os.fstat(descriptor).st_mode
+    if not stat.S_ISREG(mode):
+        os.close(descriptor)
+        kind = next((name for is_kind, name in KINDS if is_kind(mode)), "a device")
+        raise TextFileError(f"{path}: is {kind}, not a file.")
+    return descriptor
+
+
+def read_text(path, largest=LARGEST):
+    """The same as text in UTF-8."""
+    content = read_bytes(path, largest)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise TextFileError(f"{path}:{line}: a byte {content[error.start]:#04x} is no text in UTF-8.") from error
+
+
+def read_yaml(path, largest=LARGEST):
+    """Content of the one document of a YAML file."""
+    return parsed_yaml(read_text(path, largest), path)
+
+
+def parsed_yaml(text, path):
+    """The same of a text; `path` names it in errors. Its size is known before anything is built of it."""
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        _Census(path).take(yaml.parse(text, Loader=loader))
+        return yaml.load(text, Loader=loader)
+    except TextFileError:
+        raise
+    # Of tags and numbers that are none, PyYAML raises whatever Python does.
+    except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, OverflowError, RecursionError) as error:
+        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+        place = f":{mark.line + 1}" if mark else ""
+        problem = getattr(error, "problem", None) or (str(error) if isinstance(error, ValueError) else "")
+        words = f": {' '.join(problem.split())[:200]}" if problem else ""
+        raise TextFileError(f"{path}{place}: this is not valid YAML{words}.") from error
+
+
+class _Census:
+    """Counts what a document would be made of."""
+
+    def __init__(self, path):
+        self._path = path
+        self._nodes = 0
+        self._open = []  # anchor and number of nodes before, of each map or list that has begun
+        self._sizes = {}  # by anchor
+
+    def take(self, events):
+        """Raises TextFileError for what is not to be built."""
+        documents = 0
+        for event in events:
+            if isinstance(event, yaml.ScalarEvent):
+                self._take_scalar(event)
+            elif isinstance(event, yaml.CollectionStartEvent):
+                self._begin(event)
+            elif isinstance(event, yaml.CollectionEndEvent):
+                anchor, before = self._open.pop()
+                self._sizes[anchor] = self._nodes - before
+            elif isinstance(event, yaml.AliasEvent):
+                if any(anchor == event.anchor for anchor, _ in self._open):
+                    self._fail(event, "an alias stands within what it is an alias of.")
+                self._count(event, self._sizes.get(event.anchor, 1))
+            elif isinstance(event, yaml.DocumentStartEvent):
+                documents += 1
+                if documents > 1:
+                    self._fail(event, "a second document begins here; one file holds one.")
+
+    def _take_scalar(self, event):
+        self._count(event, 1)
+        if len(event.value) > LONGEST_NUMBER and event.implicit[0] and event.value[0] in "+-.0123456789":
+            self._fail(event, f"a number has more than {LONGEST_NUMBER} digits.")
+        if event.anchor is not None:
+            self._sizes[event.anchor] = 1
+
+    def _begin(self, event):
+        self._open.append((event.anchor, self._nodes))
+        if len(self._open) > DEEPEST:
+            self._fail(event, f"maps and lists stand more than {DEEPEST} deep within each other.")
+        self._count(event, 1)
+
+    def _count(self, event, nodes):
+        self._nodes += nodes
+        if self._nodes > MOST_NODES:
+            self._fail(event, f"there are more than {MOST_NODES} values, names and lists.")
+
+    def _fail(self, event, sentence):
+        raise TextFileError(f"{self._path}:{event.start_mark.line + 1}: {sentence}")
+
+
+def require_separate_files(read, written):
+    """Raises TextFileError when a file has two roles, by whatever names. Both are lists of an option and its path, or
+    None; --force lets a file be replaced, but never what the same run reads, or writes already."""
+    taken = [(_identity(path), option, "reads") for option, path in read if path]
+    for option, path in written:
+        identity = _identity(path) if path else None
+        for other, name, verb in taken:
+            if identity is not None and identity == other:
+                raise TextFileError(f"{option}: {path} is the file that {name} {verb}; choose another name.")
+        taken.append((identity, option, "writes"))
+
+
+def _identity(path):
+    """The same for all names of a file, also of one that is not there yet; None where nothing can be."""
+    try:
+        status = os.stat(path)
+        return status.st_dev, status.st_ino, ""
+    except (OSError, ValueError):
+        pass
+    try:
+        folder = os.stat(os.path.dirname(path) or ".")
+        return folder.st_dev, folder.st_ino, os.path.basename(path)
+    except (OSError, ValueError):
+        return None

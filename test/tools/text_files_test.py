@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+"""Readers in Python take what comes from outside as those in C++ do: bounded, regular, and nothing obeys a terminal."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from spherical_actuator_calibration.text_files import (
+    TextFileError,
+    parsed_yaml,
+    printable,
+    read_text,
+    read_yaml,
+    require_separate_files,
+)
+
+PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+ACTUATOR = SOURCE / "config" / "pm_spherical_8x24.yaml"
+PATIENCE = 300.0  # [s] for what must end by itself, on however busy a computer
+HOSTILE = {
+    "deep_lists.yaml": "- " * 200000 + "1",
+    "deep_flow.yaml": "[" * 100000,
+    "deep_maps.yaml": "".join(f"{' ' * n}a:\n" for n in range(300)),
+    "aliases.yaml": "a0: &a0 [1, 1]\n" + "".join(f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}]\n" for n in range(1, 40)),
+    "itself.yaml": "a: &a [*a]\n",
+    "two.yaml": "a: 1\n---\na: 2\n",
+    "digits.yaml": "a: " + "9" * 100000 + "\n",
+    "day.yaml": "a: 2024-99-99\n",
+    "escape.yaml": "a: \x1b[31m\n",
+    "many.yaml": "".join(f"k{n}: {n}\n" for n in range(600000)),
+}
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def refusal(self, action, *arguments):
+        with self.assertRaises(TextFileError) as caught:
+            action(*arguments)
+        return str(caught.exception)
+
+
+class TextFiles(Folder):
+    def test_only_regular_files_are_read(self):
+        os.mkfifo(self.folder / "fifo")
+        self.assertIn("is a FIFO, not a file.", self.refusal(read_text, self.folder / "fifo"))
+        self.assertIn("is a device, not a file.", self.refusal(read_text, "/dev/zero"))
+        self.assertIn("is a folder, not a file.", self.refusal(read_text, self.folder))
+        self.assertIn("cannot be read: No such file", self.refusal(read_text, self.folder / "none"))
+        self.assertIn("cannot be read: ", self.refusal(read_text, "a\0b"))
+
+    def test_size_and_encoding_are_told(self):
+        path = self.folder / "a.yaml"
+        path.write_bytes(b"12345")
+        self.assertEqual(read_text(path, 5), "12345")
+        self.assertIn("is larger than 4 bytes", self.refusal(read_text, path, 4))
+        path.write_bytes(b"a: 1\nb: \xff\n")
+        self.assertIn("a.yaml:2: a byte 0xff is no text in UTF-8.", self.refusal(read_text, path))
+
+    def test_documents_that_cost_more_than_their_text_are_refused(self):
+        for name, text in HOSTILE.items():
+            with self.subTest(name):
+                (self.folder / name).write_text(text, encoding="utf-8")
+                said = self.refusal(read_yaml, self.folder / name)
+                self.assertTrue(said.startswith(str(self.folder / name)), said)
+                self.assertNotIn("\x1b", said)
+
+    def test_documents_are_read(self):
+        self.assertEqual(parsed_yaml("", "a"), None)
+        self.assertEqual(parsed_yaml("a: &x [1, 2.5]\nb: *x\n", "a"), {"a": [1, 2.5], "b": [1, 2.5]})
+        self.assertEqual(parsed_yaml("[" * 64 + "]" * 64, "a")[0][0], parsed_yaml("[" * 62 + "]" * 62, "a"))
+        self.assertIn("a:1: maps and lists stand more than 64", self.refusal(parsed_yaml, "[" * 65 + "]" * 65, "a"))
+
+    def test_terminals_are_not_obeyed(self):
+        self.assertEqual(printable("a\tb\nä €"), "a\tb\nä €")
+        self.assertEqual(printable("\x1b[31m\r\x7f\x9b"), "\\x1b[31m\\x0d\\x7f\\xc2\\x9b")
+        self.assertEqual(printable(os.fsdecode(b"a\xff") + "\ud800"), "a\\xff\\xed\\xa0\\x80")
+
+    def test_one_file_has_one_role(self):
+        path = self.folder / "in.csv"
+        path.write_text("1", encoding="utf-8")
+        os.link(path, self.folder / "hard.csv")
+        os.symlink(path, self.folder / "soft.csv")
+        for name in ("in.csv", "hard.csv", "soft.csv"):
+            output = self.folder / name
+            said = self.refusal(require_separate_files, [("SAMPLES.csv", path)], [("--output", output)])
+            self.assertEqual(said, f"--output: {output} is the file that SAMPLES.csv reads; choose another name.")
+        both = [("--a", self.folder / "new"), ("--b", f"{self.folder}/./new")]
+        self.assertIn("--b: ", self.refusal(require_separate_files, [], both))
+        require_separate_files([("--x", path), ("--y", None)], [("--output", self.folder / "new"), ("--b", None)])
+
+
+class Programs(Folder):
+    """Each ends with status 2 and one sentence of printable text."""
+
+    def expect_refusal(self, name, *arguments, part=""):
+        command = [str(argument) for argument in (PROGRAMS / name, *arguments)]
+        outcome = subprocess.run(
+            command, capture_output=True, text=True, check=False, cwd=self.folder, timeout=PATIENCE
+        )
+        self.assertEqual(outcome.returncode, 2, outcome.stdout + outcome.stderr)
+        self.assertTrue(outcome.stderr.startswith(f"{name}: "), outcome.stderr)
+        self.assertEqual(outcome.stderr.count("\n"), 1, outcome.stderr)
+        self.assertNotIn("\x1b", outcome.stdout + outcome.stderr)
+        self.assertIn(part, outcome.stderr)
+
+    def test_fifos_and_devices(self):
+        os.mkfifo(self.folder / "fifo")
+        for path in ("fifo", "/dev/zero"):
+            self.expect_refusal("import_csv", "--actuator", path, "--output", "o.bag", "s.csv", part="not a file")
+            self.expect_refusal("import_csv", "--actuator", ACTUATOR, "--output", "o.bag", path, part="not a file")
+            self.expect_refusal("render_report", path, "o.html", part="not a file")
+        arguments = ("--actuator", ACTUATOR, "--output", "o.bag", "--streams", "fifo")
+        self.expect_refusal("import_csv", *arguments, part="not a file")
+        self.expect_refusal("plot_study", "fifo", "o.png", part="not a file")
+        self.expect_refusal("plot_tracking", "o.png", "fifo", part="not a file")
+
+    def test_nested_documents(self):
+        for name in ("deep_lists.yaml", "deep_flow.yaml"):
+            (self.folder / name).write_text(HOSTILE[name], encoding="utf-8")
+            self.expect_refusal("import_csv", "--actuator", name, "--output", "o.bag", "s.csv", part="64 deep")
+            self.expect_refusal("render_report", name, "o.html", part="64 deep")
+        self.expect_refusal("plot_study", "deep_lists.yaml", "o.png", part="64 deep")
+
+    def test_control_characters_of_names_and_headings(self):
+        (self.folder / "s.csv").write_text("joint_1,\x1b[31mjoint_2\n", encoding="utf-8")
+        self.expect_refusal("import_csv", "--actuator", ACTUATOR, "--output", "o.bag", "s.csv", part="\\x1b[31m")
+        self.expect_refusal("render_report", "\x1b[31m.yaml", "o.html", part="\\x1b[31m")
+        self.expect_refusal("export_session", "\x1b[31m.db", "o", part="\\x1b[31m")
+
+    def test_inputs_are_not_replaced(self):
+        (self.folder / "s.csv").write_text("joint_1,joint_2,joint_3\n0,0,0\n", encoding="utf-8")
+        arguments = ("--actuator", ACTUATOR, "--force", "--output", "s.csv", "s.csv")
+        self.expect_refusal("import_csv", *arguments, part="--output: s.csv is the file that SAMPLES.csv reads")
+        self.expect_refusal("plot_study", "s.csv", "s.csv", part="PLOT.png: s.csv is the file that STUDY.yaml reads")
+
+
+if __name__ == "__main__":
+    unittest.main()
