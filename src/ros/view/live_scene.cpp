@@ -33,7 +33,8 @@ std::vector<std::optional<double>> stddevsOf(const Axes& axes) {
 
 }  // namespace
 
-LiveScene::LiveScene(CalibrationScene start) : scene_(std::move(start)) {
+LiveScene::LiveScene(CalibrationScene start)
+    : scene_(std::move(start)), samples_(scene_.nominal.coils.size()) {
   scene_.identified = scene_.nominal;
 }
 

@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/ros/view/sample_mirror.hpp"
 
+#include <string>
 #include <utility>
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -30,9 +32,30 @@ bool hasFewer(const std::vector<std::uint32_t>& before, const std::vector<std::u
 }  // namespace
 
 void SampleMirror::receive(const msg::CalibrationSample& message) {
-  samples_[message.id] = message;
+  if (!fits(message)) {
+    throw DataError("it has " + std::to_string(message.current.size()) +
+                    " currents, and the actuator " + std::to_string(coils_) + " coils");
+  }
+  keep(message);
   recent_.insert(message.id);
+  while (recent_.size() > kMost) {
+    recent_.erase(recent_.begin());
+  }
   changed_ = true;
+}
+
+bool SampleMirror::fits(const msg::CalibrationSample& message) const {
+  return message.current.empty() || message.current.size() == coils_;
+}
+
+void SampleMirror::keep(const msg::CalibrationSample& message) {
+  msg::CalibrationSample& sample = samples_[message.id];
+  sample = message;
+  // As long as whoever sends it likes.
+  sample.header.frame_id.clear();
+  while (samples_.size() > kMost) {
+    samples_.erase(samples_.begin());
+  }
 }
 
 void SampleMirror::receive(const msg::CalibrationStatus& message) {
@@ -52,14 +75,18 @@ bool SampleMirror::takeRequest() {
 }
 
 void SampleMirror::set(const std::vector<msg::CalibrationSample>& in_use) {
-  std::map<std::uint32_t, msg::CalibrationSample> samples;
+  const std::map<std::uint32_t, msg::CalibrationSample> before = std::exchange(samples_, {});
   for (const std::uint32_t id : recent_) {
-    samples[id] = samples_[id];
+    const auto found = before.find(id);
+    if (found != before.end()) {
+      keep(found->second);
+    }
   }
   for (const msg::CalibrationSample& sample : in_use) {
-    samples[sample.id] = sample;
+    if (fits(sample)) {
+      keep(sample);
+    }
   }
-  samples_ = std::move(samples);
   changed_ = true;
 }
 
