@@ -93,8 +93,8 @@ class PrintableOutput::Buffer : public std::streambuf {
   int_type overflow(int_type character) override {
     if (!traits_type::eq_int_type(character, traits_type::eof())) {
       pending_.push_back(traits_type::to_char_type(character));
-      if (pending_.back() == '\n') {
-        pass();
+      if (pending_.back() == '\n' && !pass()) {
+        return traits_type::eof();
       }
     }
     return traits_type::not_eof(character);
@@ -102,22 +102,22 @@ class PrintableOutput::Buffer : public std::streambuf {
 
   std::streamsize xsputn(const char* text, std::streamsize size) override {
     pending_.append(text, static_cast<std::size_t>(size));
-    if (!pending_.empty() && pending_.back() == '\n') {
-      pass();
-    }
-    return size;
+    const bool is_line = !pending_.empty() && pending_.back() == '\n';
+    return is_line && !pass() ? 0 : size;
   }
 
   int sync() override {
-    pass();
-    return target_->pubsync();
+    const bool is_passed = pass();
+    return target_->pubsync() == 0 && is_passed ? 0 : -1;
   }
 
  private:
-  void pass() {
+  /// False when the target does not take it.
+  bool pass() {
     const std::string shown = printable(pending_);
     pending_.clear();
-    target_->sputn(shown.data(), static_cast<std::streamsize>(shown.size()));
+    const auto size = static_cast<std::streamsize>(shown.size());
+    return target_->sputn(shown.data(), size) == size;
   }
 
   std::streambuf* const target_;

@@ -1,5 +1,6 @@
 #include "tool_main.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -16,13 +17,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether all that was printed has arrived: on a full disk, or a closed descriptor, it has not.
+bool isOutputWritten() {
+  std::cout.flush();
+  const bool is_flushed = std::fflush(stdout) == 0;
+  return std::cout.good() && is_flushed && std::ferror(stdout) == 0;
+}
+
 }  // namespace
 
 int runTool(const char* name, const std::function<int()>& body) {
+  // A file that may not grow any more is an error of writing, which is told, and not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
   // Names and sentences from files and recordings come to the terminal.
   const PrintableOutput filter(std::cout);
   try {
-    return body();
+    const int status = body();
+    if (!isOutputWritten()) {
+      std::fprintf(stderr, "%s: the standard output cannot be written.\n", name);
+      return kToolUnusable;
+    }
+    return status;
   } catch (const std::exception& error) {
     std::cout.flush();
     std::fflush(stdout);

@@ -12,7 +12,7 @@ inline constexpr int kToolSuccess = 0;
 inline constexpr int kToolUnusable = 2;
 
 /// The main function of a tool: the status that `body` returns, or kToolUnusable, with "name:
-/// message" on the standard error, when it throws.
+/// message" on the standard error, when it throws, or when what it printed cannot be written.
 int runTool(const char* name, const std::function<int()>& body);
 
 /// Shows the share done on a terminal, "what  37 %", and nothing anywhere else.

@@ -1,0 +1,52 @@
+#include "tool_main.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "support/source_dir.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sac {
+namespace {
+
+/// A program, started by a shell, as people start it.
+class ToolMain : public testing::Test {
+ protected:
+  /// Exit status; -1 when a signal ended it.
+  int run(const std::string& before, const std::string& arguments) {
+    const std::string errors = folder_.path("errors");
+    const std::string command =
+        before + "exec " + SIMULATE_RECORDING + " " + arguments + " 2>" + errors;
+    const int status = std::system(command.c_str());
+    std::ifstream file(errors);
+    errors_ = std::string(std::istreambuf_iterator<char>(file), {});
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  const TemporaryFolder folder_;
+  std::string errors_;
+};
+
+TEST_F(ToolMain, WhatCannotBePrintedIsAnError) {
+  EXPECT_EQ(run("", "--help >/dev/null"), kToolSuccess);
+  EXPECT_EQ(run("", "--help >/dev/full"), kToolUnusable);
+  EXPECT_EQ(errors_, "simulate_recording: the standard output cannot be written.\n");
+}
+
+TEST_F(ToolMain, FilesThatMayNotGrowAreAnError) {
+  const std::string arguments =
+      "--actuator " SOURCE_DIR "/config/pm_spherical_8x24.yaml --output " + folder_.path("s.bag") +
+      " --joint-poses 2 --main-coil-poses 0 --coil-poses 0";
+  EXPECT_EQ(run("ulimit -f 8; ", arguments), kToolUnusable);
+  EXPECT_NE(errors_.find("simulate_recording: " + folder_.path("s.bag") + ": cannot be written"),
+            std::string::npos)
+      << errors_;
+}
+
+}  // namespace
+}  // namespace sac
