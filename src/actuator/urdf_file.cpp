@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
+#include "xml_limits.hpp"
 
 #include <tinyxml2.h>
 
@@ -29,6 +30,11 @@ class RobotDescription {
 
   /// From its text; `name` stands for the file in messages.
   RobotDescription(const std::string& text, const std::string& name) : path_(name) {
+    const std::size_t line = lineOfManyAttributes(text);
+    if (line > 0) {
+      throw ConfigError(path_ + ":" + std::to_string(line) + ": an element has more than " +
+                        std::to_string(kMostAttributes) + " attributes.");
+    }
     require(xml_.Parse(text.c_str(), text.size()));
     understand(urdf::parseURDF(text));
   }

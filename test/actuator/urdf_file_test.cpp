@@ -267,6 +267,23 @@ TEST(UrdfFile, RefusesWhatIsNoRobotDescription) {
             std::string::npos);
 }
 
+TEST(UrdfFile, RefusesElementsWithTooManyAttributes) {
+  const auto said = [](const std::string& begin, int attributes) {
+    std::string text = begin;
+    for (int n = 0; n < attributes; ++n) {
+      text += " a" + std::to_string(n) + "='>\" ='";
+    }
+    text += "/></robot>";
+    return errorMessage<ConfigError>(
+        [&] { renderCalibratedUrdf(text, "r", nominalActuator(), calibratedActuator()); });
+  };
+  const std::string refusal = "r:2: an element has more than 100 attributes.";
+  EXPECT_EQ(said("<robot name=\"r\">\n<link name='l'", 20000), refusal);
+  EXPECT_EQ(said("<robot name=\"r\">\n<link", 101), refusal);
+  EXPECT_EQ(said("<robot><!-- don't > <a --><!x '>\n<?p \"?><![CDATA[ < ' ]]><link", 101), refusal);
+  EXPECT_EQ(said("<robot name=\"r\">\n<link", 100).find("attributes"), std::string::npos);
+}
+
 TEST(UrdfFile, TheShippedRobotFitsTheShippedActuator) {
   const TemporaryFolder folder;
   const Actuator nominal = loadActuator(SOURCE_DIR "/config/pm_spherical_8x24.yaml");
