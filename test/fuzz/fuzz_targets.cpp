@@ -18,6 +18,10 @@ const std::vector<Target>& targets() {
       {"motion", readMotionFile},
       {"plan", readPlanFile},
       {"samples", readSamplesFile},
+      {"table", readTableFile},
+      {"robot", readRobotDescription},
+      {"study", readStudyFile},
+      {"issuer", readIssuerFile},
       {"messages", readMessages},
       {"recording", readRecording},
 #ifdef SESSION_DATABASE

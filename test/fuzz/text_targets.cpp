@@ -4,9 +4,14 @@
 #include <string>
 #include <vector>
 
+#include <console_bridge/console.h>
+
 #include "fuzz/fuzz_targets.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_dimensions.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_certificate.hpp"
+#include "spherical_actuator_calibration/base/csv_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
@@ -16,6 +21,7 @@
 #include "spherical_actuator_calibration/measurement/motion_plan_file.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/study/study_file.hpp"
 
 namespace sac::fuzz {
 namespace {
@@ -30,6 +36,16 @@ void require(bool holds) {
   if (!holds) {
     std::abort();
   }
+}
+
+/// Joints of corpus/robot.
+Actuator drawnJoints() {
+  Actuator actuator;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    actuator.joints[k].name = "joint_" + std::to_string(k + 1);
+    actuator.joints[k].axis = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k));
+  }
+  return actuator;
 }
 
 /// What a reader makes of bytes; nothing when it refuses them in a sentence that can be shown.
@@ -135,6 +151,40 @@ void readSamplesFile(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file(data, size);
   accepted([&] { return loadSamples(file.path(), kCoils); });
   accepted([&] { return loadSamples(file.path(), 0); });
+}
+
+void readTableFile(const std::uint8_t* data, std::size_t size) {
+  constexpr std::size_t kMostRows = 1000;
+  const MemoryFile file(data, size);
+  const auto table = accepted([&] { return loadCsv(file.path(), kMostRows); });
+  if (table) {
+    require(!table->rows.empty() && table->rows.size() <= kMostRows);
+  }
+}
+
+void readRobotDescription(const std::uint8_t* data, std::size_t size) {
+  // urdfdom tells of every input on the standard error what it misses.
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  const Actuator nominal = drawnJoints();
+  const auto text = accepted(
+      [&] { return renderCalibratedUrdf(textOf(data, size), "f.urdf", nominal, nominal); });
+  if (text) {
+    // What is accepted fits the actuator, written again, too.
+    require(renderCalibratedUrdf(*text, "g.urdf", nominal, nominal) == *text);
+  }
+}
+
+void readStudyFile(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile file(data, size);
+  const auto study = accepted([&] { return loadStudy(file.path()); });
+  if (study) {
+    accepted([&] { return renderStudy(*study); });
+  }
+}
+
+void readIssuerFile(const std::uint8_t* data, std::size_t size) {
+  const MemoryFile file(data, size);
+  accepted([&] { return loadCertificateIssuer(file.path()); });
 }
 
 }  // namespace sac::fuzz
