@@ -127,14 +127,14 @@ std::string CoilDriver::tryToDisable() {
   return failure;
 }
 
-std::string CoilDriver::stop() {
+std::string CoilDriver::stop(double now) {
   supervisor_.close();
   forget();
   std::string failure = tryToDisable();
   try {
     allowOneBeat();
     transport_.open();
-    measure(last_beat_.value_or(0.0));
+    measure(now);
   } catch (const Error& error) {
     transport_.close();
     return error.what();

@@ -20,6 +20,10 @@ constexpr int kMostFaults = 3;
 /// Watchdogs of amplifiers take longer [s].
 constexpr double kOwnZero = 0.2;
 
+/// Zeros that confirm that there is no current, and how long they last at least [s].
+constexpr int kConfirmingZeros = 5;
+constexpr double kConfirmingTime = 0.025;
+
 std::string withTwoDigits(double value) {
   return format("%.2f", value);
 }
@@ -35,12 +39,7 @@ void validate(const SupervisorLimits& limits) {
 }
 
 CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils)
-    : limits_(limits),
-      coils_(coils),
-      setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))),
-      lowest_(setpoints_),
-      highest_(setpoints_),
-      deviating_(coils, 0) {
+    : limits_(limits), coils_(coils), comparison_(coils, limits.deviation, limits.deviating_beats) {
   validate(limits);
 }
 
@@ -136,10 +135,9 @@ void CurrentSupervisor::close() {
 
 void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  setpoints_ = setpoints;
-  lowest_ = lowest_.cwiseMin(setpoints);
-  highest_ = highest_.cwiseMax(setpoints);
+  comparison_.setting(setpoints);
   if (!setpoints.isZero(0.0)) {
+    zeros_ = 0;
     zero_confirmed_ = false;
   }
 }
@@ -147,30 +145,28 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
 void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
-  const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
-  // Current that flows though zero is set is no longer confirmed to be zero.
-  zero_confirmed_ = !flows && setpoints_.isZero(0.0);
-  if (fault_.empty()) {
-    compare(measured);
-    fault_at_ = steady;
-  } else {
+  countZeros(measured, steady);
+  const std::optional<std::size_t> deviating = comparison_.observe(measured, steady);
+  if (!fault_.empty()) {
     watchZero(steady);
     endFault();
+    return;
   }
-  lowest_ = setpoints_;
-  highest_ = setpoints_;
+  fault_at_ = steady;
+  if (deviating) {
+    fail(*deviating, measured[static_cast<Eigen::Index>(*deviating)]);
+  }
 }
 
-void CurrentSupervisor::compare(const Eigen::VectorXd& measured) {
-  for (std::size_t coil = 0; coil < coils_; ++coil) {
-    const auto index = static_cast<Eigen::Index>(coil);
-    const double beyond =
-        std::max(lowest_[index] - measured[index], measured[index] - highest_[index]);
-    deviating_[coil] = beyond > limits_.deviation ? deviating_[coil] + 1 : 0;
-    if (fault_.empty() && deviating_[coil] >= limits_.deviating_beats) {
-      fail(coil, measured[index]);
-    }
+void CurrentSupervisor::countZeros(const Eigen::VectorXd& measured, double steady) {
+  const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
+  zeros_ = flows || !comparison_.setpoints().isZero(0.0) ? 0 : zeros_ + 1;
+  if (zeros_ == 1) {
+    zero_since_ = steady;
   }
+  // Current that flows though zero is set is no longer confirmed to be zero; nor is one that only
+  // passes it.
+  zero_confirmed_ = zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime;
 }
 
 void CurrentSupervisor::fail(std::size_t coil, double measured) {
@@ -179,13 +175,13 @@ void CurrentSupervisor::fail(std::size_t coil, double measured) {
   obeyed_ = false;
   zero_commanded_ = false;
   fault_ = "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
-           " A where " + withTwoDigits(setpoints_[static_cast<Eigen::Index>(coil)]) +
+           " A where " + withTwoDigits(comparison_.setpoints()[static_cast<Eigen::Index>(coil)]) +
            " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
            "Switch it off, look after it and its wires, then start the driver anew";
 }
 
 void CurrentSupervisor::watchZero(double steady) {
-  if (!zero_confirmed_) {
+  if (!isZeroNow()) {
     zero_beats_ = 0;
     obeyed_ = false;
     return;
@@ -200,7 +196,7 @@ void CurrentSupervisor::endFault() {
   const bool has_ended = obeyed_ && zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
   if (has_ended && faults_ < kMostFaults) {
     fault_.clear();
-    std::fill(deviating_.begin(), deviating_.end(), 0);
+    comparison_.forgive();
   }
 }
 
@@ -233,8 +229,8 @@ std::string CurrentSupervisor::unconfirmedReason() const {
     return "no current was ever measured";
   }
   const double largest = measured_->cwiseAbs().maxCoeff();
-  return "the last measurement has a current of " + withTwoDigits(largest) +
-         " A, and no zero came after it";
+  return "the last measurement has a current of up to " + withTwoDigits(largest) +
+         " A, and no zeros for " + format("%.3f", kConfirmingTime) + " s came after it";
 }
 
 }  // namespace sac

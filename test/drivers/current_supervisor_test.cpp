@@ -160,10 +160,12 @@ struct Flow {
 
 std::string faultAfter(const std::vector<Flow>& flows) {
   CurrentSupervisor supervisor(limits(), 2);
+  double now = 10.0;
   for (const Flow& flow : flows) {
     for (int n = 0; n < flow.beats; ++n) {
+      now += 0.005;
       supervisor.setting(amperes(flow.set));
-      supervisor.observe(amperes(flow.measured), 0.0);
+      supervisor.observe(amperes(flow.measured), now);
     }
   }
   return supervisor.fault();
@@ -172,8 +174,10 @@ std::string faultAfter(const std::vector<Flow>& flows) {
 TEST(CurrentSupervisor, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
   EXPECT_EQ(faultAfter({{1.0, 1.1, 100}}), "");
   EXPECT_EQ(faultAfter({{0.0, 2.0, 3}}), "");
-  EXPECT_EQ(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0}, {0.0, 2.0, 3}}), "");
-  for (const Flow& flow : {Flow{0.0, 2.0, 4}, Flow{1.0, 0.0, 5}, Flow{1.0, -1.0, 4}}) {
+  // A zero between them takes nothing back that counts.
+  EXPECT_NE(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0}, {0.0, 2.0, 3}}), "");
+  EXPECT_EQ(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0, 24}, {0.0, 2.0, 3}}), "");
+  for (const Flow& flow : {Flow{0.0, 2.0, 4}, Flow{1.0, 0.0, 40}, Flow{1.0, -1.0, 4}}) {
     EXPECT_NE(faultAfter({flow}), "") << flow.set << ' ' << flow.measured;
   }
   const std::string fault = faultAfter({{0.0, 2.0, 4}, {0.0, 0.0, 100}});
@@ -195,7 +199,7 @@ TEST(CurrentSupervisor, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
             "");
   // Beyond both, and what was set once does not excuse what flows for long.
   EXPECT_NE(faultAfter({{2.0, 0.0}, {0.0, 2.3}, {2.0, -0.3}, {0.0, 2.3}, {2.0, 2.3}}), "");
-  EXPECT_NE(faultAfter({{2.0, 2.0}, {0.0, 2.0, 5}}), "");
+  EXPECT_NE(faultAfter({{2.0, 2.0}, {0.0, 2.0, 40}}), "");
 }
 
 /// A supervisor in a fault, by a current in the second coil.
@@ -276,9 +280,9 @@ TEST_F(FaultOfCurrents, StaysWhereTheAmplifierDidNotObeyByItself) {
 TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
   CurrentSupervisor supervisor(limits(), 2);
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
-  for (const double measured : {2.0, 0.0}) {
+  for (const double now : {10.0, 10.1}) {
     for (int n = 0; n < 4; ++n) {
-      supervisor.observe(amperes(measured), 0.0);
+      supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n);
     }
   }
   EXPECT_NE(supervisor.fault(), "");
@@ -301,31 +305,56 @@ TEST_F(FaultOfCurrents, StaysTheThirdTime) {
 TEST(CurrentSupervisor, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
   for (int n = 0; n < 4; ++n) {
-    supervisor.observe(amperes(0.0, 2.0), 0.0);
+    supervisor.observe(amperes(0.0, 2.0), 0.005 * n);
   }
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
   EXPECT_FALSE(supervisor.command(10.0));
   EXPECT_NE(supervisor.zeroReason(10.0).find("coil 2"), std::string::npos);
 }
 
-TEST(CurrentSupervisor, ZeroIsConfirmedOnlyByAMeasurementAfterwards) {
+/// What is set and measured for some beats, of so many seconds each, and whether it confirms zero.
+struct Ending {
+  const char* what;
+  std::vector<Flow> flows;
+  bool confirms;
+  double beat = 0.005;
+};
+
+TEST(CurrentSupervisor, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
+  const std::vector<Ending> endings{
+      {"nothing was measured", {}, false},
+      {"one zero", {{0.0, 0.0}}, false},
+      {"zeros for 20 ms", {{0.0, 0.0, 5}}, false},
+      {"zeros for 30 ms", {{0.0, 0.01, 7}}, true},
+      {"two zeros far from each other", {{0.0, 0.0, 2}}, false, 0.1},
+      {"five of a fast loop", {{0.0, 0.0, 5}}, false, 0.001},
+      {"many of a fast loop", {{0.0, 0.0, 27}}, true, 0.001},
+      {"another current is set", {{0.0, 0.0, 9}, {1.0, 0.0, 9}}, false},
+      {"and zero again", {{1.0, 0.0, 9}, {0.0, 0.0, 4}}, false},
+      {"a current shows once", {{0.0, 0.0, 9}, {0.0, -0.2}, {0.0, 0.0, 4}}, false},
+      {"and then no more", {{0.0, 0.0, 9}, {0.0, -0.2}, {0.0, 0.0, 7}}, true},
+      {"each second one is zero", {{0.0, 2.0}, {0.0, 0.0}, {0.0, 2.0}, {0.0, 0.0}}, false},
+  };
+  for (const Ending& ending : endings) {
+    CurrentSupervisor supervisor(limits(), 2);
+    double now = 10.0;
+    for (const Flow& flow : ending.flows) {
+      for (int n = 0; n < flow.beats; ++n) {
+        now += ending.beat;
+        supervisor.setting(amperes(flow.set));
+        supervisor.observe(amperes(0.0, flow.measured), now);
+      }
+    }
+    EXPECT_EQ(supervisor.isZeroConfirmed(), ending.confirms) << ending.what;
+    EXPECT_EQ(supervisor.unconfirmedReason().empty(), ending.confirms) << ending.what;
+  }
+}
+
+TEST(CurrentSupervisor, TellsTheCurrentThatKeepsZeroFromBeingConfirmed) {
   CurrentSupervisor supervisor(limits(), 2);
-  EXPECT_FALSE(supervisor.isZeroConfirmed());
   EXPECT_NE(supervisor.unconfirmedReason(), "");
-  supervisor.observe(amperes(0.01), 0.0);
-  EXPECT_TRUE(supervisor.isZeroConfirmed());
-  supervisor.setting(amperes(1.0));
-  EXPECT_FALSE(supervisor.isZeroConfirmed());
-  supervisor.observe(amperes(0.0), 0.0);  // it has not begun to flow
-  EXPECT_FALSE(supervisor.isZeroConfirmed());
-  supervisor.setting(amperes(0.0));
-  EXPECT_FALSE(supervisor.isZeroConfirmed());
-  supervisor.observe(amperes(0.0, -0.2), 0.0);
-  EXPECT_FALSE(supervisor.isZeroConfirmed());
+  supervisor.observe(amperes(0.0, -0.2), 10.0);
   EXPECT_NE(supervisor.unconfirmedReason().find("0.20 A"), std::string::npos);
-  supervisor.observe(amperes(0.0, -0.1), 0.0);
-  EXPECT_TRUE(supervisor.isZeroConfirmed());
-  EXPECT_EQ(supervisor.unconfirmedReason(), "");
 }
 
 TEST(CurrentSupervisor, RefusesLimitsOutOfRangeByName) {

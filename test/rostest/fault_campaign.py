@@ -20,13 +20,21 @@ from typing import Callable
 
 import hostile_peer
 import rospy
-from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command
+from amplifier_faults import (
+    alternating,
+    applied_again,
+    dribbling_to_the_end,
+    misbehaving,
+    not_applied,
+    standing_still,
+    zero,
+)
+from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command, outcome, status_of
 from links import free_port
 from sensor_faults import sensor_fault
 
 SIMULATED = rospy.Time(978307200)  # the year 2001
 JUMP = 3600  # [s] of the wall clock
-TOLD_DEVIATION = "A are set: the amplifier does not do what it acknowledges"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,10 +48,6 @@ class Fault:
     preload: bool = False
     needs_laboratory: bool = True
     is_repeatable: bool = True
-
-
-def outcome(laboratory, begin, **details):
-    return Outcome(*laboratory.amplifier.on_until(begin), **details)
 
 
 # -- commands ---------------------------------------------------------------------------------------------------
@@ -125,11 +129,6 @@ def stopped(laboratory):
     return outcome(laboratory, begin)
 
 
-def status_of(laboratory):
-    laboratory.driver.process.wait()
-    return laboratory.driver.process.returncode
-
-
 def ended(number):
     def run(laboratory):
         begin = time.monotonic()
@@ -186,60 +185,6 @@ def common_clock_jump(laboratory):
     begin = laboratory.commander.change()
     laboratory.watch(1.2)
     return outcome(laboratory, begin, defect=defect)
-
-
-# -- the amplifier ------------------------------------------------------------------------------------------------
-
-
-def misbehaving(behaviour):
-    """Commands go on all the time."""
-
-    def run(laboratory):
-        begin = time.monotonic()
-        laboratory.amplifier.behaviour = behaviour
-        laboratory.watch(3.0)
-        return outcome(laboratory, begin)
-
-    return run
-
-
-def dribbling_to_the_end(laboratory):
-    """Commands end when the answers begin to dribble."""
-    begin = laboratory.commander.change()
-    laboratory.amplifier.behaviour = "dribble"
-    laboratory.watch(3.0)
-    return outcome(laboratory, begin)
-
-
-def zero():
-    return command(current=0.0)
-
-
-def not_applied(make):
-    """Zero is commanded, or nothing any more, and acknowledged."""
-
-    def run(laboratory):
-        laboratory.amplifier.stick()
-        begin = laboratory.commander.change(make)
-        told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
-        laboratory.watch(1.5)
-        return Outcome(watchdog=laboratory.amplifier.on_until(begin)[1], told=told)
-
-    return run
-
-
-def applied_again(laboratory):
-    """When only the amplifier's own watchdog can have ended the current, no command brings it back."""
-    laboratory.amplifier.stick()
-    begin = laboratory.commander.change(zero)
-    told = laboratory.told(TOLD_DEVIATION, begin, 10.0)
-    laboratory.watch(1.0)
-    laboratory.amplifier.obey()
-    laboratory.watch(1.0)
-    laboratory.commander.change(command)
-    laboratory.watch(1.0)
-    defect = "there is current again" if laboratory.amplifier.is_on() else ""
-    return Outcome(watchdog=laboratory.amplifier.on_until(begin)[1], told=told, defect=defect)
 
 
 # -- the master -----------------------------------------------------------------------------------------------------
@@ -311,6 +256,8 @@ def faults_of(master):
         Fault("zero acknowledged, not applied", not_applied(zero), (None, 1.0, 0.5), is_short=True),
         Fault("the same, commands stop", not_applied(lambda: None), (None, 1.0, 0.75)),
         Fault("the same, then applied again", applied_again, (None, 1.0, 0.5)),
+        Fault("zero set, current alternates", alternating, (None, 1.0, 0.5), is_short=True),
+        Fault("commands of 8 Hz, current stands still", standing_still, (None, 1.0, 0.5), is_short=True),
         *(
             Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
             for how in ("silence", "dribble", "reset", "wrong id", "endless")

@@ -165,6 +165,17 @@ class Laboratory:
         return math.inf
 
 
+def outcome(laboratory, begin, **details):
+    """How long there was current after `begin`."""
+    return Outcome(*laboratory.amplifier.on_until(begin), **details)
+
+
+def status_of(laboratory):
+    """Exit status of the driver, once it has ended."""
+    laboratory.driver.process.wait()
+    return laboratory.driver.process.returncode
+
+
 class Master:
     """A master of ROS of its own."""
 

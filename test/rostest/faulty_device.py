@@ -103,6 +103,7 @@ class FaultyAmplifier(FaultyDevice):
         super().__init__()
         self.watchdog = 0.5  # [s]
         self._stuck = False
+        self.stray = None  # words of all coils as long as its watchdog holds, by the time [s]; None: what was set
         self._beat_at = -1e9
         self._history = []  # (begin of the interval, whether registers say current, last heartbeat, currents)
 
@@ -122,6 +123,11 @@ class FaultyAmplifier(FaultyDevice):
         is_alive = time.monotonic() - self._beat_at <= self.watchdog
         on = holding[self.ENABLE] == 1 and is_alive
         self.registers[READ_INPUT][: self.COILS] = holding[: self.COILS] if on else [0] * self.COILS
+        if self.stray is not None:
+            now = time.monotonic()
+            word = self.stray(now) & 0xFFFF if is_alive else 0
+            self.registers[READ_INPUT][: self.COILS] = [word] * self.COILS
+            self._history.append((now, word != 0, self._beat_at, (0,) * self.COILS))
 
     def stick(self):
         """From now on all is acknowledged, and nothing applied but the heartbeat. Returns when."""

@@ -44,9 +44,10 @@ class CoilDriver {
   /// and links do wrong ends in zero currents and `zero_reason`, never in an exception.
   Beat beat(double now);
 
-  /// Zero at once and for good. Returns nothing when the amplifier took it and zero was measured,
-  /// otherwise why not: then it is worth another call, as currents need a moment to fade.
-  std::string stop();
+  /// Zero at once and for good. Returns nothing when the amplifier took it and zero is confirmed
+  /// (CurrentSupervisor::isZeroConfirmed()), otherwise why not: then it is worth another call, as
+  /// currents need a moment to fade, and a confirmation needs several.
+  std::string stop(double now);
 
   const LinkSupervisor& link() const { return link_; }
   const CurrentLimiter& limiter() const { return limiter_; }

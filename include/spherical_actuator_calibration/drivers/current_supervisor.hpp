@@ -4,9 +4,10 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
+
+#include "spherical_actuator_calibration/drivers/current_comparison.hpp"
 
 namespace sac {
 
@@ -15,7 +16,7 @@ struct SupervisorLimits {
   double watchdog = 0.25;    ///< a command holds for so long from its stamp on [s]
   double clock_skew = 0.1;   ///< the clocks of commander and driver may differ by [s]
   double deviation = 0.15;   ///< of a measured current from the one that is set, at most [A]
-  int deviating_beats = 40;  ///< in a row beyond it, of one coil, are an error
+  int deviating_beats = 40;  ///< beyond it, of one coil, are an error: see CurrentComparison
 };
 
 /// Throws ConfigError that names the limit and its range.
@@ -66,9 +67,8 @@ class CurrentSupervisor {
 
   /// These setpoints [A] go to the amplifier next: from now on current may flow.
   void setting(const Eigen::VectorXd& setpoints);
-  /// These currents [A] were measured after the last setpoints were written. They are held against
-  /// all that was set since the measurement before: where the last setpoints have not acted yet, as
-  /// the beat was late or the current needs a moment, those before still flow. `steady`: when [s].
+  /// These currents [A] were measured after the last setpoints were written, and are held against
+  /// what was set: see CurrentComparison. `steady`: when [s].
   void observe(const Eigen::VectorXd& measured, double steady);
   /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
   /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
@@ -79,7 +79,8 @@ class CurrentSupervisor {
   std::string fault() const;
   /// How often there was one.
   int faults() const;
-  /// Whether zero was measured in all coils since anything else was set.
+  /// Whether zero was measured in all coils, five times in a row and for 25 ms at least, since
+  /// anything else was set or measured: a current that alternates passes zero, too.
   bool isZeroConfirmed() const;
   /// In words, why it is not; empty when it is.
   std::string unconfirmedReason() const;
@@ -88,7 +89,8 @@ class CurrentSupervisor {
   std::string refusal(const CoilCommand& command, const Instant& now) const;
   bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
   void noticeClockJump(const Instant& now);
-  void compare(const Eigen::VectorXd& measured);
+  void countZeros(const Eigen::VectorXd& measured, double steady);
+  bool isZeroNow() const { return zeros_ > 0; }
   void fail(std::size_t coil, double measured);
   void watchZero(double steady);
   void endFault();
@@ -103,12 +105,11 @@ class CurrentSupervisor {
   std::string owner_;                  ///< who gave it
   std::optional<double> last_stamp_;   ///< its stamp
   std::optional<double> wall_offset_;  ///< wall less steady clock, when it came
-  Eigen::VectorXd setpoints_;
-  Eigen::VectorXd lowest_;   ///< that was set since the last measurement [A]
-  Eigen::VectorXd highest_;  ///< likewise
+  CurrentComparison comparison_;
   std::optional<Eigen::VectorXd> measured_;
+  int zeros_ = 0;            ///< measurements in a row of nothing but zero, while zero is set
+  double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
-  std::vector<int> deviating_;  ///< beats in a row, for each coil
   std::string fault_;
   int faults_ = 0;
   double fault_at_ = 0.0;  ///< by the steady clock [s]

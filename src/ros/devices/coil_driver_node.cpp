@@ -110,7 +110,7 @@ CoilDriverNode::~CoilDriverNode() {
 // First the currents, then the rest: to end a subscription, a master is asked that may be gone.
 bool CoilDriverNode::stop() {
   if (stopped_) {
-    return !failed_ && driver_.supervisor().isZeroConfirmed();
+    return !failed_ && endedWell();
   }
   stopped_ = true;
   thread_->stop();
@@ -121,16 +121,19 @@ bool CoilDriverNode::stop() {
     failure = tryToStop();
   }
   subscriber_.shutdown();
-  if (failure.empty()) {
-    return !failed_;
-  }
   const CurrentSupervisor& supervisor = driver_.supervisor();
+  if (!supervisor.fault().empty()) {
+    ROS_FATAL_STREAM("The driver ends in an error: " << supervisor.fault() << '.');
+  }
+  if (failure.empty()) {
+    return !failed_ && endedWell();
+  }
   if (supervisor.isZeroConfirmed()) {
     ROS_WARN_STREAM(
         "The amplifier cannot be told once more that its currents are zero, as they "
         "were when it was heard last: "
         << failure);
-    return !failed_;
+    return !failed_ && endedWell();
   }
   ROS_FATAL_STREAM("The currents are not confirmed to be zero, " << supervisor.unconfirmedReason()
                                                                  << ": " << failure
@@ -138,9 +141,15 @@ bool CoilDriverNode::stop() {
   return false;
 }
 
+// An amplifier that does not do what it acknowledges may have current again at any time.
+bool CoilDriverNode::endedWell() const {
+  const CurrentSupervisor& supervisor = driver_.supervisor();
+  return supervisor.isZeroConfirmed() && supervisor.fault().empty();
+}
+
 std::string CoilDriverNode::tryToStop() {
   try {
-    return driver_.stop();
+    return driver_.stop(steadySeconds());
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -161,7 +170,7 @@ void CoilDriverNode::beat() {
   try {
     if (terminationRequested()) {
       // At once, whatever the main thread is busy with.
-      driver_.stop();
+      driver_.stop(steadySeconds());
       return;
     }
     const CoilDriver::Beat beat = driver_.beat(steadySeconds());

@@ -41,8 +41,8 @@ class CoilDriverNode {
   CoilDriverNode& operator=(const CoilDriverNode&) = delete;
 
   /// Sets the currents to zero and ends the control loop, for good. True when all went well: the
-  /// loop had not failed, and zero was measured since anything else was set. What is dangerous is
-  /// told on the console.
+  /// loop had not failed, zero was confirmed since anything else was set or measured, and no
+  /// deviation of currents stands. What is dangerous is told on the console.
   bool stop();
 
  private:
@@ -50,6 +50,7 @@ class CoilDriverNode {
   void beat();
   void tell(const CoilDriver::Beat& beat);
   std::string tryToStop();
+  bool endedWell() const;
   void publish(const Eigen::VectorXd& currents, const ros::Time& stamp);
   void diagnoseOutput(DiagnosticStatus& status);
 

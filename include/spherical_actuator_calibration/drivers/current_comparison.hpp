@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace sac {
+
+/// Judges whether measured currents are those that were set, whatever an honest amplifier's lag is.
+///
+/// An amplifier is honest that follows its setpoints after a delay of up to 0.17 s with a time
+/// constant of up to 0.03 s. Which one it has is not known, so that many are held against what is
+/// measured, and a coil deviates when none of them explains its current any more. A range of all
+/// that was set within the longest lag would not do: commands that change fast make it so wide that
+/// every current lies within.
+///
+/// For each lag the beats are counted whose current lies beyond the tolerance. A beat that agrees
+/// takes back only an eighth of one: current that comes and goes is an error, too.
+///
+/// Times are seconds of a steady clock. Not thread-safe.
+class CurrentComparison {
+ public:
+  /// `tolerance`: of a current [A]; `beats`: that must deviate, one agreeing among them or not.
+  CurrentComparison(std::size_t coils, double tolerance, int beats);
+
+  /// These setpoints [A] go to the amplifier next.
+  void setting(const Eigen::VectorXd& setpoints);
+  /// These currents [A] were measured now, after the last setpoints were written. Returns the first
+  /// coil that deviates, from 0.
+  std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double steady);
+  /// Counts anew.
+  void forgive();
+
+  const Eigen::VectorXd& setpoints() const { return setpoints_; }
+
+ private:
+  /// What amplifiers without delay have as currents [A] in a span of time: a row for each coil, a
+  /// column for each time constant.
+  struct Span {
+    double begin = 0.0;
+    double end = 0.0;
+    Eigen::ArrayXXd lowest;
+    Eigen::ArrayXXd highest;
+  };
+
+  void advance(double steady);
+  void remember(const Span& span);
+  Eigen::ArrayXd tolerances() const;
+  void count(const Eigen::ArrayXd& measured, double steady);
+
+  double tolerance_;
+  double beats_;
+  Eigen::VectorXd setpoints_;
+  Eigen::ArrayXd lowest_;   ///< that was set since the last measurement [A]
+  Eigen::ArrayXd highest_;  ///< likewise
+  Eigen::ArrayXXd filtered_;
+  std::optional<double> last_;  ///< measurement [s]
+  std::deque<Span> spans_;      ///< without gaps, as far back as the longest delay
+  Eigen::ArrayXXd deviating_;   ///< beats, for each coil and each lag
+};
+
+}  // namespace sac
