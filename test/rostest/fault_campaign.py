@@ -239,6 +239,8 @@ def faults_of(master):
         Fault("driver: SIGSTOP, then SIGCONT", stopped, kill, is_short=True),
         Fault("driver: SIGTERM", ended(signal.SIGTERM), end, is_short=True),
         Fault("driver: SIGINT", ended(signal.SIGINT), end),
+        Fault("driver: SIGHUP", ended(signal.SIGHUP), end, is_short=True),
+        Fault("driver: SIGQUIT", ended(signal.SIGQUIT), end),
         Fault("driver: SIGTERM, never applied", ended_while_stuck, (None, None, None), is_short=True),
         Fault("driver: exception", thrown, end, is_short=True, preload=True),
         Fault("driver: no memory", without_memory, end),

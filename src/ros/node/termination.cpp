@@ -41,8 +41,15 @@ void handleTerminationSignals() {
   struct sigaction action = {};
   action.sa_handler = requestTermination;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) {
+    sigaction(signal, &action, nullptr);
+  }
+  // A terminal that is closed, such as that of ssh, sends this one; nohup lets a node outlive it.
+  struct sigaction inherited = {};
+  sigaction(SIGHUP, nullptr, &inherited);
+  if (inherited.sa_handler != SIG_IGN) {
+    sigaction(SIGHUP, &action, nullptr);
+  }
 }
 
 bool terminationRequested() {

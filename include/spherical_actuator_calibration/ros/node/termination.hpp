@@ -2,12 +2,13 @@
 
 namespace sac {
 
-/// Makes SIGINT and SIGTERM end spinUntilTermination() instead of the process, so that a node's
-/// objects are destroyed in order. roscpp by itself dies on SIGTERM without any clean-up. Call
-/// after ros::init() with ros::init_options::NoSigintHandler.
+/// Makes SIGINT, SIGTERM, SIGHUP and SIGQUIT end spinUntilTermination() instead of the process, so
+/// that a node's objects are destroyed in order. roscpp by itself dies on all but SIGINT without
+/// any clean-up. SIGHUP stays ignored where it is, as nohup wants it. Call after ros::init() with
+/// ros::init_options::NoSigintHandler.
 void handleTerminationSignals();
 
-/// True once SIGINT or SIGTERM came.
+/// True once one of these signals came.
 bool terminationRequested();
 
 /// Makes an exception that nobody catches, such as one of want of memory in a thread of roscpp, end
