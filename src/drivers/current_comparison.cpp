@@ -114,7 +114,8 @@ void CurrentComparison::count(const Eigen::ArrayXd& measured, double steady) {
     Eigen::ArrayXXd lowest = Eigen::ArrayXXd::Constant(measured.size(), kFilters, kNone);
     Eigen::ArrayXXd highest = -lowest;
     for (const Span& span : spans_) {
-      if (span.begin <= latest && span.end >= latest - kDelayStep) {
+      const bool has_begun = span.begin < latest || delay == 0;
+      if (has_begun && span.end > latest - kDelayStep) {
         lowest = lowest.min(span.lowest);
         highest = highest.max(span.highest);
       }
