@@ -41,13 +41,11 @@ CoilDriver::Beat CoilDriver::beat(double now) {
     link_.success();
     return result;
   } catch (const TransportError& error) {
-    forget();
-    tryToDisable();
+    fail();
     link_.failure(now, error.what());
     return {std::nullopt, lostReason(error.what()), true};
   } catch (const Error& error) {
-    forget();
-    tryToDisable();
+    fail();
     return {std::nullopt, error.what(), true};
   }
 }
@@ -80,28 +78,35 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
 void CoilDriver::follow(double now, Beat& result) {
   const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
   const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
-  if (command) {
+  if (command && is_measured_) {
     supervisor_.setting(limiter_.follow(*command, elapsed));
     amplifier_.write(limiter_.setpoints(), OutputStages::kOn);
     return;
   }
-  result.zero_reason = supervisor_.zeroReason(now);
+  result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
   result.fault = !supervisor_.fault().empty();
   supervisor_.setting(limiter_.stop());
-  amplifier_.write(limiter_.setpoints(),
-                   OutputStages::kOff,
-                   result.fault ? Heartbeat::kWithheld : Heartbeat::kGiven);
+  const bool is_well = is_measured_ && !result.fault;
+  amplifier_.write(
+      limiter_.setpoints(), OutputStages::kOff, is_well ? Heartbeat::kGiven : Heartbeat::kWithheld);
 }
 
 Eigen::VectorXd CoilDriver::measure(double now) {
   Eigen::VectorXd measured = amplifier_.read();
   supervisor_.observe(measured, now);
+  is_measured_ = true;
   return measured;
 }
 
 void CoilDriver::forget() {
   supervisor_.forget();
   supervisor_.setting(limiter_.stop());
+}
+
+void CoilDriver::fail() {
+  is_measured_ = false;
+  forget();
+  tryToDisable();
 }
 
 void CoilDriver::setZero() {

@@ -1,8 +1,11 @@
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/drivers/transport_error.hpp"
 
 namespace sac {
 namespace {
@@ -22,17 +25,33 @@ std::optional<int> readAddress(const YamlMap& map, const char* key) {
   return static_cast<int>(map.integer(key, 0, kLargestAddress));
 }
 
+/// What the comparison of currents may be told, so that it is one: a larger tolerance or patience
+/// would let currents flow that nobody has set.
+constexpr double kLargestTolerance = 0.25;  // of the largest current of a coil
+constexpr double kLongestPatience = 0.4;    // [s]
+constexpr double kPatience = 0.2;           // [s] unless it is said
+
 SupervisorLimits readSupervision(const YamlMap& map) {
   SupervisorLimits limits;
   limits.watchdog = map.number("watchdog", ValueRange::closed(0.01, 1.0, "s"), limits.watchdog);
   limits.clock_skew =
       map.number("clock_skew", ValueRange::closed(0.0, 1.0, "s"), limits.clock_skew);
+  return limits;
+}
+
+void readDeviation(const YamlMap& map, CurrentAmplifierOptions& options) {
+  SupervisorLimits& limits = options.supervision;
+  const double largest = kLargestTolerance * options.limits.coil;
+  limits.deviating_beats = static_cast<int>(std::lround(kPatience * options.rate));
   if (map.has("deviation")) {
     const YamlMap deviation = map.map("deviation");
-    limits.deviation = deviation.number("tolerance", ValueRange{0.0, 1000.0, "A", true, false});
-    limits.deviating_beats = static_cast<int>(deviation.integer("beats", 1, 100'000));
+    limits.deviation = deviation.number("tolerance", ValueRange{0.0, largest, "A", true, false});
+    const auto most = static_cast<std::int64_t>(kLongestPatience * options.rate + 1e-6);
+    limits.deviating_beats = static_cast<int>(deviation.integer("beats", 1, most));
+  } else if (limits.deviation > largest) {
+    map.fail("deviation.tolerance",
+             "is missing, and 0.15 A are too much where limits.coil is less than 0.6 A.");
   }
-  return limits;
 }
 
 /// An amplifier without a heartbeat goes on for ever once its driver was killed: that is accepted
@@ -45,6 +64,58 @@ void requireHeartbeat(const YamlMap& map) {
         "heartbeat_address",
         "is missing: without a watchdog of the amplifier nothing ends its currents when this "
         "program is killed. Where that is accepted, write \"unattended_amplifier: accepted\".");
+  }
+}
+
+/// Registers of a device that belong together.
+struct RegisterBlock {
+  std::string name;  ///< as in a configuration
+  int unit = 0;
+  RegisterTable table = RegisterTable::kHolding;
+  int first = 0;
+  int count = 1;
+
+  int end() const { return first + count; }
+  bool overlaps(const RegisterBlock& other) const {
+    return unit == other.unit && table == other.table && first < other.end() && other.first < end();
+  }
+};
+
+std::vector<RegisterBlock> blocksOf(const CurrentAmplifierOptions& options, int coils) {
+  const auto block = [](const std::string& name, const RegisterField& field, int numbers) {
+    return RegisterBlock{name, field.unit, field.table, field.address, numbers * field.words()};
+  };
+  std::vector<RegisterBlock> blocks{block("setpoints", options.setpoints, coils),
+                                    block("currents", options.currents, coils)};
+  const int unit = options.setpoints.unit;
+  if (options.enable_address) {
+    blocks.push_back({"enable_address", unit, RegisterTable::kHolding, *options.enable_address});
+  }
+  if (options.heartbeat_address) {
+    blocks.push_back(
+        {"heartbeat_address", unit, RegisterTable::kHolding, *options.heartbeat_address});
+  }
+  if (options.tripped) {
+    blocks.push_back(block("tripped", *options.tripped, 1));
+  }
+  return blocks;
+}
+
+void requireRegistersApart(const CurrentAmplifierOptions& options, std::size_t coils) {
+  const std::vector<RegisterBlock> blocks = blocksOf(options, static_cast<int>(coils));
+  for (auto block = blocks.begin(); block != blocks.end(); ++block) {
+    const std::string range = block->name + " has the registers " + std::to_string(block->first) +
+                              " to " + std::to_string(block->end() - 1);
+    if (block->end() - 1 > kLargestAddress) {
+      throw ConfigError(range + "; the last one of a device is 65535.");
+    }
+    const auto other = std::find_if(blocks.begin(), block, [&](const RegisterBlock& before) {
+      return before.overlaps(*block);
+    });
+    if (other != block) {
+      throw ConfigError(range + ", and " + other->name + " has " + std::to_string(other->first) +
+                        " to " + std::to_string(other->end() - 1) + " of the same device.");
+    }
   }
 }
 
@@ -67,6 +138,7 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
   const YamlMap limits = map.map("limits");
   const ValueRange ampere{0.0, 1000.0, "A", true, false};
   options.limits.coil = limits.number("coil", ampere);
+  readDeviation(map, options);
   options.limits.total = limits.number("total", ampere);
   options.limits.slew = limits.number("slew", ValueRange{0.0, 1e6, "A/s", true, false});
   options.setpoints = readRegisterField(map.map("setpoints"));
@@ -88,7 +160,9 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
 CurrentAmplifier::CurrentAmplifier(const CurrentAmplifierOptions& options,
                                    std::size_t coils,
                                    ModbusTransport& transport)
-    : options_(options), coils_(coils), transport_(transport) {}
+    : options_(options), coils_(coils), transport_(transport) {
+  requireRegistersApart(options, coils);
+}
 
 void CurrentAmplifier::write(const Eigen::VectorXd& currents,
                              OutputStages stages,
@@ -128,7 +202,8 @@ Eigen::VectorXd CurrentAmplifier::read() {
     }
   }
   if (!currents.allFinite()) {
-    throw DataError("The amplifier measures a current that is not finite.");
+    throw TransportError(TransportFailure::kGarbled,
+                         "The amplifier measures a current that is not finite.");
   }
   return currents;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -307,6 +308,41 @@ TEST_F(CoilDriverTest, AnAmplifierThatDoesNotApplyIsToldAndItsHeartbeatWithheld)
   EXPECT_NE(bus_.at(kUnit, RegisterTable::kHolding, 101), heartbeat);
   follow(pattern(3, 1.5));
   EXPECT_NEAR(setpoint(3), 1.5, 1e-12);
+}
+
+// Whatever is commanded: an amplifier that cannot tell its currents gets none, and no heartbeat.
+TEST_F(CoilDriverTest, SetsNothingThatCannotBeMeasured) {
+  CurrentAmplifierOptions options = shippedOptions();
+  options.currents.type = RegisterType::kFloat32;
+  CoilDriver driver(options, kCoils, bus_);
+  const std::vector<std::uint16_t> right{0x44bb, 0x8000};  // 1500 mA
+  bus_.set(kUnit, RegisterTable::kInput, 6, right);
+  const auto run = [&](double seconds) {
+    for (const double end = now_ + seconds; now_ < end;) {
+      now_ += 0.005;
+      offerTo(driver, pattern(3, 1.5));
+      driver.beat(now_);
+    }
+  };
+  run(0.1);
+  ASSERT_NE(setpoint(3), 0.0);
+  for (const unsigned high : {0x7fc0U, 0x7f80U, 0xff80U}) {  // NaN and both infinities
+    bus_.set(kUnit, RegisterTable::kInput, 6, {static_cast<std::uint16_t>(high), 0});
+    run(0.01);
+    const std::size_t written = bus_.writes().size();
+    const std::uint16_t heartbeat = bus_.at(kUnit, RegisterTable::kHolding, 101);
+    run(10.0);
+    for (std::size_t n = written; n < bus_.writes().size(); ++n) {
+      const std::vector<std::uint16_t>& words = bus_.writes()[n].words;
+      EXPECT_TRUE(std::all_of(words.begin(), words.end(), [](auto word) { return word == 0; }));
+    }
+    EXPECT_EQ(bus_.at(kUnit, RegisterTable::kHolding, 101), heartbeat);
+    EXPECT_FALSE(driver.link().isUp());
+    EXPECT_NE(driver.beat(now_).zero_reason.find("not finite"), std::string::npos);
+    bus_.set(kUnit, RegisterTable::kInput, 6, right);
+    run(3.0);
+    EXPECT_NE(setpoint(3), 0.0);
+  }
 }
 
 TEST_F(CoilDriverTest, AStalledLoopTakesNoLargeStep) {

@@ -1,6 +1,8 @@
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -26,6 +28,7 @@ TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
   options.setpoints.scale = options.currents.scale = 1.0;
   options.enable_address.reset();
   options.heartbeat_address.reset();
+  options.tripped.reset();
   constexpr std::size_t kMany = 150;
   ScriptedTransport bus;
   bus.open();
@@ -69,6 +72,90 @@ TEST(CurrentAmplifier, ConfigurationErrorsNameTheKey) {
   EXPECT_NE(refusalOf("link: {type: tcp, host: h, response_timeout: 1.5}\n")
                 .find("link.response_timeout"),
             std::string::npos);
+}
+
+TEST(CurrentAmplifier, TheComparisonOfCurrentsCannotBeConfiguredAway) {
+  struct Case {
+    std::string rate;
+    std::string deviation;
+    const char* refusal;  ///< part of the sentence; nullptr: it is accepted
+  };
+  const std::vector<Case> cases{
+      {"200.0", "", nullptr},
+      {"5000.0", "", nullptr},
+      {"20.0", "", nullptr},
+      {"200.0", "{tolerance: 0.25, beats: 80}", nullptr},
+      {"200.0", "{tolerance: 0.26, beats: 80}", "deviation.tolerance"},
+      {"200.0", "{tolerance: 1000.0, beats: 80}", "deviation.tolerance"},
+      {"200.0", "{tolerance: 0.0, beats: 80}", "deviation.tolerance"},
+      {"200.0", "{tolerance: 0.1, beats: 81}", "deviation.beats"},
+      {"200.0", "{tolerance: 0.1, beats: 100000}", "deviation.beats"},
+      {"200.0", "{tolerance: 0.1, beats: 0}", "deviation.beats"},
+      {"5000.0", "{tolerance: 0.1, beats: 2000}", nullptr},
+      {"20.0", "{tolerance: 0.1, beats: 8}", nullptr},
+      {"20.0", "{tolerance: 0.1, beats: 9}", "deviation.beats"},
+  };
+  for (const Case& one : cases) {
+    const std::string text =
+        "link: {type: tcp, host: h}\n"
+        "limits: {coil: 1.0, total: 1.0, slew: 1.0}\n"
+        "setpoints: {address: 0, type: int16, scale: 1.0}\n"
+        "currents: {address: 0, type: int16, scale: 1.0, table: input}\n"
+        "heartbeat_address: 100\nrate: " +
+        one.rate + (one.deviation.empty() ? "" : "\ndeviation: " + one.deviation) + "\n";
+    if (one.refusal == nullptr) {
+      const SupervisorLimits limits =
+          readCurrentAmplifierOptions(YamlMap::parse(text, "c.yaml")).supervision;
+      EXPECT_LE(limits.deviating_beats, 0.4 * std::stod(one.rate)) << text;
+    } else {
+      EXPECT_NE(refusalOf(text).find(one.refusal), std::string::npos) << text << refusalOf(text);
+    }
+  }
+  // The tolerance that is the default is too much for small coils.
+  EXPECT_NE(refusalOf("link: {type: tcp, host: h}\nlimits: {coil: 0.5, total: 1.0, slew: 1.0}\n")
+                .find("deviation.tolerance"),
+            std::string::npos);
+}
+
+// 24 coils: the setpoints are the registers 0 to 23.
+TEST(CurrentAmplifier, RegistersThatOverlapAreRefusedByName) {
+  using Change = std::function<void(CurrentAmplifierOptions&)>;
+  struct Case {
+    Change change;
+    std::vector<std::string> names;  ///< in the refusal; none: it is accepted
+  };
+  const std::vector<Case> cases{
+      {[](auto&) {}, {}},
+      {[](auto& options) { options.heartbeat_address = 24; }, {}},
+      {[](auto& options) { options.heartbeat_address = 5; }, {"heartbeat_address", "setpoints"}},
+      {[](auto& options) { options.enable_address = 23; }, {"enable_address", "setpoints"}},
+      {[](auto& options) { options.enable_address = options.heartbeat_address; },
+       {"enable_address", "heartbeat_address"}},
+      {[](auto& options) {
+         options.setpoints.type = RegisterType::kInt32;
+         options.heartbeat_address = 47;
+       },
+       {"heartbeat_address", "setpoints"}},
+      {[](auto& options) { options.currents.table = RegisterTable::kHolding; },
+       {"currents", "setpoints"}},
+      {[](auto& options) { options.tripped->address = 3; }, {"tripped", "currents"}},
+      {[](auto& options) { options.currents.unit = 3; }, {}},
+      {[](auto& options) { options.setpoints.address = 65530; }, {"setpoints", "65535"}},
+  };
+  ScriptedTransport bus;
+  for (const Case& one : cases) {
+    CurrentAmplifierOptions options = shippedOptions();
+    one.change(options);
+    if (one.names.empty()) {
+      EXPECT_NO_THROW(CurrentAmplifier(options, 24, bus));
+      continue;
+    }
+    const std::string refusal =
+        errorMessage<ConfigError>([&] { CurrentAmplifier(options, 24, bus); });
+    for (const std::string& name : one.names) {
+      EXPECT_NE(refusal.find(name), std::string::npos) << name << ": " << refusal;
+    }
+  }
 }
 
 TEST(CurrentAmplifier, GoesWithoutAHeartbeatOnlyWhereThatIsAcceptedInWriting) {

@@ -27,7 +27,7 @@ TRIPPED = 100
 MILLI = 1e-3
 PATIENT = 1.0  # [s] of the watchdog where it must not be what makes zero, nor end a current on a busy computer
 RESPONSE_TIMEOUT = 1.0  # [s] likewise; both are the longest that the driver allows
-PATIENT_BEATS = 100000  # of the comparison of currents, where it is not what is tested
+PATIENT_BEATS = 0.4  # [s] of the comparison of currents, where it is not what is tested: the most that is allowed
 
 
 def amperes(word):
@@ -78,7 +78,8 @@ class CoilDriver(unittest.TestCase):
         parameters = rospy.get_param("/shipped/coil_driver")
         parameters["diagnostic_period"] = 0.1
         parameters["link"].update(port=self.port, response_timeout=response_timeout)
-        parameters["deviation"]["beats"] = PATIENT_BEATS
+        rate = changes.get("rate", parameters["rate"])
+        parameters["deviation"]["beats"] = int(PATIENT_BEATS * rate)
         parameters.update(changes)
         node = DriverNode("coil_driver", parameters)
         self.addCleanup(node.close)

@@ -18,7 +18,7 @@ JOINTS = ["joint_1", "joint_2", "joint_3"]
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
-PATIENT_BEATS = 5000  # of the comparison of currents, as threads of the emulator may have to wait
+PATIENT_BEATS = 80  # of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
 
 
 def configuration_with_free_ports(folder):

@@ -15,8 +15,9 @@ namespace sac {
 
 /// Drives the coils of one actuator, beat by beat. Currents are zero unless there is every reason
 /// that they should not be: without a command that counts (see CurrentSupervisor), after a lost
-/// link, after a trip, after an error, at the start and at the end. A command that was given before
-/// any of these is forgotten. All requests of a beat together have the response timeout.
+/// link, after a trip, after an error, at the start and at the end, and where the beat before could
+/// not measure them: then the heartbeat is withheld, too. A command that was given before any of
+/// these is forgotten. All requests of a beat together have the response timeout.
 ///
 /// Times are seconds of a steady clock of the caller. Thread-safe are only offer() and
 /// supervisor().
@@ -59,6 +60,7 @@ class CoilDriver {
   void follow(double now, Beat& result);
   Eigen::VectorXd measure(double now);
   void forget();
+  void fail();
   void setZero();
   void allowOneBeat() { transport_.allow(options_.link.response_timeout); }
   std::string tryToDisable();
@@ -70,6 +72,7 @@ class CoilDriver {
   CurrentSupervisor supervisor_;
   LinkSupervisor link_;
   std::optional<double> last_beat_;
+  bool is_measured_ = false;  ///< currents were, by the last beat
 };
 
 }  // namespace sac

@@ -49,7 +49,8 @@ enum class Heartbeat { kGiven, kWithheld };
 /// The current amplifier over a Modbus link. Not thread-safe.
 class CurrentAmplifier {
  public:
-  /// Keeps a reference to the transport.
+  /// Keeps a reference to the transport. Throws ConfigError when registers overlap: then a
+  /// heartbeat would be a setpoint, or a setpoint its own measurement.
   CurrentAmplifier(const CurrentAmplifierOptions& options,
                    std::size_t coils,
                    ModbusTransport& transport);
@@ -60,8 +61,7 @@ class CurrentAmplifier {
   void write(const Eigen::VectorXd& currents,
              OutputStages stages,
              Heartbeat heartbeat = Heartbeat::kGiven);
-  /// Measured current of every coil [A]. Throws TransportError, and DataError when one is not
-  /// finite.
+  /// Measured current of every coil [A]. Throws TransportError, also when one is not finite.
   Eigen::VectorXd read();
   /// Whether the amplifier says that it has tripped; false where it cannot say. Throws
   /// TransportError.

@@ -11,7 +11,7 @@ enum class TransportFailure {
   kUnreachable,  ///< the link cannot be opened, or was closed by the other side
   kTimeout,      ///< no answer in time
   kRefused,      ///< the device answered with an exception: it is there, and does not do this
-  kGarbled,      ///< the answer is not one to the request (checksum, length, function)
+  kGarbled,  ///< the answer is not one to the request (checksum, length, function), or no number
 };
 
 /// A device did not do what it was asked to. `what()` names device and register.
