@@ -186,17 +186,17 @@ TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
   CurrentComparison comparison(1, kTolerance, kBeats);
   const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
   double time = 0.0;
-  const auto beatsUntilTold = [&] {
+  const auto beats_until_told = [&] {
     int beats = 1;
     while (!comparison.observe(two, time += kBeat)) {
       ++beats;
     }
     return beats;
   };
-  EXPECT_EQ(beatsUntilTold(), kBeats);
+  EXPECT_EQ(beats_until_told(), kBeats);
   EXPECT_TRUE(comparison.observe(two, time += kBeat));
   comparison.forgive();
-  EXPECT_EQ(beatsUntilTold(), kBeats);
+  EXPECT_EQ(beats_until_told(), kBeats);
 }
 
 }  // namespace
