@@ -27,7 +27,7 @@ constexpr double kWarningPeriod = 2.0;  // [s]
 constexpr double kStopTime = 0.5;
 /// Between two looks whether the currents have faded.
 constexpr std::chrono::milliseconds kStopPause{5};
-/// The commands of all callers that come while a callback runs: none may push out another's.
+/// The commands of all callers that come while one is judged: none may push out another's.
 constexpr std::uint32_t kWaitingCommands = 100;
 
 constexpr char kUnattended[] =
@@ -78,7 +78,8 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       commands_("coil_command", {0.0, options.supervision.watchdog}),
       currents_("coil_currents", limitsOfRate(options.rate)),
       link_diagnostics_(describe(options.link)),
-      diagnostics_(node, private_node, actuator) {
+      diagnostics_(node, private_node, actuator),
+      receiver_(1, &queue_) {
   ros::NodeHandle handle = node;
   constexpr std::uint32_t kQueueLength = 1000;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_currents", kQueueLength);
@@ -91,6 +92,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   if (ros::Time::isSimTime()) {
     ROS_WARN("/use_sim_time is set: commands are judged by the wall clock all the same.");
   }
+  handle.setCallbackQueue(&queue_);
   subscriber_ = subscribeChecked<msg::CoilCurrents>(
       handle,
       "coil_command",
@@ -100,6 +102,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       },
       [this](const std::string& reason) { commands_.refuse(reason); },
       ros::TransportHints().tcpNoDelay());
+  receiver_.start();
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
 }
 
@@ -120,6 +123,7 @@ bool CoilDriverNode::stop() {
     std::this_thread::sleep_for(kStopPause);
     failure = tryToStop();
   }
+  receiver_.stop();
   subscriber_.shutdown();
   const CurrentSupervisor& supervisor = driver_.supervisor();
   if (!supervisor.fault().empty()) {

@@ -5,8 +5,10 @@
 #include <mutex>
 #include <string>
 
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <spherical_actuator_calibration/CoilCurrents.h>
 
@@ -70,7 +72,11 @@ class CoilDriverNode {
   StreamMonitor currents_;
   LinkDiagnostics link_diagnostics_;
   NodeDiagnostics diagnostics_;
+  /// Of the commands alone: they are judged as they come, whatever else the node is busy with, so
+  /// that those of the owner are not lost among a flood of others.
+  ros::CallbackQueue queue_;
   ros::Subscriber subscriber_;
+  ros::AsyncSpinner receiver_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
 };
 
