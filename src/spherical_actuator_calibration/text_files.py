@@ -1,12 +1,13 @@
-"""Text that comes from outside: files that are read whole, YAML documents of bounded size, and what a terminal shows.
+"""Text files: what is read from outside, whole and of bounded size, what a terminal shows of it, and what is written.
 
-The rules are those of the programs in C++ (readInputFile(), YamlMap, printable()).
+The rules are those of the programs in C++ (readInputFile(), YamlMap, printable(), writeFileAtomically()).
 """
 
 import os
 import re
 import stat
 import sys
+import tempfile
 
 import yaml
 
@@ -145,6 +146,57 @@ class _Census:
 
     def _fail(self, event, sentence):
         raise TextFileError(f"{self._path}:{event.start_mark.line + 1}: {sentence}")
+
+
+def require_writable(path):
+    """Raises TextFileError where write_text() would, before there is anything to write: a folder that is missing or
+    takes no file, or a name that is no regular file's."""
+    _require_regular(path)
+    try:
+        with tempfile.TemporaryFile(dir=_folder_of(path)):
+            pass
+    except (OSError, ValueError) as error:
+        raise _unwritable(path, error) from error
+
+
+def write_text(path, text):
+    """Replaces a file by text in UTF-8: it has its whole content or, whatever happens, the one of before. Raises
+    TextFileError."""
+    _require_regular(path)
+    temporary = None
+    try:
+        descriptor, temporary = tempfile.mkstemp(dir=_folder_of(path), prefix=f".{os.path.basename(path)}.")
+        with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, path)
+    except BaseException as error:
+        if temporary and os.path.exists(temporary):
+            os.unlink(temporary)
+        if isinstance(error, (OSError, ValueError)):
+            raise _unwritable(path, error) from error
+        raise
+
+
+def _folder_of(path):
+    return os.path.dirname(os.path.abspath(path))
+
+
+def _require_regular(path):
+    try:
+        is_regular = stat.S_ISREG(os.stat(path).st_mode)
+    except (OSError, ValueError):
+        return  # not there yet; whoever opens it tells the rest
+    if not is_regular:
+        raise TextFileError(f"{path}: this is not a regular file; choose another name.")
+
+
+def _unwritable(path, error):
+    return TextFileError(f"{path}: cannot be written: {getattr(error, 'strerror', None) or error}.")
 
 
 def require_separate_files(read, written):

@@ -245,7 +245,7 @@ class ReportPage(unittest.TestCase):
         os.makedirs(os.path.join(folder, "page.html"))
         outcome = run(program("render_report"), os.path.join(self.report, "report.yaml"), folder + "/page.html")
         self.assertEqual(outcome.returncode, 2)
-        self.assertIn("cannot be written", outcome.stderr)
+        self.assertIn("not a regular file", outcome.stderr)
         self.assertEqual(os.listdir(folder), ["page.html"])
 
     def calibrate_positioner(self, calibrate_bag, name):

@@ -15,6 +15,8 @@ from spherical_actuator_calibration.text_files import (
     read_text,
     read_yaml,
     require_separate_files,
+    require_writable,
+    write_text,
 )
 
 PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
@@ -95,6 +97,27 @@ class TextFiles(Folder):
         self.assertIn("--b: ", self.refusal(require_separate_files, [], both))
         require_separate_files([("--x", path), ("--y", None)], [("--output", self.folder / "new"), ("--b", None)])
 
+    def test_files_are_replaced_whole(self):
+        path = self.folder / "out.yaml"
+        write_text(path, "a: ä\n")
+        with self.assertRaises(TextFileError):
+            write_text(path, "a: \ud800")
+        self.assertEqual(path.read_bytes(), "a: ä\n".encode())
+        self.assertEqual(os.listdir(self.folder), ["out.yaml"])
+
+    def test_names_that_cannot_be_written(self):
+        os.mkfifo(self.folder / "fifo")
+        for path, reason in (
+            (self.folder / "none" / "out", "cannot be written: No such file"),
+            (self.folder / "fifo", "not a regular file"),
+            (self.folder, "not a regular file"),
+            ("/dev/full", "not a regular file"),
+        ):
+            self.assertIn(reason, self.refusal(require_writable, path))
+            self.assertIn(reason, self.refusal(write_text, path, "1"))
+        require_writable(self.folder / "new")
+        self.assertEqual(os.listdir(self.folder), ["fifo"])
+
 
 class Programs(Folder):
     """Each ends with status 2 and one sentence of printable text."""
@@ -139,6 +162,15 @@ class Programs(Folder):
         arguments = ("--actuator", ACTUATOR, "--force", "--output", "s.csv", "s.csv")
         self.expect_refusal("import_csv", *arguments, part="--output: s.csv is the file that SAMPLES.csv reads")
         self.expect_refusal("plot_study", "s.csv", "s.csv", part="PLOT.png: s.csv is the file that STUDY.yaml reads")
+        part = "--output: s.csv is the file that PLAN reads"
+        self.expect_refusal("run_motion", "s.csv", "--output", "s.csv", part=part)
+        part = "--output: s.csv is the file that --parameters reads"
+        self.expect_refusal("run_motion", "p.yaml", "--parameters", "s.csv", "--output", "s.csv", part=part)
+
+    def test_outputs_that_cannot_be_written_are_told_at_once(self):
+        self.expect_refusal("run_motion", "p.yaml", "--output", "none/o.yaml", part="none/o.yaml: cannot be written")
+        self.expect_refusal("track_orientation", "--output", "/dev/full", part="/dev/full: this is not a regular file")
+        self.expect_refusal("render_report", "r.yaml", "none/o.html", part="none/o.html: cannot be written")
 
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@ import math
 import os
 import pathlib
 import sqlite3
-import tempfile
 
+from ..text_files import write_text
 from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
@@ -144,21 +144,6 @@ def text_of(table):
     return text.getvalue()
 
 
-def write_whole(path, text):
-    """The file appears whole, or not at all."""
-    folder = os.path.dirname(path) or "."
-    with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8", newline="") as file:
-        try:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-            os.chmod(file.name, 0o644)
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
-
-
 def export(path, folder, force):
     """Writes the files of FILES, and returns how many samples there are."""
     os.makedirs(folder, exist_ok=True)
@@ -170,5 +155,5 @@ def export(path, folder, force):
         samples = session.samples()
         texts = (text_of(samples), text_of(session.parameters()), text_of(session.revisions()), session.description())
     for name, text in zip(FILES, texts):
-        write_whole(os.path.join(folder, name), text)
+        write_text(os.path.join(folder, name), text)
     return len(samples[1])
