@@ -17,6 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kTooMany[] = "it is one of more than the disk takes";
+
+/// Of a message with its pointers and names [byte].
+std::size_t costOf(std::size_t length) {
+  constexpr std::size_t kOfEach = 256;
+  return kOfEach + length;
+}
+
 std::string activePath(const std::string& path) {
   return path + ".active";
 }
@@ -62,23 +70,33 @@ RecordingWriter::~RecordingWriter() {
   }
 }
 
-std::size_t RecordingWriter::sizeOf(const Message& message) {
-  constexpr std::size_t kOfEach = 256;  // with its pointers and names
-  return kOfEach + message.content->bytes.size();
+std::string RecordingWriter::refusal(const std::string& topic, std::size_t length) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return refusalLocked(topic, length);
+}
+
+std::string RecordingWriter::refusalLocked(const std::string& topic, std::size_t length) const {
+  if (length > RecordedMessage::kLargest) {
+    return "it is " + std::to_string(length) + " bytes long; " +
+           std::to_string(RecordedMessage::kLargest) + " are the most that is recorded";
+  }
+  const auto waiting = bytes_.find(topic);
+  const std::size_t before = waiting == bytes_.end() ? 0 : waiting->second;
+  return before + costOf(length) > kMostWaiting ? kTooMany : "";
 }
 
 std::string RecordingWriter::add(const std::string& topic, Message message) {
-  if (message.content->length > RecordedMessage::kLargest) {
-    return "it is " + std::to_string(message.content->length) + " bytes long; " +
-           std::to_string(RecordedMessage::kLargest) + " are the most that is recorded";
-  }
+  const std::size_t length = message.content->length;
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::size_t& bytes = bytes_[topic];
-  if (bytes + sizeOf(message) > kMostWaiting) {
-    return "it is one of more than the disk takes";
+  std::string reason = refusalLocked(topic, length);
+  if (!reason.empty()) {
+    return reason;
+  }
+  if (message.content->bytes.size() != length) {
+    return kTooMany;  // when it came
   }
   if (failure_.empty() && !is_over_) {
-    bytes += sizeOf(message);
+    bytes_[topic] += costOf(length);
     waiting_.push_back({topic, std::move(message)});
     changed_.notify_one();
   }
@@ -127,7 +145,7 @@ void RecordingWriter::writeAll() {
     lock.unlock();
     write(next);
     lock.lock();
-    bytes_[next.topic] -= sizeOf(next.message);
+    bytes_[next.topic] -= costOf(next.message.content->length);
   }
 }
 

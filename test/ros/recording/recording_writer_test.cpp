@@ -110,9 +110,20 @@ TEST_F(RecordingWriterTest, FloodedTopicLosesItsOwnMessagesOnly) {
     refusal = writer.add("/flooded", large);
   }
   EXPECT_EQ(refusal, "it is one of more than the disk takes");
+  EXPECT_EQ(writer.refusal("/flooded", RecordedMessage::kLargest + 1).rfind("it is 4194305", 0),
+            0U);
+  EXPECT_EQ(writer.refusal("/stream", 100), "");
   EXPECT_EQ(writer.add("/stream", messageOf(100)), "");
   EXPECT_EQ(writer.add("/stream", messageOf(RecordedMessage::kLargest + 1)),
             "it is 4194305 bytes long; 4194304 are the most that is recorded");
+}
+
+TEST_F(RecordingWriterTest, WhatWasNotCopiedIsNotWritten) {
+  RecordingWriter writer(path_);
+  const auto content = boost::make_shared<RecordedMessage>();
+  content->length = 100;
+  EXPECT_EQ(writer.add("/stream", {ros::Time(1.0), content, messageOf(1).connection}),
+            "it is one of more than the disk takes");
 }
 
 TEST_F(RecordingWriterTest, NothingThatIsThereIsReplaced) {

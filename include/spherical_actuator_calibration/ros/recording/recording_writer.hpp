@@ -2,21 +2,29 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <boost/shared_ptr.hpp>
 #include <ros/datatypes.h>
 #include <ros/time.h>
 #include <rosbag/bag.h>
 
-#include "spherical_actuator_calibration/ros/recording/recorded_message.hpp"
-
 namespace sac {
+
+/// The bytes of a message of any type, as it came; of one that is left out only their number.
+struct RecordedMessage {
+  static constexpr std::size_t kLargest = std::size_t{4} << 20U;  ///< no reader takes more
+
+  std::vector<std::uint8_t> bytes;
+  std::size_t length = 0;
+};
 
 /// Writes messages into a bag in a thread of its own, so that a disk that stands still for seconds
 /// does not hold up who receives them. What waits for the disk is bounded for each topic, so that
@@ -40,7 +48,10 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  /// Keeps a message of a topic. Otherwise says why it is left out: "it …".
+  /// Why a message of a topic with so many bytes would be left out now: "it …". Empty where it would
+  /// be kept: what is left out need not be copied.
+  std::string refusal(const std::string& topic, std::size_t length) const;
+  /// Keeps a message of a topic, or says why it is left out.
   std::string add(const std::string& topic, Message message);
 
   /// What went wrong, a full disk, say, and what to do about it. Empty while nothing has: nothing
@@ -57,7 +68,7 @@ class RecordingWriter {
     Message message;
   };
 
-  static std::size_t sizeOf(const Message& message);
+  std::string refusalLocked(const std::string& topic, std::size_t length) const;
   void writeAll();
   void write(const Waiting& waiting);
   void fail(const std::string& reason);
