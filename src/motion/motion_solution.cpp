@@ -28,6 +28,7 @@ MotionDescent::MotionDescent(const MotionProblem& problem,
       options_(options),
       terms_(terms),
       x_(problem.prior.x),
+      open_limit_(estimation.unobservable_stddev),
       estimated_(problem.free) {
   open_.directions.resize(x_.size(), 0);
 }
@@ -52,8 +53,7 @@ void MotionDescent::rescale() {
 }
 
 double MotionDescent::cost(const MotionSums& sums) const {
-  const Eigen::VectorXd apart = x_ - problem_.prior.x;
-  return sums.misfit() + apart.dot(priorInformation() * apart);
+  return sums.misfit() + (x_ - problem_.prior.x).dot(pull());
 }
 
 Eigen::MatrixXd MotionDescent::priorInformation() const {
@@ -66,10 +66,26 @@ Eigen::MatrixXd MotionDescent::priorInformation() const {
   }
   if (open_.directions.cols() > 0) {
     const Eigen::MatrixXd& D = open_.directions;
-    const Eigen::MatrixXd covariance = D.transpose() * problem_.prior.covariance * D;
+    // As uncertain as the prior says, or as far from it as it was left.
+    const Eigen::VectorXd apart = D.transpose() * (x_ - problem_.prior.x);
+    Eigen::MatrixXd covariance = D.transpose() * problem_.prior.covariance * D;
+    if (is_fine_) {
+      covariance += apart * apart.transpose();
+    }
     information += D * covariance.ldlt().solve(D.transpose());
   }
   return information;
+}
+
+/// Towards the prior. What is open is a curve, not a direction: a long way along it leaves what
+/// fits, and tells nothing. It stays where the coarse steps have left it.
+Eigen::VectorXd MotionDescent::pull() const {
+  Eigen::VectorXd apart = x_ - problem_.prior.x;
+  if (is_fine_) {
+    const Eigen::MatrixXd& D = open_.directions;
+    apart -= D * (D.transpose() * apart);
+  }
+  return priorInformation() * apart;
 }
 
 void MotionDescent::judgeOpen() {
@@ -83,7 +99,13 @@ void MotionDescent::judgeOpen() {
     const auto place = static_cast<Eigen::Index>(k);
     information(place, place) += variance > 0.0 ? 1.0 / variance : 0.0;
   }
-  open_ = unidentifiedPart(information, problem_.free, space, estimation_.unobservable_stddev);
+  const Eigen::Index before = countOpen();
+  open_ = unidentifiedPart(information, problem_.free, space, open_limit_);
+  // What comes and goes stays.
+  constexpr double kStricter = 0.7;
+  if (is_fine_ && countOpen() < before) {
+    open_limit_ *= kStricter;
+  }
   estimated_.clear();
   std::set_difference(problem_.free.begin(),
                       problem_.free.end(),
@@ -95,12 +117,16 @@ void MotionDescent::judgeOpen() {
   }
 }
 
-/// Gauss–Newton, P entries.
-Eigen::VectorXd MotionDescent::step() {
-  const Eigen::MatrixXd prior = priorInformation();
-  const Eigen::MatrixXd all = sums_.information() + prior;
+/// Levenberg–Marquardt, P entries: no further from where the terms are linearised than damping
+/// allows, measured by the prior.
+Eigen::VectorXd MotionDescent::step(double damping_of_all) {
+  const Eigen::VectorXd damping = problem_.prior.covariance.diagonal().unaryExpr(
+      [&](double variance) { return variance > 0.0 ? damping_of_all / variance : 0.0; });
+  Eigen::MatrixXd all = sums_.information() + priorInformation();
+  all.diagonal() += damping;
   const Eigen::MatrixXd information = all(estimated_, estimated_);
-  const Eigen::VectorXd slope = sums_.gradient() + prior * (x_ - problem_.prior.x);
+  const Eigen::VectorXd slope =
+      sums_.gradient() + pull() + damping.cwiseProduct(x_ - linearized_at_);
   const Eigen::VectorXd gradient = slope(estimated_);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(x_.size());
   result(estimated_) = -information.ldlt().solve(gradient);
@@ -123,7 +149,7 @@ bool MotionDescent::settle(double tolerance) {
     if (estimated_.empty()) {
       return true;
     }
-    const Eigen::VectorXd forward = step();
+    const Eigen::VectorXd forward = step(damping_);
     if (!forward.allFinite()) {
       return false;
     }
@@ -140,6 +166,13 @@ double MotionDescent::lengthOf(const Eigen::VectorXd& change) const {
   return std::sqrt(std::max(0.0, change.dot(sums_.information() * change)));
 }
 
+void MotionDescent::linearizeAt(const Eigen::VectorXd& x, const TermOrder& order) {
+  x_ = x;
+  linearized_at_ = x;
+  terms_.linearize(x_, order);
+  sums_ = sumsAt(x_);
+}
+
 /// Linearises anew, half way back to `start` as long as the misfit has grown; how far that is.
 double MotionDescent::advance(const Eigen::VectorXd& start, const TermOrder& order) {
   constexpr int kMostHalvings = 6;
@@ -147,20 +180,30 @@ double MotionDescent::advance(const Eigen::VectorXd& start, const TermOrder& ord
   const Eigen::VectorXd end = x_;
   x_ = start;
   const double before = cost(sumsAt(start));
-  x_ = end;
-  double length = lengthOf(x_ - start);
-  for (int halving = 0;; ++halving) {
-    terms_.linearize(x_, order);
-    sums_ = sumsAt(x_);
-    if (cost(sums_) <= before || length < kShort || halving == kMostHalvings) {
+  double length = lengthOf(end - start);
+  int halvings = 0;
+  for (linearizeAt(end, order); cost(sums_) > before; ++halvings) {
+    if (length < kShort || halvings == kMostHalvings) {
       break;
     }
-    x_ = start + 0.5 * (x_ - start);
     length *= 0.5;
+    linearizeAt(start + 0.5 * (x_ - start), order);
   }
+  adaptDamping(halvings);
   ++iterations_;
   noteError();
   return length;
+}
+
+/// Directions that the data hardly tell bend soonest: the whole step would be as short as they
+/// allow.
+void MotionDescent::adaptDamping(int halvings) {
+  constexpr double kFirst = 1e-3;
+  if (halvings > 0) {
+    damping_ = std::max(damping_, kFirst) * std::pow(4.0, halvings);
+    return;
+  }
+  damping_ = damping_ > kFirst ? 0.1 * damping_ : 0.0;
 }
 
 /// Currents vary too fast for a start half a period off: of several delays the one with the least
@@ -209,8 +252,7 @@ void MotionDescent::solveCoarsely() {
   order.balance.stride = terms_.coarseStride();
   findDelay(order);
   order.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
-  terms_.linearize(x_, order);
-  sums_ = sumsAt(x_);
+  linearizeAt(x_, order);
   rescale();
   sums_ = sumsAt(x_);
   noteError();
@@ -218,7 +260,7 @@ void MotionDescent::solveCoarsely() {
   for (int n = 0; n < kMostSteps; ++n) {
     const Eigen::VectorXd start = x_;
     judgeOpen();
-    x_ += step();
+    x_ += step(damping_);
     if (!x_.allFinite()) {
       x_ = start;
       return;
@@ -240,9 +282,9 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
   int weighings = 0;
   TermOrder order;
   order.balance.covariance = true;
-  terms_.linearize(x_, order);
+  linearizeAt(x_, order);
   order.balance.covariance = false;
-  sums_ = sumsAt(x_);
+  is_fine_ = true;
   for (int iteration = 0; iteration < estimation_.max_iterations; ++iteration) {
     const Eigen::VectorXd start = x_;
     bool settled = settle(kSettled);
@@ -255,7 +297,7 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
     if (!settled) {
       return false;
     }
-    if (estimated_.empty() || lengthOf(x_ - start) <= kEnd) {
+    if (estimated_.empty() || (lengthOf(x_ - start) <= kEnd && lengthOf(step(0.0)) <= kEnd)) {
       return true;
     }
     advance(start, order);

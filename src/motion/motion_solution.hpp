@@ -51,19 +51,29 @@ class MotionDescent {
   bool settle(double tolerance);
   double advance(const Eigen::VectorXd& start, const TermOrder& order);
   double lengthOf(const Eigen::VectorXd& change) const;
+  void adaptDamping(int halvings);
+  void linearizeAt(const Eigen::VectorXd& x, const TermOrder& order);
   void noteError();
   MotionSums sumsAt(const Eigen::VectorXd& x);
   void rescale();
   double cost(const MotionSums& sums) const;
-  Eigen::VectorXd step();
+  Eigen::VectorXd step(double damping_of_all);
+  Eigen::VectorXd pull() const;
   void judgeOpen();
+  Eigen::Index countOpen() const {
+    return open_.directions.cols() + static_cast<Eigen::Index>(open_.coordinates.size());
+  }
 
   const MotionProblem& problem_;
   const EstimationOptions& estimation_;
   const MotionOptions& options_;
   MotionTerms& terms_;
   Eigen::VectorXd x_;
+  Eigen::VectorXd linearized_at_;
+  double damping_ = 0.0;  ///< information of each coordinate in units of the prior's
   MotionSums sums_;
+  bool is_fine_ = false;  ///< what is open is no longer pulled
+  double open_limit_;     ///< standard deviation of what is open [rad]
   UnidentifiedPart open_;
   std::vector<Eigen::Index> estimated_;
   int iterations_ = 0;
