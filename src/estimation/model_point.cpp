@@ -141,7 +141,9 @@ Eigen::Matrix3d ModelPoint::Parts::nominalTurn(const Eigen::Vector3d& reading) c
 /// Joint angles at a reading. `columns`: ∂ of them by the values of the effects.
 Eigen::Vector3d ModelPoint::Parts::corrected(const Eigen::Vector3d& reading,
                                              const Eigen::Matrix3Xd& columns) const {
-  return correctedReading(nominal_joints, reading) + columns * effects.values();
+  const Eigen::Vector3d nominal = correctedReading(nominal_joints, reading);
+  // Of a matrix without columns Eigen forms addresses that are none.
+  return columns.cols() == 0 ? nominal : Eigen::Vector3d(nominal + columns * effects.values());
 }
 
 CoilTerms ModelPoint::Parts::coilTerms(const std::vector<Excitation>& excitations,
