@@ -43,6 +43,7 @@ void readDeviation(const YamlMap& map, CurrentAmplifierOptions& options) {
   SupervisorLimits& limits = options.supervision;
   const double largest = kLargestTolerance * options.limits.coil;
   limits.deviating_beats = static_cast<int>(std::lround(kPatience * options.rate));
+  limits.beat_period = 1.0 / options.rate;
   if (map.has("deviation")) {
     const YamlMap deviation = map.map("deviation");
     limits.deviation = deviation.number("tolerance", ValueRange{0.0, largest, "A", true, false});

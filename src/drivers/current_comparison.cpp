@@ -27,14 +27,18 @@ constexpr double kShareOfChange = 0.03;
 /// What a beat that agrees takes back, of one that deviates.
 constexpr double kForgiven = 0.125;
 
+/// However long a beat took: a single measurement must not decide.
+constexpr double kLargestShare = 0.2;
+
 /// Counts go on above their limit, so that all lags can be above it at the same time.
 constexpr double kHighestCount = 1.5;
 
 }  // namespace
 
-CurrentComparison::CurrentComparison(std::size_t coils, double tolerance, int beats)
+CurrentComparison::CurrentComparison(std::size_t coils, double tolerance, int beats, double period)
     : tolerance_(tolerance),
       beats_(beats),
+      period_(period),
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))),
       lowest_(setpoints_),
       highest_(setpoints_),
@@ -49,14 +53,20 @@ void CurrentComparison::setting(const Eigen::VectorXd& setpoints) {
 
 std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& measured,
                                                       double steady) {
+  const double weight = weightOf(steady);
   advance(steady);
-  count(measured.array(), steady);
+  count(measured.array(), steady, weight);
   Eigen::Index coil = 0;
   const double most = deviating_.rowwise().minCoeff().maxCoeff(&coil);
   if (most < beats_) {
     return std::nullopt;
   }
   return static_cast<std::size_t>(coil);
+}
+
+double CurrentComparison::weightOf(double steady) const {
+  const double beats = (steady - last_.value_or(steady)) / period_;
+  return std::max(1.0, std::min(beats, kLargestShare * beats_));
 }
 
 void CurrentComparison::forgive() {
@@ -106,7 +116,7 @@ Eigen::ArrayXd CurrentComparison::tolerances() const {
   return tolerance_ + kShareOfChange * (highest - lowest);
 }
 
-void CurrentComparison::count(const Eigen::ArrayXd& measured, double steady) {
+void CurrentComparison::count(const Eigen::ArrayXd& measured, double steady, double weight) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const Eigen::ArrayXd tolerance = tolerances();
   for (Eigen::Index delay = 0; delay < kDelays; ++delay) {
@@ -124,8 +134,8 @@ void CurrentComparison::count(const Eigen::ArrayXd& measured, double steady) {
       const auto deviates =
           measured < lowest.col(filter) - tolerance || measured > highest.col(filter) + tolerance;
       auto beats = deviating_.col(kFilters * delay + filter);
-      beats = deviates.select((beats + 1.0).min(kHighestCount * beats_),
-                              (beats - kForgiven).max(0.0).eval());
+      beats = deviates.select((beats + weight).min(kHighestCount * beats_),
+                              (beats - kForgiven * weight).max(0.0).eval());
     }
   }
 }

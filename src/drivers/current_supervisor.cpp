@@ -22,7 +22,15 @@ constexpr double kOwnZero = 0.2;
 
 /// Zeros that confirm that there is no current, and how long they last at least [s].
 constexpr int kConfirmingZeros = 5;
-constexpr double kConfirmingTime = 0.025;
+constexpr double kConfirmingTime = 0.3;
+
+/// What was set flows no more so long after zero was set [s].
+constexpr double kLongestFlow = 0.3;
+/// Current after that is an error when there was so much of it [s], however rarely it comes. A
+/// second without takes little of it back.
+constexpr double kMostStrays = 0.2;
+constexpr double kForgivenStrays = 0.005;
+constexpr double kLongestBeat = 0.05;  // [s] that one measurement stands for
 
 std::string withTwoDigits(double value) {
   return format("%.2f", value);
@@ -39,7 +47,9 @@ void validate(const SupervisorLimits& limits) {
 }
 
 CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils)
-    : limits_(limits), coils_(coils), comparison_(coils, limits.deviation, limits.deviating_beats) {
+    : limits_(limits),
+      coils_(coils),
+      comparison_(coils, limits.deviation, limits.deviating_beats, limits.beat_period) {
   validate(limits);
 }
 
@@ -47,6 +57,9 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   const std::lock_guard<std::mutex> lock(mutex_);
   noticeClockJump(now);
   std::string reason = refusal(command, now);
+  if (command.caller == owner_) {
+    owner_heard_at_ = now.steady;
+  }
   if (!reason.empty()) {
     return reason;
   }
@@ -54,6 +67,7 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   command_ = command.currents;
   was_commanded_ = true;
   owner_ = command.caller;
+  owner_heard_at_ = now.steady;
   last_stamp_ = command.stamp;
   zero_commanded_ = command.currents.isZero(0.0);
   expires_at_ = now.steady + limits_.watchdog - age;
@@ -91,7 +105,7 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
     return who + "is stamped " + withTwoDigits(-age) +
            " s ahead of the wall clock: the clocks differ.";
   }
-  if (now.steady <= expires_at_ && command.caller != owner_) {
+  if (isOwnedByAnother(command, now.steady)) {
     return who + "does not count: " + owner_ +
            " commands the coils, until nothing has come from there for " +
            withTwoDigits(limits_.watchdog) + " s.";
@@ -100,6 +114,13 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
     return who + "is not newer than the one before.";
   }
   return {};
+}
+
+// The owner's commands may come too late to count, behind a flood of others: coils without current
+// are safe, and those of somebody else's are not.
+bool CurrentSupervisor::isOwnedByAnother(const CoilCommand& command, double steady) const {
+  return command.caller != owner_ && !owner_.empty() &&
+         steady <= std::max(expires_at_, owner_heard_at_ + limits_.watchdog);
 }
 
 std::optional<Eigen::VectorXd> CurrentSupervisor::command(double steady) const {
@@ -139,6 +160,7 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   if (!setpoints.isZero(0.0)) {
     zeros_ = 0;
     zero_confirmed_ = false;
+    zero_set_since_.reset();
   }
 }
 
@@ -146,7 +168,13 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) 
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
   countZeros(measured, steady);
-  const std::optional<std::size_t> deviating = comparison_.observe(measured, steady);
+  countStrays(measured, steady);
+  std::optional<std::size_t> deviating = comparison_.observe(measured, steady);
+  if (!deviating && strays_ >= kMostStrays) {
+    Eigen::Index coil = 0;
+    measured.cwiseAbs().maxCoeff(&coil);
+    deviating = static_cast<std::size_t>(coil);
+  }
   if (!fault_.empty()) {
     watchZero(steady);
     endFault();
@@ -167,6 +195,19 @@ void CurrentSupervisor::countZeros(const Eigen::VectorXd& measured, double stead
   // Current that flows though zero is set is no longer confirmed to be zero; nor is one that only
   // passes it.
   zero_confirmed_ = zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime;
+}
+
+// Current that comes for a moment now and then is never there for long.
+void CurrentSupervisor::countStrays(const Eigen::VectorXd& measured, double steady) {
+  const double elapsed = std::min(steady - last_observed_.value_or(steady), kLongestBeat);
+  last_observed_ = steady;
+  if (!comparison_.setpoints().isZero(0.0)) {
+    return;
+  }
+  zero_set_since_ = zero_set_since_.value_or(steady);
+  const bool is_stray = steady - *zero_set_since_ > kLongestFlow &&
+                        measured.cwiseAbs().maxCoeff() > limits_.deviation;
+  strays_ = std::max(strays_ + (is_stray ? elapsed : -kForgivenStrays * elapsed), 0.0);
 }
 
 void CurrentSupervisor::fail(std::size_t coil, double measured) {
@@ -196,6 +237,7 @@ void CurrentSupervisor::endFault() {
   const bool has_ended = obeyed_ && zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
   if (has_ended && faults_ < kMostFaults) {
     fault_.clear();
+    strays_ = 0.0;
     comparison_.forgive();
   }
 }
@@ -230,7 +272,7 @@ std::string CurrentSupervisor::unconfirmedReason() const {
   }
   const double largest = measured_->cwiseAbs().maxCoeff();
   return "the last measurement has a current of up to " + withTwoDigits(largest) +
-         " A, and no zeros for " + format("%.3f", kConfirmingTime) + " s came after it";
+         " A, and no zeros for " + withTwoDigits(kConfirmingTime) + " s came after it";
 }
 
 }  // namespace sac

@@ -72,7 +72,7 @@ class CoilDriverTest : public ::testing::Test {
   /// As often as zero needs to be confirmed. Returns what the last call says.
   std::string stop() {
     std::string reason;
-    for (int n = 0; n < 7; ++n) {
+    for (int n = 0; n < 65; ++n) {
       now_ += 0.005;
       reason = driver_.stop(now_);
     }
@@ -257,7 +257,7 @@ TEST_F(CoilDriverTest, DoesNotTakeALostLinkForZero) {
 TEST_F(CoilDriverTest, KnowsThatItWasZeroBeforeTheLinkWasLost) {
   follow(pattern(3, 1.5));
   now_ += 0.3;
-  for (int n = 0; n < 7; ++n) {
+  for (int n = 0; n < 65; ++n) {
     beat();
   }
   bus_.setReachable(false);

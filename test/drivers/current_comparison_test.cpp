@@ -83,7 +83,7 @@ Plant deaf(Course current) {
 
 /// When the second of two coils is told to deviate [s]. The loop is late at times by `jitter` [s].
 double toldAt(const Course& commanded, Plant plant, double end, double jitter = 0.0) {
-  CurrentComparison comparison(2, kTolerance, kBeats);
+  CurrentComparison comparison(2, kTolerance, kBeats, kBeat);
   std::minstd_rand random(1);
   std::exponential_distribution<double> late(1.0);
   double setpoint = 0.0;
@@ -183,7 +183,7 @@ TEST(CurrentComparison, ShortCurrentsAddUp) {
 }
 
 TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
-  CurrentComparison comparison(1, kTolerance, kBeats);
+  CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
   const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
   double time = 0.0;
   const auto beats_until_told = [&] {
@@ -197,6 +197,28 @@ TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
   EXPECT_TRUE(comparison.observe(two, time += kBeat));
   comparison.forgive();
   EXPECT_EQ(beats_until_told(), kBeats);
+}
+
+// An amplifier that answers slowly makes the beats long; the time until it is told must not grow.
+TEST(CurrentComparison, ASlowLoopTellsInTheSameTime) {
+  for (const double beat : {0.005, 0.012, 0.03, 0.06}) {
+    CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
+    const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+    double time = 0.0;
+    for (; time < 1.0; time += beat) {
+      comparison.setting(two);
+      ASSERT_FALSE(comparison.observe(two, time)) << beat;
+    }
+    const double begin = time;
+    bool is_told = false;
+    for (; !is_told && time < begin + 2.0; time += beat) {
+      comparison.setting(none);
+      is_told = comparison.observe(two, time).has_value();
+    }
+    EXPECT_GT(time - begin, 0.3) << beat;
+    EXPECT_LT(time - begin, 0.6) << beat;
+  }
 }
 
 }  // namespace

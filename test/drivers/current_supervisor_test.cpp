@@ -18,7 +18,7 @@ constexpr double kWall = 1.7e9;             // [s] wall clock when the steady cl
 constexpr double kSimulated = 978307200.0;  // [s] 2001, as a simulator or a recording may say
 
 const SupervisorLimits& limits() {
-  static const SupervisorLimits values{0.25, 0.1, 0.15, 4};
+  static const SupervisorLimits values{0.25, 0.1, 0.15, 4, 0.005};
   return values;
 }
 
@@ -135,6 +135,19 @@ TEST(CurrentSupervisor, OnlyTheOwnerCommandsUntilItWasSilent) {
   EXPECT_NE(supervisor.offer(given("/owner", taken_over + 0.01), at(taken_over + 0.01)), "");
 }
 
+// Behind a flood of another one its commands come, but too late to count.
+TEST(CurrentSupervisor, AnOwnerWhoIsLateKeepsTheCoilsFromOthers) {
+  CurrentSupervisor supervisor(limits(), 2);
+  ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 1.0), at(10.0)), "");
+  double now = 10.01;
+  for (; now < 13.0; now += 0.01) {
+    EXPECT_NE(supervisor.offer(given("/owner", now - 0.3), at(now)), "");
+    EXPECT_NE(supervisor.offer(given("/other", now, -1.0), at(now)), "");
+  }
+  EXPECT_FALSE(supervisor.command(now));
+  EXPECT_EQ(supervisor.offer(given("/owner", now), at(now)), "");
+}
+
 TEST(CurrentSupervisor, ForgetsAndCloses) {
   CurrentSupervisor supervisor(limits(), 2);
   EXPECT_EQ(supervisor.zeroReason(10.0), "no command has come");
@@ -158,8 +171,8 @@ struct Flow {
   int beats = 1;
 };
 
-std::string faultAfter(const std::vector<Flow>& flows) {
-  CurrentSupervisor supervisor(limits(), 2);
+std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& with = limits()) {
+  CurrentSupervisor supervisor(with, 2);
   double now = 10.0;
   for (const Flow& flow : flows) {
     for (int n = 0; n < flow.beats; ++n) {
@@ -187,6 +200,24 @@ TEST(CurrentSupervisor, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
 
 // Of a loop that is held up: every beat finds that the command has run out, or that there is one
 // again.
+// 0.15 s of 1.5 s: less than what agreeing beats take back of the comparison's count.
+TEST(CurrentSupervisor, CurrentThatComesRarelyIsAnErrorToo) {
+  const std::vector<Flow> blink{{0.0, 0.0, 270}, {0.0, 2.0, 30}};
+  std::vector<Flow> flows = blink;
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  EXPECT_EQ(faultAfter(flows, shipped), "");
+  flows.insert(flows.end(), blink.begin(), blink.end());
+  EXPECT_NE(faultAfter(flows, shipped).find("carries 2.00 A where 0.00 A are set"),
+            std::string::npos);
+  // An honest amplifier's lag is none, however often.
+  std::vector<Flow> honest;
+  for (int n = 0; n < 100; ++n) {
+    honest.insert(honest.end(), {{2.0, 0.0, 20}, {0.0, 0.0, 13}, {0.0, 2.0, 20}, {0.0, 0.0, 100}});
+  }
+  EXPECT_EQ(faultAfter(honest, shipped), "");
+}
+
 TEST(CurrentSupervisor, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
   std::vector<Flow> late;
   for (int n = 0; n < 20; ++n) {
@@ -324,15 +355,16 @@ TEST(CurrentSupervisor, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
   const std::vector<Ending> endings{
       {"nothing was measured", {}, false},
       {"one zero", {{0.0, 0.0}}, false},
-      {"zeros for 20 ms", {{0.0, 0.0, 5}}, false},
-      {"zeros for 30 ms", {{0.0, 0.01, 7}}, true},
-      {"two zeros far from each other", {{0.0, 0.0, 2}}, false, 0.1},
+      {"zeros for 0.29 s", {{0.0, 0.0, 59}}, false},
+      {"zeros for 0.31 s", {{0.0, 0.01, 63}}, true},
+      {"two zeros far from each other", {{0.0, 0.0, 2}}, false, 0.4},
       {"five of a fast loop", {{0.0, 0.0, 5}}, false, 0.001},
-      {"many of a fast loop", {{0.0, 0.0, 27}}, true, 0.001},
-      {"another current is set", {{0.0, 0.0, 9}, {1.0, 0.0, 9}}, false},
-      {"and zero again", {{1.0, 0.0, 9}, {0.0, 0.0, 4}}, false},
-      {"a current shows once", {{0.0, 0.0, 9}, {0.0, -0.2}, {0.0, 0.0, 4}}, false},
-      {"and then no more", {{0.0, 0.0, 9}, {0.0, -0.2}, {0.0, 0.0, 7}}, true},
+      {"many of a fast loop", {{0.0, 0.0, 302}}, true, 0.001},
+      {"another current is set", {{0.0, 0.0, 70}, {1.0, 0.0, 70}}, false},
+      {"and zero again", {{1.0, 0.0, 70}, {0.0, 0.0, 40}}, false},
+      {"a pulse still under way", {{2.0, 0.0, 30}, {0.0, 0.0, 30}, {0.0, 2.0, 30}}, false},
+      {"a current shows once", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 40}}, false},
+      {"and then no more", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 63}}, true},
       {"each second one is zero", {{0.0, 2.0}, {0.0, 0.0}, {0.0, 2.0}, {0.0, 0.0}}, false},
   };
   for (const Ending& ending : endings) {

@@ -17,13 +17,15 @@ namespace sac {
 /// every current lies within.
 ///
 /// For each lag the beats are counted whose current lies beyond the tolerance. A beat that agrees
-/// takes back only an eighth of one: current that comes and goes is an error, too.
+/// takes back only an eighth of one: current that comes and goes is an error, too. A loop that an
+/// amplifier slows down counts the time that passes: a beat that took long counts for several.
 ///
 /// Times are seconds of a steady clock. Not thread-safe.
 class CurrentComparison {
  public:
-  /// `tolerance`: of a current [A]; `beats`: that must deviate, one agreeing among them or not.
-  CurrentComparison(std::size_t coils, double tolerance, int beats);
+  /// `tolerance`: of a current [A]; `beats`: that must deviate, one agreeing among them or not;
+  /// `period`: of a beat that is not slowed down [s].
+  CurrentComparison(std::size_t coils, double tolerance, int beats, double period);
 
   /// These setpoints [A] go to the amplifier next.
   void setting(const Eigen::VectorXd& setpoints);
@@ -48,10 +50,12 @@ class CurrentComparison {
   void advance(double steady);
   void remember(const Span& span);
   Eigen::ArrayXd tolerances() const;
-  void count(const Eigen::ArrayXd& measured, double steady);
+  double weightOf(double steady) const;
+  void count(const Eigen::ArrayXd& measured, double steady, double weight);
 
   double tolerance_;
   double beats_;
+  double period_;
   Eigen::VectorXd setpoints_;
   Eigen::ArrayXd lowest_;   ///< that was set since the last measurement [A]
   Eigen::ArrayXd highest_;  ///< likewise

@@ -13,10 +13,11 @@ namespace sac {
 
 /// When currents may flow, and when what flows is not what was set.
 struct SupervisorLimits {
-  double watchdog = 0.25;    ///< a command holds for so long from its stamp on [s]
-  double clock_skew = 0.1;   ///< the clocks of commander and driver may differ by [s]
-  double deviation = 0.15;   ///< of a measured current from the one that is set, at most [A]
-  int deviating_beats = 40;  ///< beyond it, of one coil, are an error: see CurrentComparison
+  double watchdog = 0.25;      ///< a command holds for so long from its stamp on [s]
+  double clock_skew = 0.1;     ///< the clocks of commander and driver may differ by [s]
+  double deviation = 0.15;     ///< of a measured current from the one that is set, at most [A]
+  int deviating_beats = 40;    ///< beyond it, of one coil, are an error: see CurrentComparison
+  double beat_period = 0.005;  ///< of beats that are not slowed down [s]
 };
 
 /// Throws ConfigError that names the limit and its range.
@@ -41,9 +42,10 @@ struct Instant {
 ///
 /// A command counts when it is well formed, stamped by the wall clock, neither old nor of the
 /// future, newer than the one before, and given by the only one who commands: whoever was last
-/// accepted owns the coils until the last command has run out. It holds for the watchdog's time
-/// from its stamp on, however late it arrived; a steady clock watches that. Nothing depends on a
-/// simulated clock, so that a recording which is played again drives no coil.
+/// accepted owns the coils until the last command has run out, and nothing that does not count has
+/// come from there for as long: who lives, but is late, does not lose them. A command holds for the
+/// watchdog's time from its stamp on, however late it arrived; a steady clock watches that. Nothing
+/// depends on a simulated clock, so that a recording which is played again drives no coil.
 ///
 /// Thread-safe: commands arrive in one thread, and are followed in another.
 class CurrentSupervisor {
@@ -79,8 +81,9 @@ class CurrentSupervisor {
   std::string fault() const;
   /// How often there was one.
   int faults() const;
-  /// Whether zero was measured in all coils, five times in a row and for 25 ms at least, since
-  /// anything else was set or measured: a current that alternates passes zero, too.
+  /// Whether zero was measured in all coils, five times in a row and for 0.3 s at least, since
+  /// anything else was set or measured: a current that alternates passes zero, too, and what was
+  /// set last may be on its way for as long as an honest amplifier takes.
   bool isZeroConfirmed() const;
   /// In words, why it is not; empty when it is.
   std::string unconfirmedReason() const;
@@ -89,7 +92,9 @@ class CurrentSupervisor {
   std::string refusal(const CoilCommand& command, const Instant& now) const;
   bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
   void noticeClockJump(const Instant& now);
+  bool isOwnedByAnother(const CoilCommand& command, double steady) const;
   void countZeros(const Eigen::VectorXd& measured, double steady);
+  void countStrays(const Eigen::VectorXd& measured, double steady);
   bool isZeroNow() const { return zeros_ > 0; }
   void fail(std::size_t coil, double measured);
   void watchZero(double steady);
@@ -103,6 +108,7 @@ class CurrentSupervisor {
   bool was_commanded_ = false;
   double expires_at_ = 0.0;            ///< the last command, by the steady clock
   std::string owner_;                  ///< who gave it
+  double owner_heard_at_ = 0.0;        ///< also by what did not count
   std::optional<double> last_stamp_;   ///< its stamp
   std::optional<double> wall_offset_;  ///< wall less steady clock, when it came
   CurrentComparison comparison_;
@@ -110,6 +116,9 @@ class CurrentSupervisor {
   int zeros_ = 0;            ///< measurements in a row of nothing but zero, while zero is set
   double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
+  std::optional<double> zero_set_since_;  ///< by the steady clock [s]
+  std::optional<double> last_observed_;   ///< likewise
+  double strays_ = 0.0;  ///< current long after zero was set, less what was forgiven [s]
   std::string fault_;
   int faults_ = 0;
   double fault_at_ = 0.0;  ///< by the steady clock [s]

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kWarningPeriod = 2.0;  // [s]
 /// For currents to fade, and for an amplifier that does not answer at once, when the node ends [s].
-constexpr double kStopTime = 0.5;
+constexpr double kStopTime = 0.8;
 /// Between two looks whether the currents have faded.
 constexpr std::chrono::milliseconds kStopPause{5};
 /// The commands of all callers that come while one is judged: none may push out another's.

@@ -72,8 +72,9 @@ class CoilDriverNode {
   StreamMonitor currents_;
   LinkDiagnostics link_diagnostics_;
   NodeDiagnostics diagnostics_;
-  /// Of the commands alone: they are judged as they come, whatever else the node is busy with, so
-  /// that those of the owner are not lost among a flood of others.
+  /// Of the commands alone: they are judged as they come, whatever else the node is busy with. A
+  /// flood may still keep roscpp, which reads all links in one thread, from those of the owner: then
+  /// the coils have no current.
   ros::CallbackQueue queue_;
   ros::Subscriber subscriber_;
   ros::AsyncSpinner receiver_;
