@@ -9,8 +9,10 @@
 #include <vector>
 
 #include <boost/array.hpp>
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/QuaternionStamped.h>
 #include <geometry_msgs/Vector3Stamped.h>
+#include <geometry_msgs/WrenchStamped.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 #include <sensor_msgs/JointState.h>
@@ -21,19 +23,23 @@
 namespace sac {
 
 /// A message that comes from outside is not longer than this [byte]: samples of thousands of coils
-/// are shorter. Those of streams are short, so that a queue of thousands of them, and the time to
-/// read it, are small however somebody floods it.
+/// are shorter. Those of streams are short: what is longer is refused before it is read, so that a
+/// queue that somebody floods is emptied as quickly as it fills.
 template <typename Message>
 inline constexpr std::size_t kLargestMessage = std::size_t{4} << 20U;
 template <>
-inline constexpr std::size_t kLargestMessage<sensor_msgs::JointState> = std::size_t{16} << 10U;
+inline constexpr std::size_t kLargestMessage<sensor_msgs::JointState> = std::size_t{8} << 10U;
 template <>
-inline constexpr std::size_t kLargestMessage<msg::CoilCurrents> = std::size_t{64} << 10U;
+inline constexpr std::size_t kLargestMessage<msg::CoilCurrents> = std::size_t{16} << 10U;
 template <>
 inline constexpr std::size_t kLargestMessage<geometry_msgs::QuaternionStamped> =
     std::size_t{4} << 10U;
 template <>
 inline constexpr std::size_t kLargestMessage<geometry_msgs::Vector3Stamped> = std::size_t{4} << 10U;
+template <>
+inline constexpr std::size_t kLargestMessage<geometry_msgs::PoseStamped> = std::size_t{4} << 10U;
+template <>
+inline constexpr std::size_t kLargestMessage<geometry_msgs::WrenchStamped> = std::size_t{4} << 10U;
 
 /// Reads messages from bytes, and believes no length in them before it has seen the bytes. roscpp
 /// makes room for as many entries as an array says it has before it looks whether they are there:
