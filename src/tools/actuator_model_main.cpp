@@ -113,12 +113,26 @@ std::string answer(const CalibratedActuator& actuator, const std::string& questi
   throw DataError("\"" + printable(word) + "\" is none of: orientation, torque, currents.");
 }
 
+/// The next line of the standard input; false at its end. Throws DataError where it has none.
+bool nextLine(std::string& line) {
+  constexpr std::size_t kLongest = std::size_t{1} << 20U;
+  line.clear();
+  char sign = '\0';
+  while (std::cin.get(sign) && sign != '\n') {
+    line.push_back(sign);
+    if (line.size() > kLongest) {
+      throw DataError("A line of the input has more than " + std::to_string(kLongest) + " bytes.");
+    }
+  }
+  return !line.empty() || std::cin.good();
+}
+
 void serve(const std::string& path) {
   const CalibratedActuator actuator = CalibratedActuator::load(path);
   std::cout << "ready " << (actuator.hasTorqueModel() ? actuator.coils() : 0) << " "
             << (actuator.hasUncertainty() ? 1 : 0) << std::endl;
   std::string question;
-  while (std::getline(std::cin, question)) {
+  while (nextLine(question)) {
     std::string text;
     try {
       text = answer(actuator, question);
