@@ -2,7 +2,6 @@
 
 #include <QGridLayout>
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QMessageBox>
 #include <QTabWidget>
 #include <QTime>
@@ -67,30 +66,6 @@ QLabel* wrappingLabel() {
   return label;
 }
 
-QTableWidget* parameterTable() {
-  auto* table = new QTableWidget(0, 3);
-  table->setHorizontalHeaderLabels({"parameter", "value", "uncertainty"});
-  table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  constexpr int kValue = 1;  // the widest: an axis
-  table->horizontalHeader()->setSectionResizeMode(kValue, QHeaderView::Stretch);
-  table->verticalHeader()->hide();
-  table->verticalHeader()->setDefaultSectionSize(20);
-  table->setEditTriggers(QAbstractItemView::NoEditTriggers);
-  return table;
-}
-
-void fill(const std::vector<ParameterLine>& lines, QTableWidget& table) {
-  table.setRowCount(static_cast<int>(lines.size()));
-  int row = 0;
-  for (const ParameterLine& line : lines) {
-    int column = 0;
-    for (const std::string& text : {line.name, line.value, line.uncertainty}) {
-      table.setItem(row, column++, new QTableWidgetItem(QString::fromStdString(text)));
-    }
-    ++row;
-  }
-}
-
 }  // namespace
 
 CalibrationPanel::CalibrationPanel(QWidget* parent)
@@ -117,6 +92,12 @@ void CalibrationPanel::build() {
   legend->setText(kLegend);
   layout->addWidget(legend);
   layout->addLayout(makeCaptureRow());
+  hand_guide_ = new HandGuide(
+      node_,
+      model_,
+      [this] { return validation_->isChecked(); },
+      [this] { return duration_->value(); });
+  layout->addWidget(hand_guide_);
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
   answer_ = wrappingLabel();
@@ -137,9 +118,13 @@ QLayout* CalibrationPanel::makeStreams() {
   return grid;
 }
 
-QPushButton* CalibrationPanel::addButton(QLayout* row, const QString& text, const QString& help) {
+QPushButton* CalibrationPanel::addButton(QLayout* row,
+                                         const QString& text,
+                                         const QString& help,
+                                         const QString& key) {
   auto* button = new QPushButton(text);
-  button->setToolTip(help);
+  button->setToolTip(key.isEmpty() ? help : help + " (" + key + ")");
+  button->setShortcut(QKeySequence(key));
   row->addWidget(button);
   buttons_.push_back(button);
   return button;
@@ -147,7 +132,8 @@ QPushButton* CalibrationPanel::addButton(QLayout* row, const QString& text, cons
 
 QLayout* CalibrationPanel::makeCaptureRow() {
   auto* row = new QHBoxLayout;
-  QPushButton* button = addButton(row, "Capture", "Average the present dwell into one sample");
+  QPushButton* button =
+      addButton(row, "Capture", "Average the present dwell into one sample", "F4");
   button->setStyleSheet(kPrimaryStyle);
   connect(button, &QPushButton::clicked, this, &CalibrationPanel::capture);
   duration_ = new QDoubleSpinBox;
@@ -158,7 +144,8 @@ QLayout* CalibrationPanel::makeCaptureRow() {
   duration_->setSuffix(" s");
   row->addWidget(duration_);
   validation_ = new QCheckBox("hold out");
-  validation_->setToolTip("Never use the sample to estimate, only to judge");
+  validation_->setToolTip("Never use the sample to estimate, only to judge (F5)");
+  validation_->setShortcut(QKeySequence("F5"));
   row->addWidget(validation_);
   auto_capture_ = new QCheckBox("every dwell");
   auto_capture_->setToolTip("Capture every dwell by itself");
@@ -169,8 +156,12 @@ QLayout* CalibrationPanel::makeCaptureRow() {
 
 QLayout* CalibrationPanel::makeCycleRow() {
   auto* row = new QHBoxLayout;
-  const auto add = [&](const QString& text, const std::string& service, bool has_coil) {
-    QPushButton* button = addButton(row, text, QString::fromStdString("calibration/" + service));
+  const auto add = [&](const QString& text,
+                       const std::string& service,
+                       bool has_coil,
+                       const QString& key = QString()) {
+    QPushButton* button =
+        addButton(row, text, QString::fromStdString("calibration/" + service), key);
     connect(button, &QPushButton::clicked, this, [this, service, has_coil] {
       calibrate(service, has_coil ? static_cast<std::uint32_t>(coil_->value()) : 0U);
     });
@@ -178,18 +169,18 @@ QLayout* CalibrationPanel::makeCycleRow() {
   coil_ = new QSpinBox;
   coil_->setRange(1, kMostCoils);
   coil_->setPrefix("coil ");
-  add("Joint", "calibrate_joint", false);
+  add("Joint", "calibrate_joint", false, "F6");
   add("Poles", "calibrate_poles", true);
   add("Coil", "calibrate_coil", true);
   row->addWidget(coil_);
-  add("Refine", "refine", false);
-  add("Validate", "validate", false);
+  add("Refine", "refine", false, "F7");
+  add("Validate", "validate", false, "F8");
   return row;
 }
 
 QLayout* CalibrationPanel::makeFileRow() {
   auto* row = new QHBoxLayout;
-  connect(addButton(row, "Save", "Write the calibrated description, URDF and report"),
+  connect(addButton(row, "Save", "Write the calibrated description, URDF and report", "F9"),
           &QPushButton::clicked,
           this,
           [this] { trigger("save"); });
@@ -211,8 +202,8 @@ QLayout* CalibrationPanel::makeFileRow() {
 }
 
 QWidget* CalibrationPanel::makeResults() {
-  parameters_ = parameterTable();
-  estimates_ = parameterTable();
+  parameters_ = new ParameterTable;
+  estimates_ = new ParameterTable;
   chart_ = new ConvergenceChart;
   auto* tabs = new QTabWidget;
   tabs->addTab(parameters_, "In force");
@@ -253,6 +244,7 @@ void CalibrationPanel::feed(const std::string& topic) {
 
 void CalibrationPanel::refresh() {
   showAnswer();
+  hand_guide_->refresh();
   if (ticks_++ % kTicksOfHealth == 0) {
     showHealth();
   }
@@ -282,8 +274,8 @@ void CalibrationPanel::showCalibration() {
   bars_->setGroups(model_.coverage());
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
   grade_->setText(QString::fromStdString(model_.grade() + " (" + model_.revision() + ")"));
-  fill(model_.parameters(), *parameters_);
-  fill(model_.estimates(), *estimates_);
+  parameters_->fill(model_.parameters());
+  estimates_->fill(model_.estimates());
   chart_->setHistory(QString::fromStdString(model_.historyTitle()), model_.errorHistory());
 }
 

@@ -6,7 +6,6 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
-#include <QTableWidget>
 #include <QTimer>
 #include <optional>
 #include <string>
@@ -18,7 +17,9 @@
 
 #include "convergence_chart.hpp"
 #include "coverage_bars.hpp"
+#include "hand_guide.hpp"
 #include "panel_model.hpp"
+#include "parameter_table.hpp"
 #include "service_caller.hpp"
 
 namespace sac {
@@ -43,7 +44,10 @@ class CalibrationPanel : public rviz::Panel {
   QLayout* makeCycleRow();
   QLayout* makeFileRow();
   QWidget* makeResults();
-  QPushButton* addButton(QLayout* row, const QString& text, const QString& help);
+  QPushButton* addButton(QLayout* row,
+                         const QString& text,
+                         const QString& help,
+                         const QString& key = QString());
 
   void listen();
   template <typename Message>
@@ -81,6 +85,7 @@ class CalibrationPanel : public rviz::Panel {
   std::vector<QPushButton*> buttons_;
   QDoubleSpinBox* duration_ = nullptr;
   QCheckBox* validation_ = nullptr;
+  HandGuide* hand_guide_ = nullptr;
   QCheckBox* auto_capture_ = nullptr;
   std::optional<bool> auto_capture_asked_;  ///< what the running call asks for
   QSpinBox* coil_ = nullptr;
@@ -89,8 +94,8 @@ class CalibrationPanel : public rviz::Panel {
   QString called_;       ///< service of the running or the last call
   QElapsedTimer since_;  ///< its begin, or its answer
   QLabel* grade_ = nullptr;
-  QTableWidget* parameters_ = nullptr;
-  QTableWidget* estimates_ = nullptr;
+  ParameterTable* parameters_ = nullptr;
+  ParameterTable* estimates_ = nullptr;
   ConvergenceChart* chart_ = nullptr;
 };
 

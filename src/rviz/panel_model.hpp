@@ -64,6 +64,9 @@ class PanelModel {
   std::vector<CoverageGroup> coverage() const;
   std::uint32_t coils() const { return static_cast<std::uint32_t>(status_.coils.size()); }
 
+  /// A coil below it counts as off [A].
+  double currentThreshold() const { return status_.current_threshold; }
+
   /// What to do next, in words.
   std::string nextStep() const;
   /// Parameters in force: revision, and where they come from.

@@ -5,16 +5,22 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <ros/service.h>
+
+#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
 
 /// What a service answered, or why it did not.
 struct ServiceAnswer {
   bool success = false;
-  std::string message;  ///< one sentence
+  std::string message;                  ///< one sentence
+  std::vector<msg::PlannedPose> poses;  ///< of plan_poses
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -30,12 +36,16 @@ class ServiceCaller {
       service.request = request;
       constexpr bool kTellAbsence = false;
       if (!ros::service::exists(name, kTellAbsence)) {
-        return {false, "The calibration node does not answer (" + name + "): is it running?"};
+        return {false, "The calibration node does not answer (" + name + "): is it running?", {}};
       }
       if (!ros::service::call(name, service)) {
-        return {false, "The connection to " + name + " was lost before its answer."};
+        return {false, "The connection to " + name + " was lost before its answer.", {}};
       }
-      return {service.response.success != 0, service.response.message};
+      ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
+      if constexpr (std::is_same_v<Service, msg::PlanPoses>) {
+        answer.poses = service.response.poses;
+      }
+      return answer;
     });
   }
 

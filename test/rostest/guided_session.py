@@ -12,15 +12,14 @@ import unittest
 
 import rospy
 import rostest
-import yaml
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from emulated_lab import EmulatedLab
+from true_parameters import expect_truth
 
 POSES = 8
 OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
 OPTIONS += ("--validation-poses", "1", "--settling", "0.15")
 SESSION_TIMEOUT = 600.0  # [s]
-INTERVALS = 4.0  # standard deviations that hold every parameter
 
 
 class GuidedProgram:
@@ -143,22 +142,7 @@ class GuidedSession(unittest.TestCase):
 
     def check_result(self, session):
         saved = next(line for line in session.lines if line.startswith("Saved "))
-        with open(re.match(r"Saved (\S+\.yaml)", saved).group(1), encoding="utf-8") as file:
-            result = yaml.safe_load(file)["actuator"]
-        with open(self.lab.truth, encoding="utf-8") as file:
-            truth = yaml.safe_load(file)["actuator"]
-        compared = 0
-        for group in ("poles", "coils"):
-            for one, other in zip(result[group], truth[group]):
-                for angle in ("polar", "azimuth"):
-                    limit = INTERVALS * one["stddev"][angle]
-                    self.assertLess(limit, 5e-3)
-                    self.assertLess(abs(one[angle] - other[angle]), limit, f"{group} {angle}")
-                    compared += 1
-        for one, other in zip(result["joints"], truth["joints"]):
-            self.assertLess(abs(one["offset"] - other["offset"]), INTERVALS * one["stddev"]["offset"])
-            compared += 1
-        self.assertEqual(compared, 2 * (8 + 24) + 3)
+        expect_truth(self, re.match(r"Saved (\S+\.yaml)", saved).group(1), self.lab.truth)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,222 @@
+#include "hand_guide.hpp"
+
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+#include <utility>
+
+#include "spherical_actuator_calibration/Capture.h"
+#include "spherical_actuator_calibration/CoilCurrents.h"
+#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
+
+namespace sac {
+namespace {
+
+constexpr int kMostPoses = 100;
+constexpr double kLargestCurrent = 100.0;  // [A]; the coil driver has its own limits
+/// Beside the capture: for currents to come, and for the node to answer [s].
+constexpr double kLongestBeside = 15.0;
+
+}  // namespace
+
+HandGuide::HandGuide(const ros::NodeHandle& node,
+                     const PanelModel& model,
+                     std::function<bool()> hold_out,
+                     std::function<double()> duration)
+    : node_(node),
+      model_(model),
+      hold_out_(std::move(hold_out)),
+      duration_(std::move(duration)),
+      exciter_(node),
+      wanted_pose_(node_.advertise<sensor_msgs::JointState>("wanted_pose", 1, true)) {
+  build();
+  listen();
+  showAdvice();
+}
+
+void HandGuide::build() {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  advice_ = new QLabel;
+  advice_->setWordWrap(true);
+  layout->addWidget(advice_);
+  auto* row = new QHBoxLayout;
+  plan_ = new QPushButton("Plan");
+  plan_->setToolTip("Choose the poses that tell most, given the samples held (F2)");
+  plan_->setShortcut(QKeySequence("F2"));
+  connect(plan_, &QPushButton::clicked, this, [this] { plan(); });
+  row->addWidget(plan_);
+  poses_ = new QSpinBox;
+  poses_->setRange(1, kMostPoses);
+  poses_->setValue(8);
+  poses_->setSuffix(" poses");
+  row->addWidget(poses_);
+  measure_ = new QPushButton;
+  measure_->setToolTip(
+      "Capture here without current, then with each planned coil excited in turn (F3)");
+  connect(measure_, &QPushButton::clicked, this, [this] { measureOrStop(); });
+  row->addWidget(measure_);
+  current_ = new QDoubleSpinBox;
+  current_->setRange(-kLargestCurrent, kLargestCurrent);
+  current_->setSingleStep(0.5);
+  current_->setDecimals(1);
+  current_->setValue(2.0);
+  current_->setSuffix(" A");
+  row->addWidget(current_);
+  layout->addLayout(row);
+  outcome_ = new QLabel;
+  outcome_->setWordWrap(true);
+  layout->addWidget(outcome_);
+}
+
+// The newest message counts; rviz delivers it in the thread of the windows.
+void HandGuide::listen() {
+  constexpr std::uint32_t kNewest = 1;
+  constexpr std::uint32_t kAll = 1000;
+  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+      node_,
+      "joint_states",
+      kNewest,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { guide_.receive(*message); },
+      tellRefusal("joint_states")));
+  subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(
+      node_,
+      "coil_currents",
+      kNewest,
+      [this](const msg::CoilCurrents::ConstPtr& message) { currents_ = message->current; },
+      tellRefusal("coil_currents")));
+  subscribers_.push_back(subscribeChecked<msg::CalibrationSample>(
+      node_,
+      "samples",
+      kAll,
+      [this](const msg::CalibrationSample::ConstPtr& message) {
+        guide_.receive(*message, model_.currentThreshold());
+      },
+      tellRefusal("samples")));
+}
+
+void HandGuide::refresh() {
+  if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
+    if (is_planning_) {
+      takePlan(*answer);
+    } else {
+      measurement_.answered(answer->success, answer->message, steadySeconds());
+    }
+  }
+  if (measurement_.isRunning()) {
+    goOn();
+  } else if (exciter_.coil() != 0) {
+    finish();
+  }
+  tellTarget();
+  showAdvice();
+}
+
+void HandGuide::plan() {
+  if (caller_.isBusy()) {
+    return;
+  }
+  msg::PlanPoses::Request request;
+  request.cycle = "refine";
+  request.max_poses = static_cast<std::uint32_t>(poses_->value());
+  is_planning_ = true;
+  outcome_->setText("Planning …");
+  caller_.call<msg::PlanPoses>(node_.resolveName("calibration/plan_poses"), request);
+}
+
+void HandGuide::takePlan(const ServiceAnswer& answer) {
+  is_planning_ = false;
+  if (answer.success) {
+    guide_.take(answer.poses);
+  }
+  outcome_->setText(QString::fromStdString(answer.message));
+}
+
+void HandGuide::measureOrStop() {
+  if (measurement_.isRunning()) {
+    measurement_.end("Stopped; the currents are zero.");
+    finish();
+    return;
+  }
+  measure();
+}
+
+// Without a plan, or between its poses: the pose as it is, without current.
+void HandGuide::measure() {
+  if (caller_.isBusy()) {
+    return;
+  }
+  std::vector<std::uint32_t> patterns = {0};
+  if (const std::optional<std::size_t> here = guide_.here()) {
+    patterns = guide_.missing(*here);
+  }
+  if (patterns.empty()) {
+    outcome_->setText("This pose is measured already.");
+    return;
+  }
+  measurement_.begin(std::move(patterns), current_->value(), steadySeconds());
+  goOn();
+}
+
+void HandGuide::goOn() {
+  const double seconds = duration_() + kLongestBeside;
+  if (measurement_.coil() != exciter_.coil()) {
+    exciter_.excite(measurement_.coil(), currents_.size(), measurement_.current(), seconds);
+  }
+  switch (measurement_.step(currents_, steadySeconds())) {
+    case PoseMeasurement::Action::kCapture:
+      askForCapture();
+      break;
+    case PoseMeasurement::Action::kEnd:
+      finish();
+      break;
+    case PoseMeasurement::Action::kNothing:
+      outcome_->setText(measurement_.coil() == 0
+                            ? QString("Measuring without current …")
+                            : QString("Measuring with coil %1 …").arg(measurement_.coil()));
+      break;
+  }
+}
+
+void HandGuide::askForCapture() {
+  msg::Capture::Request request;
+  request.duration = duration_();
+  request.validation = static_cast<std::uint8_t>(hold_out_());
+  caller_.call<msg::Capture>(node_.resolveName("calibration/capture"), request);
+}
+
+void HandGuide::finish() {
+  exciter_.stop();
+  outcome_->setText(QString::fromStdString(measurement_.outcome()));
+}
+
+void HandGuide::tellTarget() {
+  const std::optional<std::array<double, 3>> target = guide_.target();
+  if (target == told_target_) {
+    return;
+  }
+  told_target_ = target;
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time::now();
+  if (target) {
+    message.name = {"joint_1", "joint_2", "joint_3"};
+    message.position.assign(target->begin(), target->end());
+  }
+  wanted_pose_.publish(message);
+}
+
+void HandGuide::showAdvice() {
+  const QString advice = QString::fromStdString(guide_.advice());
+  if (advice != advice_->text()) {
+    advice_->setText(advice);
+  }
+  // A new text takes the shortcut away.
+  const char* what = measurement_.isRunning() ? "Stop" : "Measure pose";
+  if (measure_->text() != what) {
+    measure_->setText(what);
+    measure_->setShortcut(QKeySequence("F3"));
+  }
+  plan_->setEnabled(!caller_.isBusy() && !measurement_.isRunning());
+}
+
+}  // namespace sac

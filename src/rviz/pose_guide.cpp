@@ -1,0 +1,158 @@
+#include "pose_guide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sac {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+/// The coil that a sample excites, counted from 1; 0: none; nothing: several.
+std::optional<std::uint32_t> excitedCoil(const std::vector<double>& currents, double threshold) {
+  std::uint32_t coil = 0;
+  for (std::size_t j = 0; j < currents.size(); ++j) {
+    if (std::abs(currents[j]) < threshold) {
+      continue;
+    }
+    if (coil != 0) {
+      return std::nullopt;
+    }
+    coil = static_cast<std::uint32_t>(j + 1);
+  }
+  return coil;
+}
+
+std::string inDegrees(double angle) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.1f°", kDegrees * std::abs(angle));
+  return (angle < 0.0 ? "−" : "+") + std::string(text);
+}
+
+std::string listed(const std::vector<std::uint32_t>& coils) {
+  std::string text;
+  for (const std::uint32_t coil : coils) {
+    text += (text.empty() ? "" : ", ") + std::to_string(coil);
+  }
+  return text;
+}
+
+}  // namespace
+
+void PoseGuide::take(const std::vector<msg::PlannedPose>& poses) {
+  poses_.clear();
+  for (const msg::PlannedPose& planned : poses) {
+    Pose pose;
+    std::copy(planned.joint_position.begin(), planned.joint_position.end(), pose.joints.begin());
+    pose.patterns = {0};
+    pose.patterns.insert(pose.patterns.end(), planned.coils.begin(), planned.coils.end());
+    poses_.push_back(std::move(pose));
+  }
+}
+
+void PoseGuide::receive(const sensor_msgs::JointState& message) {
+  std::array<double, 3> joints = {};
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const auto named =
+        std::find(message.name.begin(), message.name.end(), "joint_" + std::to_string(k + 1));
+    const auto place = named == message.name.end()
+                           ? k
+                           : static_cast<std::size_t>(std::distance(message.name.begin(), named));
+    if (place >= message.position.size() || !std::isfinite(message.position[place])) {
+      return;
+    }
+    joints[k] = message.position[place];
+  }
+  joints_ = joints;
+}
+
+void PoseGuide::receive(const msg::CalibrationSample& sample, double threshold) {
+  const std::optional<std::uint32_t> coil = excitedCoil(sample.current, threshold);
+  if (!coil) {
+    return;
+  }
+  std::array<double, 3> joints = {};
+  std::copy(sample.joint_position.begin(), sample.joint_position.end(), joints.begin());
+  for (Pose& pose : poses_) {
+    if (isSame(pose.joints, joints)) {
+      pose.measured.insert(*coil);
+    }
+  }
+}
+
+bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) {
+  return std::equal(one.begin(), one.end(), other.begin(), [](double a, double b) {
+    return std::abs(a - b) <= kSamePose;
+  });
+}
+
+std::vector<std::uint32_t> PoseGuide::missing(std::size_t pose) const {
+  std::vector<std::uint32_t> result;
+  for (const std::uint32_t pattern : poses_.at(pose).patterns) {
+    if (poses_[pose].measured.count(pattern) == 0) {
+      result.push_back(pattern);
+    }
+  }
+  return result;
+}
+
+std::optional<std::size_t> PoseGuide::next() const {
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    if (!missing(n).empty()) {
+      return n;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::array<double, 3>> PoseGuide::target() const {
+  const std::optional<std::size_t> pose = next();
+  return pose ? std::make_optional(poses_[*pose].joints) : std::nullopt;
+}
+
+std::optional<std::size_t> PoseGuide::here() const {
+  std::optional<std::size_t> measured;
+  for (std::size_t n = 0; joints_ && n < poses_.size(); ++n) {
+    if (!isSame(poses_[n].joints, *joints_)) {
+      continue;
+    }
+    if (!missing(n).empty()) {
+      return n;
+    }
+    measured = measured.value_or(n);
+  }
+  return measured;
+}
+
+std::string PoseGuide::advice() const {
+  if (!hasPlan()) {
+    return "Plan poses to be led from one to the next.";
+  }
+  const std::optional<std::size_t> target = next();
+  if (!target) {
+    return "All " + std::to_string(poses_.size()) + " poses are measured: calibrate.";
+  }
+  const std::string which =
+      "Pose " + std::to_string(*target + 1) + " of " + std::to_string(poses_.size()) + ": ";
+  if (!joints_) {
+    return which + "the joint angles are silent.";
+  }
+  if (isSame(poses_[*target].joints, *joints_)) {
+    const std::vector<std::uint32_t> open = missing(*target);
+    const std::vector<std::uint32_t> coils(open.begin() + (open.front() == 0 ? 1 : 0), open.end());
+    return which + "there. Clamp the rotor, then measure" +
+           (coils.empty() ? "." : "; it excites coil " + listed(coils) + " in turn.");
+  }
+  std::string turns;
+  for (std::size_t k = 0; k < joints_->size(); ++k) {
+    const double left = poses_[*target].joints[k] - (*joints_)[k];
+    if (std::abs(left) > kSamePose) {
+      turns += (turns.empty() ? "" : ", ") + ("joint_" + std::to_string(k + 1)) + " by " +
+               inDegrees(left);
+    }
+  }
+  return which + "turn " + turns + ".";
+}
+
+}  // namespace sac

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <sensor_msgs/JointState.h>
+
+#include "spherical_actuator_calibration/CalibrationSample.h"
+#include "spherical_actuator_calibration/PlannedPose.h"
+#include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+
+namespace sac {
+
+/// Leads a hand to planned poses: which is next, how far the rotor is from it, and what has not
+/// been measured there. Knows no windows.
+class PoseGuide {
+ public:
+  /// Differences of joint angles up to this one are the same pose [rad].
+  static constexpr double kSamePose = 0.02;
+
+  /// Poses to measure at, in their order, instead of those before.
+  void take(const std::vector<msg::PlannedPose>& poses);
+  /// Joint angles [rad]: of joint_1..3 by their names, or the first three where there are none.
+  void receive(const sensor_msgs::JointState& message);
+  /// A sample that is held: its pose and pattern are measured. A coil below `threshold` [A] is off.
+  void receive(const msg::CalibrationSample& sample, double threshold);
+
+  bool hasPlan() const { return !poses_.empty(); }
+  /// Index of the first pose that is not measured; nothing where none is left.
+  std::optional<std::size_t> next() const;
+  /// Joint angles of that pose [rad].
+  std::optional<std::array<double, 3>> target() const;
+  /// Index of the pose where the rotor is; the first that is not measured, if there are several.
+  std::optional<std::size_t> here() const;
+  /// Coils to excite at a pose that no sample holds yet, counted from 1, in turn; 0: without
+  /// current, which comes first.
+  std::vector<std::uint32_t> missing(std::size_t pose) const;
+  /// What to do, in words: "Pose 2 of 8: turn joint_1 by +12.3°, joint_3 by −4.0°."
+  std::string advice() const;
+
+ private:
+  struct Pose {
+    std::array<double, 3> joints;
+    std::vector<std::uint32_t> patterns;
+    std::set<std::uint32_t> measured;
+  };
+
+  static bool isSame(const std::array<double, 3>& one, const std::array<double, 3>& other);
+
+  std::vector<Pose> poses_;
+  std::optional<std::array<double, 3>> joints_;
+};
+
+}  // namespace sac

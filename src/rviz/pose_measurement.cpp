@@ -1,0 +1,93 @@
+#include "pose_measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sac {
+namespace {
+
+/// The amplifier's own lag, and what the rotor needs to rest [s].
+constexpr double kSettling = 0.3;
+/// In which coils must carry their current [s].
+constexpr double kPatience = 10.0;
+/// A current may miss its command by so much [A], or by that share of it.
+constexpr double kTolerance = 0.05;
+constexpr double kToleranceShare = 0.1;
+
+}  // namespace
+
+void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current, double now) {
+  patterns_ = std::move(patterns);
+  place_ = 0;
+  current_ = current;
+  outcome_.clear();
+  beginPattern(now);
+}
+
+void PoseMeasurement::beginPattern(double now) {
+  began_ = now;
+  settled_ = -1.0;
+  is_asked_ = false;
+}
+
+PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measured, double now) {
+  if (!isRunning()) {
+    return Action::kEnd;
+  }
+  if (is_asked_) {
+    return Action::kNothing;
+  }
+  if (!carries(measured)) {
+    settled_ = -1.0;
+    if (now - began_ > kPatience) {
+      end(coil() == 0 ? "The coils do not become free of current: look at the coil driver."
+                      : "Coil " + std::to_string(coil()) +
+                            " does not carry its current: look at the coil driver.");
+      return Action::kEnd;
+    }
+    return Action::kNothing;
+  }
+  settled_ = settled_ < 0.0 ? now : settled_;
+  if (now - settled_ < kSettling) {
+    return Action::kNothing;
+  }
+  is_asked_ = true;
+  return Action::kCapture;
+}
+
+void PoseMeasurement::answered(bool success, const std::string& message, double now) {
+  if (!isRunning() || !is_asked_) {
+    return;
+  }
+  if (!success) {
+    end(message);
+    return;
+  }
+  ++place_;
+  if (isRunning()) {
+    beginPattern(now);
+    return;
+  }
+  outcome_ = "The pose is measured: " + std::to_string(patterns_.size()) +
+             (patterns_.size() == 1 ? " sample." : " samples.");
+}
+
+void PoseMeasurement::end(const std::string& reason) {
+  patterns_.clear();
+  place_ = 0;
+  outcome_ = reason;
+}
+
+bool PoseMeasurement::carries(const std::vector<double>& measured) const {
+  const double tolerance = std::max(kTolerance, kToleranceShare * std::abs(current()));
+  for (std::size_t j = 0; j < measured.size(); ++j) {
+    const double wanted = j + 1 == coil() ? current() : 0.0;
+    if (!(std::abs(measured[j] - wanted) <= tolerance)) {
+      return false;
+    }
+  }
+  return !measured.empty() && coil() <= measured.size();
+}
+
+}  // namespace sac

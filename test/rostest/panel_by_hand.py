@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""A whole calibration by the panel of rviz alone, on a screen that nobody sees: keys are pressed, and a hand, which this
+test plays, turns the rotor to the pose that the panel asks for. Saved and validated, it holds the truth."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rospy
+import rostest
+from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
+from emulated_lab import EmulatedLab
+from live_view import Screen, find_button
+from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.msg import CalibrationReport, CalibrationSample, CalibrationStatus, CoilCurrents
+from true_parameters import expect_truth
+
+PLAN, MEASURE, HOLD_OUT, REFINE, VALIDATE, SAVE = "F2", "F3", "F5", "F7", "F8", "F9"
+POSES = 8  # that the panel plans by itself
+HELD_OUT = 2
+PAUSE = 1.0  # [s] between two presses of a key that did nothing: buttons are disabled while a service runs
+
+
+class PanelByHand(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.screen = Screen()
+        cls.addClassCleanup(cls.screen.stop)
+        cls.client = CalibrationClient()
+        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+        cls.lab = EmulatedLab(cls.folder.name, commands=False, environment=environment, rviz=True, seed=5)
+        cls.addClassCleanup(cls.lab.stop)
+        cls.latest = {}
+        cls.samples = []
+        cls.reports = []
+        for topic, kind in (
+            ("wanted_pose", JointState),
+            ("coil_currents", CoilCurrents),
+            ("status", CalibrationStatus),
+        ):
+            rospy.Subscriber(f"{NAMESPACE}/{topic}", kind, lambda message, name=topic: cls.keep(name, message))
+        rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
+        rospy.Subscriber(f"{NAMESPACE}/report", CalibrationReport, cls.reports.append)
+        cls.lab.start()
+        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        wait_for(lambda: find_button(cls.screen.pixels()), "the panel")
+        wait_for(lambda: "wanted_pose" in cls.latest or "coil_currents" in cls.latest, "the streams")
+
+    @classmethod
+    def keep(cls, topic, message):
+        cls.latest[topic] = message
+
+    def press(self, key, done, what):
+        """A key, again where the panel was still busy, until something is so."""
+        end = [0.0]
+
+        def is_done():
+            if done():
+                return True
+            if time.monotonic() > end[0]:
+                end[0] = time.monotonic() + PAUSE
+                self.key(key)
+            return False
+
+        wait_for(is_done, what)
+
+    def key(self, key):
+        environment = {**os.environ, "DISPLAY": self.screen.display}
+        windows = subprocess.run(
+            ["xdotool", "search", "--onlyvisible", "--class", "rviz"],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=False,
+            env=environment,
+        ).stdout.split()
+        for window in windows[:1]:
+            subprocess.run(["xdotool", "windowfocus", window], check=False, env=environment)
+        subprocess.run(["xdotool", "key", key], check=True, env=environment)
+
+    def wanted(self):
+        message = self.latest.get("wanted_pose")
+        return tuple(message.position) if message else ()
+
+    def test_a_whole_calibration(self):
+        self.press(PLAN, self.wanted, "a plan")
+        self.assertEqual(self.measure_poses(POSES), POSES)
+        self.press(REFINE, lambda: self.report(CalibrationReport.REFINE), "a refinement")
+        self.assertTrue(self.report(CalibrationReport.REFINE).success)
+        self.key(HOLD_OUT)
+        self.press(PLAN, self.wanted, "a plan to validate by")
+        self.assertEqual(self.measure_poses(HELD_OUT), HELD_OUT)
+        self.assertTrue(self.samples[-1].validation)
+        self.press(VALIDATE, lambda: self.latest["status"].grade == CalibrationReport.GOOD, "a good grade")
+        self.press(SAVE, self.saved, "the saved description")
+        expect_truth(self, self.saved()[0], self.lab.truth)
+        wait_for(self.lab.is_without_current, "zero currents")
+
+    def saved(self):
+        return sorted(pathlib.Path(self.lab.directory).rglob("*revision_1.yaml"))
+
+    def measure_poses(self, most):
+        """The number of poses that the panel asked for, up to `most`."""
+        for count in range(most):
+            pose = self.wanted()
+            if not pose:
+                return count
+            self.lab.move(pose)
+            self.measure(lambda wanted=pose: self.wanted() != wanted)
+        return most
+
+    def measure(self, is_done):
+        """By one key; it must not be pressed while it measures, as it would stop."""
+        count = [len(self.samples), time.monotonic()]
+        self.key(MEASURE)
+
+        def done():
+            if is_done():
+                return True
+            if len(self.samples) != count[0]:
+                count[:] = [len(self.samples), time.monotonic()]
+            elif time.monotonic() - count[1] > 30.0:
+                count[1] = time.monotonic()
+                self.key(MEASURE)
+            return False
+
+        wait_for(done, "the samples of a pose")
+
+    def report(self, cycle):
+        return next((report for report in self.reports if report.cycle == cycle), None)
+
+
+if __name__ == "__main__":
+    rospy.init_node("panel_by_hand_test")
+    rostest.rosrun(PACKAGE, "panel_by_hand", PanelByHand, sys.argv)

@@ -1,0 +1,28 @@
+"""A calibrated description against that of the emulated unit."""
+
+import yaml
+
+INTERVALS = 4.0  # standard deviations that hold every parameter
+LARGEST = 5e-3  # [rad] that they may be wide
+
+
+def _actuator(path):
+    with open(path, encoding="utf-8") as file:
+        return yaml.safe_load(file)["actuator"]
+
+
+def expect_truth(test, result_path, truth_path):
+    """Every pole, coil and offset is identified, and as far from the truth as its standard deviation says."""
+    result, truth = _actuator(result_path), _actuator(truth_path)
+    compared = 0
+    for group in ("poles", "coils"):
+        for one, other in zip(result[group], truth[group]):
+            for angle in ("polar", "azimuth"):
+                limit = INTERVALS * one["stddev"][angle]
+                test.assertLess(limit, LARGEST)
+                test.assertLess(abs(one[angle] - other[angle]), limit, f"{group} {angle}")
+                compared += 1
+    for one, other in zip(result["joints"], truth["joints"]):
+        test.assertLess(abs(one["offset"] - other["offset"]), INTERVALS * one["stddev"]["offset"])
+        compared += 1
+    test.assertEqual(compared, 2 * (8 + 24) + 3)
