@@ -2,12 +2,11 @@
 
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/node/wall_stamp.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kRate = 50.0;  // [Hz]
+constexpr double kPeriod = 0.02;  // [s]
 
 ros::Publisher advertised(ros::NodeHandle node) {
   return node.advertise<msg::CoilCurrents>("coil_command", 1);
@@ -16,7 +15,13 @@ ros::Publisher advertised(ros::NodeHandle node) {
 }  // namespace
 
 CoilExciter::CoilExciter(const ros::NodeHandle& node)
-    : publisher_(advertised(node)), thread_(kRate, [this] { beat(); }) {}
+    : publisher_(advertised(node)), thread_(1, &queue_) {
+  ros::NodeHandle handle = node;
+  handle.setCallbackQueue(&queue_);
+  timer_ = handle.createWallTimer(ros::WallDuration(kPeriod),
+                                  [this](const ros::WallTimerEvent& /*event*/) { beat(); });
+  thread_.start();
+}
 
 CoilExciter::~CoilExciter() {
   thread_.stop();
@@ -28,7 +33,7 @@ void CoilExciter::excite(std::uint32_t coil, std::size_t coils, double current, 
   const bool was_excited = coil_ != 0;
   coil_ = coil;
   current_ = current;
-  end_ = steadySeconds() + seconds;
+  end_ = ros::SteadyTime::now() + ros::WallDuration(seconds);
   if (coil != 0) {
     coils_ = coils;
   }
@@ -47,7 +52,7 @@ void CoilExciter::beat() {
   if (coil_ == 0) {
     return;
   }
-  if (steadySeconds() > end_) {
+  if (ros::SteadyTime::now() > end_) {
     coil_ = 0;
   }
   publish();
@@ -55,7 +60,9 @@ void CoilExciter::beat() {
 
 void CoilExciter::publish() const {
   msg::CoilCurrents message;
-  message.header.stamp = wallStamp();
+  // Coils are real, whatever /use_sim_time says.
+  const ros::WallTime now = ros::WallTime::now();
+  message.header.stamp = ros::Time(now.sec, now.nsec);
   message.current.assign(coils_, 0.0);
   if (coil_ != 0 && coil_ <= coils_) {
     message.current[coil_ - 1] = current_;

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <mutex>
 
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-
-#include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
+#include <ros/spinner.h>
+#include <ros/time.h>
+#include <ros/wall_timer.h>
 
 namespace sac {
 
@@ -37,8 +39,10 @@ class CoilExciter {
   std::uint32_t coil_ = 0;
   std::size_t coils_ = 0;
   double current_ = 0.0;
-  double end_ = 0.0;  ///< by the steady clock [s]
-  PeriodicThread thread_;
+  ros::SteadyTime end_;
+  ros::CallbackQueue queue_;
+  ros::WallTimer timer_;
+  ros::AsyncSpinner thread_;
 };
 
 }  // namespace sac

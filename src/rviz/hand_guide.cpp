@@ -100,7 +100,7 @@ void HandGuide::refresh() {
     if (is_planning_) {
       takePlan(*answer);
     } else {
-      measurement_.answered(answer->success, answer->message, steadySeconds());
+      measurement_.answered(answer->success, answer->message, ros::SteadyTime::now().toSec());
     }
   }
   if (measurement_.isRunning()) {
@@ -154,7 +154,7 @@ void HandGuide::measure() {
     outcome_->setText("This pose is measured already.");
     return;
   }
-  measurement_.begin(std::move(patterns), current_->value(), steadySeconds());
+  measurement_.begin(std::move(patterns), current_->value(), ros::SteadyTime::now().toSec());
   goOn();
 }
 
@@ -163,7 +163,7 @@ void HandGuide::goOn() {
   if (measurement_.coil() != exciter_.coil()) {
     exciter_.excite(measurement_.coil(), currents_.size(), measurement_.current(), seconds);
   }
-  switch (measurement_.step(currents_, steadySeconds())) {
+  switch (measurement_.step(currents_, ros::SteadyTime::now().toSec())) {
     case PoseMeasurement::Action::kCapture:
       askForCapture();
       break;

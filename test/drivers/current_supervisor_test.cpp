@@ -36,7 +36,7 @@ CoilCommand given(const std::string& caller, double steady, double current = 1.0
   return {caller, kWall + steady, amperes(current)};
 }
 
-/// One command to a supervisor that follows /owner, whose last one is of 10 s.
+/// One command to a supervisor that follows /owner since 10 s.
 struct Case {
   const char* what;
   CoilCommand command;
@@ -164,7 +164,7 @@ TEST(CurrentSupervisor, ForgetsAndCloses) {
   EXPECT_NE(supervisor.offer(given("/owner", 10.04), at(10.04)), "");
 }
 
-/// What is set and measured, beat by beat, in the first coil [A].
+/// What is set and measured in the first coil [A].
 struct Flow {
   double set = 0.0;
   double measured = 0.0;
@@ -198,26 +198,23 @@ TEST(CurrentSupervisor, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
   EXPECT_NE(fault.find("Switch it off"), std::string::npos) << fault;
 }
 
-// Of a loop that is held up: every beat finds that the command has run out, or that there is one
-// again.
 // 0.15 s of 1.5 s: less than what agreeing beats take back of the comparison's count.
 TEST(CurrentSupervisor, CurrentThatComesRarelyIsAnErrorToo) {
-  const std::vector<Flow> blink{{0.0, 0.0, 270}, {0.0, 2.0, 30}};
-  std::vector<Flow> flows = blink;
   SupervisorLimits shipped = limits();
   shipped.deviating_beats = 40;
+  std::vector<Flow> flows{{0.0, 0.0, 270}, {0.0, 2.0, 30}};
   EXPECT_EQ(faultAfter(flows, shipped), "");
-  flows.insert(flows.end(), blink.begin(), blink.end());
-  EXPECT_NE(faultAfter(flows, shipped).find("carries 2.00 A where 0.00 A are set"),
-            std::string::npos);
+  flows.insert(flows.end(), {{0.0, 0.0, 270}, {0.0, 2.0, 30}});
+  EXPECT_NE(faultAfter(flows, shipped), "");
   // An honest amplifier's lag is none, however often.
-  std::vector<Flow> honest;
+  flows.clear();
   for (int n = 0; n < 100; ++n) {
-    honest.insert(honest.end(), {{2.0, 0.0, 20}, {0.0, 0.0, 13}, {0.0, 2.0, 20}, {0.0, 0.0, 100}});
+    flows.insert(flows.end(), {{2.0, 0.0, 20}, {0.0, 0.0, 13}, {0.0, 2.0, 20}, {0.0, 0.0, 100}});
   }
-  EXPECT_EQ(faultAfter(honest, shipped), "");
+  EXPECT_EQ(faultAfter(flows, shipped), "");
 }
 
+// Of a loop that is held up: each beat finds that the command has run out, or one again.
 TEST(CurrentSupervisor, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
   std::vector<Flow> late;
   for (int n = 0; n < 20; ++n) {

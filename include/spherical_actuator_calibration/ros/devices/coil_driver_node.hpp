@@ -73,8 +73,8 @@ class CoilDriverNode {
   LinkDiagnostics link_diagnostics_;
   NodeDiagnostics diagnostics_;
   /// Of the commands alone: they are judged as they come, whatever else the node is busy with. A
-  /// flood may still keep roscpp, which reads all links in one thread, from those of the owner: then
-  /// the coils have no current.
+  /// flood may still keep roscpp, which reads all links in one thread, from those of the owner:
+  /// then the coils have no current.
   ros::CallbackQueue queue_;
   ros::Subscriber subscriber_;
   ros::AsyncSpinner receiver_;

@@ -48,8 +48,8 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  /// Why a message of a topic with so many bytes would be left out now: "it …". Empty where it would
-  /// be kept: what is left out need not be copied.
+  /// Why a message of a topic with so many bytes would be left out now: "it …". Empty where it
+  /// would be kept: what is left out need not be copied.
   std::string refusal(const std::string& topic, std::size_t length) const;
   /// Keeps a message of a topic, or says why it is left out.
   std::string add(const std::string& topic, Message message);
