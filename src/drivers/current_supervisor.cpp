@@ -24,6 +24,10 @@ constexpr double kOwnZero = 0.2;
 constexpr int kConfirmingZeros = 5;
 constexpr double kConfirmingTime = 0.3;
 
+/// Whoever goes on commanding what another one owns gets it only after so long a silence: a flood
+/// may be the reason why the owner is not heard [s].
+constexpr double kContestedSilence = 5.0;
+
 /// What was set flows no more so long after zero was set [s].
 constexpr double kLongestFlow = 0.3;
 /// Current after that is an error when there was so much of it [s], however rarely it comes. A
@@ -59,6 +63,8 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   std::string reason = refusal(command, now);
   if (command.caller == owner_) {
     owner_heard_at_ = now.steady;
+  } else if (isOwnedByAnother(command, now.steady)) {
+    contested_at_ = now.steady;
   }
   if (!reason.empty()) {
     return reason;
@@ -108,7 +114,8 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
   if (isOwnedByAnother(command, now.steady)) {
     return who + "does not count: " + owner_ +
            " commands the coils, until nothing has come from there for " +
-           withTwoDigits(limits_.watchdog) + " s.";
+           withTwoDigits(limits_.watchdog) + " s, or " + withTwoDigits(kContestedSilence) +
+           " s where others go on commanding.";
   }
   if (last_stamp_ && *command.stamp <= *last_stamp_) {
     return who + "is not newer than the one before.";
@@ -119,8 +126,10 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
 // The owner's commands may come too late to count, behind a flood of others: coils without current
 // are safe, and those of somebody else's are not.
 bool CurrentSupervisor::isOwnedByAnother(const CoilCommand& command, double steady) const {
+  const bool is_contested = contested_at_ && steady - *contested_at_ <= limits_.watchdog;
+  const double silence = is_contested ? kContestedSilence : limits_.watchdog;
   return command.caller != owner_ && !owner_.empty() &&
-         steady <= std::max(expires_at_, owner_heard_at_ + limits_.watchdog);
+         steady <= std::max(expires_at_, owner_heard_at_ + silence);
 }
 
 std::optional<Eigen::VectorXd> CurrentSupervisor::command(double steady) const {

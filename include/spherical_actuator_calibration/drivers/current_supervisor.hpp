@@ -43,7 +43,8 @@ struct Instant {
 /// A command counts when it is well formed, stamped by the wall clock, neither old nor of the
 /// future, newer than the one before, and given by the only one who commands: whoever was last
 /// accepted owns the coils until the last command has run out, and nothing that does not count has
-/// come from there for as long: who lives, but is late, does not lose them. A command holds for the
+/// come from there for as long, or for 5 s where another one goes on commanding: who lives, but is
+/// late, does not lose them. A command holds for the
 /// watchdog's time from its stamp on, however late it arrived; a steady clock watches that. Nothing
 /// depends on a simulated clock, so that a recording which is played again drives no coil.
 ///
@@ -106,11 +107,12 @@ class CurrentSupervisor {
   bool closed_ = false;
   std::optional<Eigen::VectorXd> command_;
   bool was_commanded_ = false;
-  double expires_at_ = 0.0;            ///< the last command, by the steady clock
-  std::string owner_;                  ///< who gave it
-  double owner_heard_at_ = 0.0;        ///< also by what did not count
-  std::optional<double> last_stamp_;   ///< its stamp
-  std::optional<double> wall_offset_;  ///< wall less steady clock, when it came
+  double expires_at_ = 0.0;             ///< the last command, by the steady clock
+  std::string owner_;                   ///< who gave it
+  double owner_heard_at_ = 0.0;         ///< also by what did not count
+  std::optional<double> contested_at_;  ///< last command of another one that was refused for it
+  std::optional<double> last_stamp_;    ///< its stamp
+  std::optional<double> wall_offset_;   ///< wall less steady clock, when it came
   CurrentComparison comparison_;
   std::optional<Eigen::VectorXd> measured_;
   int zeros_ = 0;            ///< measurements in a row of nothing but zero, while zero is set
