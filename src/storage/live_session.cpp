@@ -63,6 +63,7 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   // Asked again after an answer that was lost or failed: it is stored once. Only the last one can
   // be asked for again; the same measurements later come from a recording that is played once more.
   if (!session_.samples().empty() && isSameCapture(session_.samples().back(), stored)) {
+    database_.confirmSample(session_.samples().back().id);
     return session_.samples().back();
   }
   stored.id = database_.nextSampleId();

@@ -37,6 +37,9 @@ class ProcessLock {
 
   /// The file that is locked.
   const FileIdentity& file() const { return file_; }
+  /// It, open to be read. Another descriptor of it must not be made: closing that would drop the
+  /// locks of SQLite.
+  int descriptor() const { return descriptor_; }
 
  private:
   int descriptor_ = -1;

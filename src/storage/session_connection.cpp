@@ -1,12 +1,16 @@
 #include "session_connection.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include <SQLiteCpp/Transaction.h>
 
+#include "row_access.hpp"
 #include "session_schema.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/folder_sync.hpp"
+
+#include <sqlite3.h>
 
 namespace sac {
 namespace {
@@ -25,12 +29,36 @@ SQLite::Database openFile(const std::string& path) {
   }
 }
 
-// SQLite goes on writing to files that have lost their names, or that another disk hides.
-[[noreturn]] void throwMoved(const std::string& path, const std::string& failure) {
+constexpr char kLost[] =
+    ", because the file was removed or replaced, or another program changed or shortened it, or "
+    "its folder was replaced, or another disk is mounted there. Until it is stopped, the node "
+    "holds its session: list_samples shows the samples, and save writes the parameters while the "
+    "folder is there. Then stop the node, put the folder back as it was, or a copy of it, and "
+    "start the node again.";
+
+// SQLite goes on writing to files that have lost their names, or that another disk hides, and takes
+// any content that is a database for its own.
+[[noreturn]] void throwLost(const std::string& path, const std::string& failure) {
+  throw DataError(path + ": " + failure + kLost);
+}
+
+[[noreturn]] void throwReplaced(const std::string& path, const std::string& failure) {
   throw DataError(path + ": " + failure +
-                  ", because the file was removed or replaced, or its folder was, or another disk "
-                  "is mounted there; stop the node, put the folder back as it was, and start the "
-                  "node again.");
+                  ", because the file was removed or replaced at this moment; put it back as it "
+                  "was, and start the node again.");
+}
+
+/// A journal that is void between two transactions, and no shared memory: what others do to a log
+/// beside the file would take back what was acknowledged, and a shorter memory end the process.
+void setJournal(SQLite::Database& database, const std::string& path) {
+  RowReader mode(database, "PRAGMA journal_mode = TRUNCATE");
+  if (!mode.next() || mode.text() != "truncate") {
+    throw DataError(path + ": " + kOpenFailure +
+                    ", because its journal cannot be made another; close other programs that work "
+                    "with the file, and try again.");
+  }
+  // Every commit waits until it is on the disk, and with it that its journal is void.
+  database.exec("PRAGMA synchronous = FULL");
 }
 
 }  // namespace
@@ -39,11 +67,7 @@ SessionConnection::SessionConnection(const std::string& path,
                                      const std::function<void(SQLite::Database&)>& fill)
     : path_(path), lock_(path), database_(openFile(path)) {
   const bool is_made = read(kOpenFailure, [this] { return hasSessionSchema(database_, path_); });
-  read(kOpenFailure, [this] {
-    // Every commit waits until its journal is on the disk; readers are never held up.
-    database_.exec("PRAGMA journal_mode = WAL");
-    database_.exec("PRAGMA synchronous = FULL");
-  });
+  read(kOpenFailure, [this] { setJournal(database_, path_); });
   if (is_made && isEarlierSchema(database_)) {
     write("the session database was not brought to the present format", upgradeSessionSchema);
   } else if (!is_made) {
@@ -54,11 +78,11 @@ SessionConnection::SessionConnection(const std::string& path,
   }
   // Not before: a table that others refer to is made anew without it.
   read(kOpenFailure, [this] { database_.exec("PRAGMA foreign_keys = ON"); });
-  files_ = filesInPlace();
-  if (!(files_->front() == lock_.file())) {
-    throwMoved(path_, kOpenFailure);
+  if (!(identityOf(path_) == lock_.file())) {
+    throwReplaced(path_, kOpenFailure);
   }
-  // The name of the file; SQLite sees to those of its journals only. A process that ended early may
+  content_ = FileContent(lock_.descriptor());
+  // The name of the file; SQLite sees to that of its journal only. A process that ended early may
   // have left this undone.
   syncFolder(std::filesystem::absolute(path_).parent_path());
 }
@@ -66,29 +90,51 @@ SessionConnection::SessionConnection(const std::string& path,
 void SessionConnection::write(const std::string& failure,
                               const std::function<void(SQLite::Database&)>& action) {
   requireInPlace(failure);
+  // Pages that were read earlier may be of a content that stood there only for a while.
+  sqlite3_db_release_memory(database_.getHandle());
   read(failure, [&] {
     SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
+    // Not before: SQLite has now undone what a transaction that failed left half written.
+    requireContent(failure);
     action(database_);
     requireInPlace(failure);
     transaction.commit();
   });
-  // Moved at this very moment: nobody knows whether it will be read back. Nothing more is stored
+  if (!content_) {  // it is being opened
+    return;
+  }
+  // Changed at this very moment: nobody knows whether it will be read back. Nothing more is stored
   // until the node starts again and reads what is there, so that a repetition is not stored twice.
   // One look decides: a second one could see a folder that went only then, refuse, and forget it.
-  is_lost_ = files_ && !(filesInPlace() == *files_);
+  FileContent after(lock_.descriptor());
+  is_lost_ = !(identityOf(path_) == lock_.file()) || !after.follows(*content_);
   if (is_lost_) {
-    throwMoved(path_, failure);
+    throwLost(path_, failure);
   }
-}
-
-std::array<FileIdentity, 3> SessionConnection::filesInPlace() const {
-  return {identityOf(path_), identityOf(path_ + "-wal"), identityOf(path_ + "-shm")};
+  content_ = std::move(after);
 }
 
 void SessionConnection::requireInPlace(const std::string& failure) const {
-  if (is_lost_ || (files_ && !(filesInPlace() == *files_))) {
-    throwMoved(path_, failure);
+  if (is_lost_ || (content_ && !(identityOf(path_) == lock_.file()))) {
+    throwLost(path_, failure);
   }
+}
+
+void SessionConnection::requireContent(const std::string& failure) const {
+  if (content_ && !(FileContent(lock_.descriptor()) == *content_)) {
+    throwLost(path_, failure);
+  }
+}
+
+void SessionConnection::fail(const std::string& failure, const SQLite::Exception& error) const {
+  constexpr int kPrimaryCode = 0xff;
+  const int code = error.getErrorCode() & kPrimaryCode;
+  // As SQLite tells a content that is not its own. After other errors a journal may have to be
+  // undone first.
+  if (code == SQLITE_ERROR || code == SQLITE_CORRUPT || code == SQLITE_NOTADB) {
+    requireContent(failure);
+  }
+  throwStorageError(path_, failure, error);
 }
 
 }  // namespace sac

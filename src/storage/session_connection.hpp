@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Exception.h>
 
+#include "file_content.hpp"
 #include "process_lock.hpp"
 #include "storage_error.hpp"
 
@@ -30,24 +30,26 @@ class SessionConnection {
     try {
       return action();
     } catch (const SQLite::Exception& error) {
-      throwStorageError(path_, failure, error);
+      fail(failure, error);
     }
   }
 
   /// Runs `action` in one transaction, which is on the disk when this returns, in the file that
-  /// stands at path(). When it throws, nothing is stored.
+  /// stands at path() and in which nobody else has changed a byte. When it throws, nothing is
+  /// stored. An action that does nothing asks whether all that was stored is there.
   void write(const std::string& failure, const std::function<void(SQLite::Database&)>& action);
 
  private:
-  /// The database and the journals that belong to it.
-  std::array<FileIdentity, 3> filesInPlace() const;
+  [[noreturn]] void fail(const std::string& failure, const SQLite::Exception& error) const;
+  /// Refuses what would be stored where it cannot be read back.
   void requireInPlace(const std::string& failure) const;
+  void requireContent(const std::string& failure) const;
 
   std::string path_;
   ProcessLock lock_;
   SQLite::Database database_;
-  std::optional<std::array<FileIdentity, 3>> files_;  ///< that SQLite writes, once they are made
-  bool is_lost_ = false;  ///< a transaction may be where nobody reads it
+  std::optional<FileContent> content_;  ///< that SQLite left behind, once it is opened
+  bool is_lost_ = false;                ///< a transaction may be where nobody reads it
 };
 
 }  // namespace sac

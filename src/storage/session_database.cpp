@@ -76,6 +76,10 @@ void SessionDatabase::addSample(const Sample& sample, const std::string& date) {
       [&](SQLite::Database& database) { sample_table::insert(database, sample, date); });
 }
 
+void SessionDatabase::confirmSample(std::uint32_t id) {
+  tables_->connection.write(notStored("sample " + std::to_string(id)), [](SQLite::Database&) {});
+}
+
 std::vector<Sample> SessionDatabase::samplesInUse() const {
   return tables_->connection.read(kNotRead,
                                   [this] { return sample_table::inUse(tables_->database()); });

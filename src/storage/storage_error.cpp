@@ -29,7 +29,7 @@ std::string reason(const SQLite::Exception& error) {
              "read-only";
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return "another program is writing to the file; close that program and try again";
+      return "another program reads or writes the file; close that program and try again";
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return kDamaged;

@@ -57,7 +57,7 @@ class Sandbox {
   }
 
   std::string fresh() const {
-    for (const char* end : {"", "-wal", "-shm"}) {
+    for (const char* end : {"", "-journal", "-wal", "-shm"}) {
       fs::remove(path() + end);
     }
     std::ofstream(path(), std::ios::binary) << whole_;

@@ -192,21 +192,26 @@ class Calamities {
   /// The same folder, read-only from now on for who opens files in it; those that are open are
   /// written as before.
   void mountReadOnly(const std::string& folder) {
-    if (!may_mount_ || ::mount(folder.c_str(), folder.c_str(), nullptr, MS_BIND, nullptr) != 0) {
+    // Made aside: a mount that the writer has a file open in cannot be made read-only.
+    const std::string aside = folder + ".read_only";
+    std::filesystem::create_directory(aside);
+    if (!may_mount_ || ::mount(folder.c_str(), aside.c_str(), nullptr, MS_BIND, nullptr) != 0) {
       return;
     }
     constexpr unsigned long kReadOnly = MS_REMOUNT | MS_BIND | MS_RDONLY;
-    EXPECT_EQ(::mount(nullptr, folder.c_str(), nullptr, kReadOnly, nullptr), 0);
+    EXPECT_EQ(::mount(nullptr, aside.c_str(), nullptr, kReadOnly, nullptr), 0);
+    EXPECT_EQ(::mount(aside.c_str(), folder.c_str(), nullptr, MS_BIND, nullptr), 0);
     ++counts_["mounted read-only"];
     wait();
     EXPECT_EQ(::umount2(folder.c_str(), MNT_DETACH), 0);
+    EXPECT_EQ(::umount2(aside.c_str(), MNT_DETACH), 0);
   }
 
   /// Open files cannot be written either, as on a file system that an error has made read-only.
   void refuseWrites(const std::string& folder) {
     bool is_refused = false;
     for (const bool refuse : {true, false}) {
-      for (const char* const end : {"", "-wal"}) {
+      for (const char* const end : {"", "-journal"}) {
         const int file = ::open((folder + "/session.db" + end).c_str(), O_RDONLY | O_CLOEXEC);
         int flags = 0;
         if (::ioctl(file, FS_IOC_GETFLAGS, &flags) == 0) {

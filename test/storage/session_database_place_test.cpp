@@ -73,13 +73,6 @@ TEST_F(PlaceTest, WhatWasRefusedMeanwhileIsNotThereAfterwards) {
   EXPECT_EQ(database.samplesInUse()[1].id, 2U);
 }
 
-TEST_F(PlaceTest, AJournalThatWasRemovedIsNoticed) {
-  SessionDatabase database(path(), jointIdentity());
-  EXPECT_EQ(add(database, 1), "no exception");
-  fs::remove(path() + "-wal");
-  expectRefusal(database);
-}
-
 /// Whether a process that knows nothing of this one can open the session: it waits for a byte.
 class Stranger {
  public:

@@ -250,6 +250,22 @@ class Export(Folder):
             self.assertEqual(result.returncode, 2)
             self.assertIn(part, result.stderr)
 
+    def test_what_was_left_half_written_is_refused(self):
+        killed = (
+            "import os, sqlite3\n"
+            "database = sqlite3.connect('session.db', isolation_level=None)\n"
+            "database.execute('CREATE TABLE a (b)')\n"
+            "database.execute('PRAGMA cache_size = 5')\n"
+            "database.execute('BEGIN')\n"
+            "for _ in range(200):\n"
+            "    database.execute('INSERT INTO a VALUES (?)', ('x' * 500,))\n"
+            "os._exit(0)"
+        )
+        subprocess.run([sys.executable, "-c", killed], cwd=self.folder, check=True)
+        result = call("export_session", self.folder / "session.db", self.folder / "out")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("its node was ended while it stored something; start it once", result.stderr)
+
     def test_quaternions_give_back_the_rotation(self):
         random.seed(2)
         for _ in range(100):

@@ -43,6 +43,8 @@ class SessionDatabase {
 
   /// Stores a sample. Its id must be new.
   void addSample(const Sample& sample, const std::string& date);
+  /// Throws DataError unless the file holds what was stored, among it the sample with this id.
+  void confirmSample(std::uint32_t id);
   /// Samples that are neither removed nor cleared, in the order of their ids.
   std::vector<Sample> samplesInUse() const;
   /// Marks a sample as removed; false when none in use has this id.

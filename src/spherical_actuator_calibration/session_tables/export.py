@@ -1,5 +1,6 @@
 """A session database as CSV files and the description that it belongs to."""
 
+import contextlib
 import csv
 import io
 import math
@@ -47,8 +48,9 @@ class Session:
         self.path = path
         if not os.path.isfile(path):
             raise ExportError(f"{path}: there is no such file.")
-        self._database = sqlite3.connect(pathlib.Path(path).absolute().as_uri() + "?mode=ro", uri=True)
+        self._database = sqlite3.connect(":memory:")
         try:
+            self._copy()
             self._begin()
         except BaseException:
             self._database.close()
@@ -60,6 +62,21 @@ class Session:
     def __exit__(self, *_):
         self._database.close()
 
+    def _copy(self):
+        """One state of the session; the node, which waits while somebody reads, waits for no more than this."""
+        uri = pathlib.Path(self.path).absolute().as_uri() + "?mode=ro"
+        with contextlib.closing(sqlite3.connect(uri, uri=True)) as file:
+            try:
+                file.execute("PRAGMA user_version").fetchone()
+            except sqlite3.OperationalError as error:
+                if "readonly" not in str(error):
+                    raise
+                raise ExportError(
+                    f"{self.path}: its node was ended while it stored something; start it once, which puts the file in "
+                    "order, then export."
+                ) from error
+            file.backup(self._database)
+
     def _begin(self):
         self._database.row_factory = sqlite3.Row
         if self._pragma("application_id") != APPLICATION:
@@ -68,8 +85,6 @@ class Session:
             raise ExportError(
                 f"{self.path}: a newer version of this package made this session database; update the package."
             )
-        # One state of the session, whatever is stored meanwhile.
-        self._database.execute("BEGIN")
 
     def _pragma(self, name):
         return self._database.execute(f"PRAGMA {name}").fetchone()[0]
