@@ -131,6 +131,7 @@ std::vector<DesignBound::RankedVisit> DesignBound::bestVisits(const Eigen::Matri
 
 void DesignBound::mixIn(const std::vector<RankedVisit>& visits) {
   std::vector<DesignedPose> poses;
+  poses.reserve(visits.size());
   for (const RankedVisit& visit : visits) {
     poses.push_back(visit.second);
   }

@@ -201,15 +201,6 @@ Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
   return sum.information();
 }
 
-std::vector<CoilPattern> singly(const std::vector<std::size_t>& coils) {
-  std::vector<CoilPattern> patterns;
-  patterns.reserve(coils.size());
-  for (const std::size_t coil : coils) {
-    patterns.push_back({{coil, 1}});
-  }
-  return patterns;
-}
-
 std::vector<Sample> visitSamples(const PlanningProblem& problem,
                                  const PosePlanOptions& options,
                                  const Eigen::Vector3d& joint_position,

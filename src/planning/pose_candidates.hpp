@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 
 namespace sac {
 
@@ -33,9 +33,6 @@ std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem);
 /// Information matrix of these coordinates in the samples that are held already, F×F.
 Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
                                 const std::vector<Eigen::Index>& coordinates);
-
-/// Each of the coils alone.
-std::vector<CoilPattern> singly(const std::vector<std::size_t>& coils);
 
 /// The samples that one visit gives, without values: one with the orientation where that is
 /// measured, and one with a torque for each pattern.

@@ -10,7 +10,6 @@
 #include "design_task.hpp"
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
@@ -36,8 +35,9 @@ constexpr double kExchangePromise = 1.6;
 /// exchanged yet to such that are.
 constexpr double kPatternPromise = 2.5;
 constexpr double kPatternExchangePromise = 1.15;
-/// The bound is over so many times the candidates that poses are chosen from.
-constexpr std::size_t kCandidatesOfBound = 5;
+/// The bound is over so many times the candidates that poses are chosen from, where those are few.
+constexpr std::size_t kTimesForBound = 5;
+constexpr std::size_t kMostForBound = 10'000;
 
 /// A candidate with what is excited there.
 struct ChosenPose {
@@ -221,7 +221,8 @@ class Planner {
     }
     if (candidates_of_bound_.empty()) {
       PosePlanOptions wide = options_;
-      wide.candidates *= kCandidatesOfBound;
+      wide.candidates = std::max(options_.candidates,
+                                 std::min(kTimesForBound * options_.candidates, kMostForBound));
       candidates_of_bound_ = drawCandidates(problem_, wide, coordinates_);
     }
     DesignBound bound(*task_,
@@ -365,19 +366,6 @@ class Planner {
 };
 
 }  // namespace
-
-std::string patternText(const CoilPattern& pattern) {
-  std::string text;
-  for (const SignedCoil& coil : pattern) {
-    text += text.empty() ? "" : " ";
-    text += (coil.sign < 0 ? "-" : "+") + std::to_string(numberOf(coil.coil));
-  }
-  return text;
-}
-
-std::vector<CoilPattern> PlannedPose::excitations() const {
-  return patterns.empty() ? singly(coils) : patterns;
-}
 
 PosePlan planPoses(const PlanningProblem& problem, const PosePlanOptions& options) {
   validate(options, problem);

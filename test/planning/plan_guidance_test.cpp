@@ -21,7 +21,7 @@ Sample sampleAt(const Eigen::Vector3d& joints, const std::vector<double>& curren
 TEST(PlanGuidance, LeadsFromPoseToPose) {
   const Eigen::Vector3d first(0.1, -0.2, 1.5);
   const Eigen::Vector3d second(0.0, 0.3, 0.0);
-  const std::vector<PlannedPose> plan = {{first, {0, 2}}, {second, {}}};
+  const std::vector<PlannedPose> plan = {{first, {0, 2}, {}}, {second, {}, {}}};
   std::vector<Sample> samples;
   EXPECT_EQ(planStep(plan, samples, kThreshold),
             "Go on with the plan, 0 of 2 poses are measured: turn the rotor to joints 0.10, -0.20, "
@@ -59,7 +59,7 @@ TEST(PlanGuidance, TellsSignsOfPatterns) {
 }
 
 TEST(PlanGuidance, HeldOutAndDistantSamplesCarryOutNothing) {
-  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}}};
+  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}, {}}};
   Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
   held_out.validation = true;
   const Sample distant = sampleAt(Eigen::Vector3d(0.0, 0.0, 0.2), {0.0, 0.0, 0.0});

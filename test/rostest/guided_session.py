@@ -117,6 +117,7 @@ class GuidedSession(unittest.TestCase):
         self.assertTrue(session.says("all 73 parameters are identified"), session.lines)
         self.assertTrue(session.says("Grade: good."), session.lines)
         self.check_result(session)
+        self.check_patterns()
 
     def fault_is_told_and_cured(self, session, fault, part):
         self.lab.fault(fault, True)
@@ -140,6 +141,14 @@ class GuidedSession(unittest.TestCase):
                 ["rosnode", "kill", f"{NAMESPACE}/calibration"], check=True, stdout=subprocess.DEVNULL
             )
             self.further_samples(2)
+
+    def check_patterns(self):
+        """Of the plan: several coils at once, some currents negative; of held-out samples: one coil."""
+        planned = [s.current for s in self.client.held() if s.has_torque and not s.validation]
+        self.assertTrue(any(min(current) < -1.0 for current in planned))
+        for sample in self.client.held():
+            excited = sum(abs(current) > 1.0 for current in sample.current)
+            self.assertIn(excited, (0, 1) if sample.validation else (0, 4))
 
     def check_result(self, session):
         saved = next(line for line in session.lines if line.startswith("Saved "))
