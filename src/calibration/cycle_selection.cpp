@@ -91,7 +91,7 @@ std::vector<CycleRequest> possible(const CalibrationModel& model, const SampleCo
     requests.push_back({Cycle::kCoil});
   }
   const bool models_effects = model.space().effects().size() > 0;
-  if (has_torques || (has_orientations && models_effects)) {
+  if (has_torques || counts.ofSeveralCoils() > 0 || (has_orientations && models_effects)) {
     requests.push_back({Cycle::kRefine});
   }
   return expanded(requests, per_coil);

@@ -63,6 +63,8 @@ void SampleCounts::add(const Sample& sample) {
   const std::vector<Excitation> excited = excitedCoils(sample, current_threshold_);
   if (excited.size() == 1) {
     ++per_coil_.at(excited.front().coil);
+  } else if (excited.size() > 1) {
+    ++of_several_coils_;
   }
 }
 

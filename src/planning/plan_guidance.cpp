@@ -18,18 +18,41 @@ bool isAt(const Sample& sample, const PlannedPose& pose) {
          (sample.joint_position - pose.joint_position).cwiseAbs().maxCoeff() <= kSamePose;
 }
 
-/// Coils of the pose that no sample there excites alone.
-std::vector<std::size_t> openCoils(const PlannedPose& pose,
-                                   const std::vector<Sample>& samples,
-                                   double current_threshold) {
-  std::vector<std::size_t> open = pose.coils;
+/// Coils that count as excited, with their signs.
+CoilPattern patternOf(const Sample& sample, double current_threshold) {
+  CoilPattern pattern;
+  for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
+    pattern.push_back({excitation.coil, excitation.current < 0.0 ? -1 : 1});
+  }
+  return pattern;
+}
+
+/// The opposite of a pattern tells the same.
+bool isSame(const CoilPattern& a, CoilPattern b) {
+  if (a == b) {
+    return true;
+  }
+  for (SignedCoil& coil : b) {
+    coil.sign = -coil.sign;
+  }
+  return a == b;
+}
+
+/// Patterns of the pose that no sample there has.
+std::vector<CoilPattern> openPatterns(const PlannedPose& pose,
+                                      const std::vector<Sample>& samples,
+                                      double current_threshold) {
+  std::vector<CoilPattern> open = pose.excitations();
   for (const Sample& sample : samples) {
     if (!isAt(sample, pose)) {
       continue;
     }
-    const std::vector<Excitation> excited = excitedCoils(sample, current_threshold);
-    if (excited.size() == 1) {
-      open.erase(std::remove(open.begin(), open.end(), excited.front().coil), open.end());
+    const CoilPattern measured = patternOf(sample, current_threshold);
+    const auto done = std::find_if(open.begin(), open.end(), [&](const CoilPattern& pattern) {
+      return isSame(pattern, measured);
+    });
+    if (done != open.end()) {
+      open.erase(done);
     }
   }
   return open;
@@ -40,13 +63,32 @@ bool hasSample(const PlannedPose& pose, const std::vector<Sample>& samples) {
       samples.begin(), samples.end(), [&](const Sample& sample) { return isAt(sample, pose); });
 }
 
-std::string coilsInWords(const std::vector<std::size_t>& coils) {
+/// "a, b and c".
+std::string enumerated(const std::vector<std::string>& words) {
   std::string text;
-  for (std::size_t i = 0; i < coils.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == coils.size() ? " and " : ", ");
-    text += std::to_string(numberOf(coils[i]));
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ");
+    text += words[i];
   }
   return text;
+}
+
+/// " without current, then with coil 1 and 3 excited in turn".
+std::string excitationsInWords(const std::vector<CoilPattern>& patterns) {
+  if (patterns.empty()) {
+    return "";
+  }
+  const bool is_single = std::all_of(patterns.begin(), patterns.end(), [](const CoilPattern& p) {
+    return p.size() == 1 && p.front().sign > 0;
+  });
+  std::vector<std::string> words;
+  words.reserve(patterns.size());
+  for (const CoilPattern& pattern : patterns) {
+    words.push_back(is_single ? std::to_string(numberOf(pattern.front().coil))
+                              : "(" + patternText(pattern) + ")");
+  }
+  return std::string(" without current, then with ") + (is_single ? "coil " : "coils ") +
+         enumerated(words) + (words.size() == 1 ? " excited" : " excited in turn");
 }
 
 }  // namespace
@@ -56,14 +98,14 @@ std::string planStep(const std::vector<PlannedPose>& poses,
                      double current_threshold) {
   std::size_t measured = 0;
   const PlannedPose* next = nullptr;
-  std::vector<std::size_t> next_coils;
+  std::vector<CoilPattern> next_patterns;
   for (const PlannedPose& pose : poses) {
-    const std::vector<std::size_t> open = openCoils(pose, samples, current_threshold);
+    const std::vector<CoilPattern> open = openPatterns(pose, samples, current_threshold);
     if (open.empty() && hasSample(pose, samples)) {
       ++measured;
     } else if (next == nullptr) {
       next = &pose;
-      next_coils = open;
+      next_patterns = open;
     }
   }
   if (next == nullptr) {
@@ -82,10 +124,7 @@ std::string planStep(const std::vector<PlannedPose>& poses,
       degrees.x(),
       degrees.y(),
       degrees.z());
-  if (!next_coils.empty()) {
-    text += " without current, then with coil " + coilsInWords(next_coils) +
-            (next_coils.size() == 1 ? " excited" : " excited in turn");
-  }
+  text += excitationsInWords(next_patterns);
   return text + ".";
 }
 

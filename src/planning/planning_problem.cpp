@@ -41,6 +41,10 @@ void validate(const PosePlanOptions& options, const PlanningProblem& problem) {
   requireInRange("current",
                  options.current,
                  ValueRange{problem.estimation.current_threshold, 1e3, "A", true, false});
+  if (options.patterns == PlanPatterns::kWeighing) {
+    requireInRange(
+        "total_current", options.total_current, ValueRange::closed(options.current, 1e6, "A"));
+  }
   if (options.tilt_limit) {
     requireInRange(
         "tilt_limit",

@@ -1,6 +1,7 @@
 #include "pose_candidates.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -37,12 +38,21 @@ class Linearizer {
     evaluator_.linearize(observation, point_, linear_);
     const Eigen::Matrix3d whitening =
         whiteningOf(evaluator_.covariance(observation, linear_, held_));
+    return inUnits(whitening);
+  }
+
+  /// The observation linearised last, in units of `stddev` whatever else its noise holds.
+  WhitenedObservation inUnitsOf(double stddev) const {
+    return inUnits(Eigen::Matrix3d::Identity() / stddev);
+  }
+
+ private:
+  WhitenedObservation inUnits(const Eigen::Matrix3d& whitening) const {
     WhitenedObservation result;
     whiten(linear_, whitening, chosen_, result);
     return result;
   }
 
- private:
   static EstimationProblem estimationProblem(const PlanningProblem& problem,
                                              const std::vector<Sample>& samples) {
     EstimationProblem result;
@@ -113,6 +123,58 @@ std::vector<PoseCandidate> drawPoses(const PlanningProblem& problem,
   return candidates;
 }
 
+/// (a ± b)/2 of two derivatives.
+WhitenedObservation halfSum(const WhitenedObservation& a,
+                            const WhitenedObservation& b,
+                            double sign) {
+  WhitenedObservation result;
+  std::set_union(a.columns.begin(),
+                 a.columns.end(),
+                 b.columns.begin(),
+                 b.columns.end(),
+                 std::back_inserter(result.columns));
+  result.jacobian.setZero(3, static_cast<Eigen::Index>(result.columns.size()));
+  const auto add = [&result](const WhitenedObservation& term, double factor) {
+    for (std::size_t k = 0; k < term.columns.size(); ++k) {
+      const auto place =
+          std::lower_bound(result.columns.begin(), result.columns.end(), term.columns[k]) -
+          result.columns.begin();
+      result.jacobian.col(place) += factor * term.jacobian.col(static_cast<Eigen::Index>(k));
+    }
+  };
+  add(a, 0.5);
+  add(b, 0.5 * sign);
+  return result;
+}
+
+/// Splits the terms of the candidates into what turns its sign with the current, and what does not.
+void takeOutUnexcited(const PlanningProblem& problem,
+                      const PosePlanOptions& options,
+                      const std::vector<Eigen::Index>& coordinates,
+                      std::vector<PoseCandidate>& candidates) {
+  PosePlanOptions opposite = options;
+  opposite.tracker_on = false;
+  const ModelPoint point(*problem.model, problem.state.belief.x);
+  std::vector<Sample> samples;
+  for (const PoseCandidate& candidate : candidates) {
+    for (const std::size_t coil : candidate.coils) {
+      samples.push_back(
+          visitSamples(problem, opposite, candidate.joint_position, {{{coil, -1}}}).front());
+      predictMeasurements(point, samples.back());
+    }
+  }
+  Linearizer linearizer(problem, samples, coordinates);
+  std::size_t next = 0;
+  for (PoseCandidate& candidate : candidates) {
+    for (WhitenedObservation& term : candidate.terms) {
+      linearizer.linearize(next++);
+      const WhitenedObservation negative = linearizer.inUnitsOf(options.torque_stddev);
+      candidate.unexcited = halfSum(term, negative, 1.0);
+      term = halfSum(term, negative, -1.0);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem) {
@@ -142,7 +204,7 @@ Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
 std::vector<Sample> visitSamples(const PlanningProblem& problem,
                                  const PosePlanOptions& options,
                                  const Eigen::Vector3d& joint_position,
-                                 const std::vector<std::size_t>& coils) {
+                                 const std::vector<CoilPattern>& patterns) {
   Sample sample;
   sample.joint_position = joint_position;
   sample.joint_stddev = options.joint_stddev;
@@ -156,24 +218,40 @@ std::vector<Sample> visitSamples(const PlanningProblem& problem,
     samples.back().has_orientation = true;
   }
   sample.has_torque = true;
-  for (const std::size_t coil : coils) {
-    sample.current =
-        options.current * Eigen::VectorXd::Unit(all_coils, static_cast<Eigen::Index>(coil));
+  for (const CoilPattern& pattern : patterns) {
+    sample.current.setZero();
+    for (const SignedCoil& signed_coil : pattern) {
+      sample.current[static_cast<Eigen::Index>(signed_coil.coil)] =
+          signed_coil.sign * options.current;
+    }
     samples.push_back(sample);
   }
   return samples;
+}
+
+bool plansPatterns(const PlanningProblem& problem, const PosePlanOptions& options) {
+  return options.patterns == PlanPatterns::kWeighing && problem.request.cycle == Cycle::kRefine &&
+         problem.model->hasTorqueModel();
+}
+
+std::size_t coilsPerPattern(const PosePlanOptions& options) {
+  // A limit that is a multiple of the current, but for rounding, allows all of it.
+  constexpr double kRounding = 1e-9;
+  const double coils = options.total_current / options.current * (1.0 + kRounding);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(coils));
 }
 
 std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
                                           const PosePlanOptions& options,
                                           const std::vector<Eigen::Index>& coordinates) {
   std::vector<PoseCandidate> candidates = drawPoses(problem, options);
+  const bool plans_patterns = plansPatterns(problem, options);
   std::vector<Sample> samples;
   std::vector<std::size_t> candidate_of_sample;
   const ModelPoint point(*problem.model, problem.state.belief.x);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (Sample& sample :
-         visitSamples(problem, options, candidates[c].joint_position, candidates[c].coils)) {
+    for (Sample& sample : visitSamples(
+             problem, options, candidates[c].joint_position, singly(candidates[c].coils))) {
       predictMeasurements(point, sample);
       samples.push_back(std::move(sample));
       candidate_of_sample.push_back(c);
@@ -185,9 +263,15 @@ std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
     PoseCandidate& candidate = candidates[candidate_of_sample[observation.sample]];
     if (observation.quantity == Quantity::kOrientation) {
       candidate.orientation = linearizer.linearize(n);
-    } else {
-      candidate.torques.push_back(linearizer.linearize(n));
+      continue;
     }
+    candidate.torques.push_back(linearizer.linearize(n));
+    if (plans_patterns) {
+      candidate.terms.push_back(linearizer.inUnitsOf(options.torque_stddev));
+    }
+  }
+  if (plans_patterns && problem.model->space().effects().size() > 0) {
+    takeOutUnexcited(problem, options, coordinates, candidates);
   }
   return candidates;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
@@ -17,7 +18,12 @@ struct PoseCandidate {
   Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();  ///< at the belief
   std::optional<WhitenedObservation> orientation;                ///< in the coordinates to estimate
   std::vector<std::size_t> coils;            ///< that may be excited here, counted from 0
-  std::vector<WhitenedObservation> torques;  ///< along with `coils`
+  std::vector<WhitenedObservation> torques;  ///< along with `coils`, each alone at +current
+
+  /// For patterns only: derivatives of the torque by the coordinates to estimate, in standard
+  /// deviations of the torque sensor. Those of `coils` add up, with the signs of the pattern.
+  std::vector<WhitenedObservation> terms;        ///< along with `coils`
+  std::optional<WhitenedObservation> unexcited;  ///< what effects add whatever the currents are
 };
 
 /// Coordinates that a plan is to determine: all for kRefine (without poles and coils where there is
@@ -29,11 +35,17 @@ Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
                                 const std::vector<Eigen::Index>& coordinates);
 
 /// The samples that one visit gives, without values: one with the orientation where that is
-/// measured, and one with a torque for each coil.
+/// measured, and one with a torque for each pattern.
 std::vector<Sample> visitSamples(const PlanningProblem& problem,
                                  const PosePlanOptions& options,
                                  const Eigen::Vector3d& joint_position,
-                                 const std::vector<std::size_t>& coils);
+                                 const std::vector<CoilPattern>& patterns);
+
+/// Whether patterns of several coils are planned: only the joint cycle takes them.
+bool plansPatterns(const PlanningProblem& problem, const PosePlanOptions& options);
+
+/// Coils of a pattern: as many as the sum of currents allows, at least one.
+std::size_t coilsPerPattern(const PosePlanOptions& options);
 
 /// Draws poses inside the limits at which something useful can be observed. A coil may be excited
 /// where a pole lies on the steep part of the curve and none where the curve is uncertain.

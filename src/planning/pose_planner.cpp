@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "design_bound.hpp"
+#include "design_task.hpp"
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "travel_order.hpp"
+#include "weighing_design.hpp"
 
 namespace sac {
 namespace {
@@ -27,25 +31,68 @@ constexpr std::size_t kMostExchanges = 300;
 /// An exchange lowers the largest standard deviation by less than this factor.
 constexpr double kExchangePromise = 1.6;
 
-/// Joint angles of the chosen poses, in the order of the selection.
+/// The same for patterns, from single coils to exchanged patterns, and from patterns that are not
+/// exchanged yet to such that are.
+constexpr double kPatternPromise = 2.5;
+constexpr double kPatternExchangePromise = 1.15;
+/// The bound is over so many times the candidates that poses are chosen from, where those are few.
+constexpr std::size_t kTimesForBound = 5;
+constexpr std::size_t kMostForBound = 10'000;
+
+/// A candidate with what is excited there.
+struct ChosenPose {
+  std::size_t candidate = 0;
+  std::vector<CoilPattern> patterns;
+};
+
+/// Joint angles of the chosen poses, in their order.
 std::vector<Eigen::Vector3d> jointPositions(const std::vector<PoseCandidate>& candidates,
-                                            const std::vector<SelectedPose>& poses) {
+                                            const std::vector<ChosenPose>& poses) {
   std::vector<Eigen::Vector3d> positions;
   positions.reserve(poses.size());
-  for (const SelectedPose& pose : poses) {
+  for (const ChosenPose& pose : poses) {
     positions.push_back(candidates[pose.candidate].joint_position);
   }
   return positions;
 }
 
-std::vector<std::size_t> coilsOf(const std::vector<PoseCandidate>& candidates,
-                                 const SelectedPose& pose) {
+ChosenPose chosen(const std::vector<PoseCandidate>& candidates, const SelectedPose& pose) {
   std::vector<std::size_t> coils;
   coils.reserve(pose.torques.size());
   for (const std::size_t torque : pose.torques) {
     coils.push_back(candidates[pose.candidate].coils[torque]);
   }
-  return coils;
+  return {pose.candidate, singly(coils)};
+}
+
+ChosenPose chosen(const std::vector<PoseCandidate>& candidates, const DesignedPose& pose) {
+  ChosenPose result{pose.candidate, {}};
+  for (const TermPattern& terms : pose.patterns) {
+    CoilPattern& pattern = result.patterns.emplace_back();
+    for (const SignedTerm& term : terms) {
+      pattern.push_back({candidates[pose.candidate].coils[term.term], term.sign});
+    }
+    std::sort(pattern.begin(), pattern.end(), [](const SignedCoil& a, const SignedCoil& b) {
+      return a.coil < b.coil;
+    });
+  }
+  return result;
+}
+
+PlannedPose planned(const PoseCandidate& candidate, const ChosenPose& pose, bool has_patterns) {
+  PlannedPose result;
+  result.joint_position = candidate.joint_position;
+  std::set<std::size_t> coils;
+  for (const CoilPattern& pattern : pose.patterns) {
+    for (const SignedCoil& coil : pattern) {
+      coils.insert(coil.coil);
+    }
+  }
+  result.coils.assign(coils.begin(), coils.end());
+  if (has_patterns) {
+    result.patterns = pose.patterns;
+  }
+  return result;
 }
 
 /// Chooses poses and finds out what the cycle will make of them.
@@ -56,9 +103,13 @@ class Planner {
         options_(options),
         point_(*problem.model, problem.state.belief.x),
         coordinates_(plannedCoordinates(problem)),
+        known_(knownInformation()),
         candidates_(drawCandidates(problem, options, coordinates_)),
-        selection_(candidates_, knownInformation(), selectionOptions()),
+        selection_(candidates_, known_, selectionOptions()),
         held_(*problem.held) {
+    if (plansPatterns(problem, options)) {
+      task_ = designTask();
+    }
     for (Sample& sample : held_) {
       predictMeasurements(point_, sample);
     }
@@ -70,14 +121,14 @@ class Planner {
     while (!plan.reached_wanted && selection_.poses().size() < options_.max_poses &&
            selection_.add()) {
       const bool is_last = selection_.poses().size() == options_.max_poses;
-      if (is_last || selection_.worstStddev() < kExchangePromise * options_.wanted_stddev) {
-        improve(is_last ? kMostPasses : kPassesWhileGrowing);
+      if (is_last || isPromising()) {
+        choose(is_last);
         expect(plan);
       }
     }
     // Candidates may have run out before the last pose was reached.
     if (!plan.reached_wanted && selection_.poses().size() < options_.max_poses) {
-      improve(kMostPasses);
+      choose(true);
       expect(plan);
     }
     lay(plan);
@@ -86,6 +137,7 @@ class Planner {
   }
 
  private:
+  /// What is known before the first pose, with the weak prior.
   Eigen::MatrixXd knownInformation() const {
     const auto count = static_cast<Eigen::Index>(coordinates_.size());
     return heldInformation(problem_, coordinates_) +
@@ -101,23 +153,96 @@ class Planner {
     return result;
   }
 
-  void improve(int most_passes) {
-    for (int pass = 0; pass < most_passes && exchanges_ < kMostExchanges; ++pass) {
-      exchanges_ += selection_.poses().size();
-      if (!selection_.exchange()) {
-        return;
+  DesignTask designTask() const {
+    const ParameterSpace& space = problem_.model->space();
+    DesignTask task;
+    task.known = known_;
+    for (std::size_t n = 0; n < coordinates_.size(); ++n) {
+      const Eigen::Index effect = coordinates_[n] - space.effect();
+      const double stated = effect < 0 ? 0.0 : space.effects().statedVariance(effect);
+      if (stated > 0.0) {
+        const auto place = static_cast<Eigen::Index>(n);
+        task.known(place, place) += 1.0 / stated;
       }
     }
+    task.reported = reportedDerivative(space, problem_.state.belief.x, coordinates_);
+    task.joint_variance = options_.joint_stddev.cwiseAbs2();
+    task.patterns_per_pose = options_.coils_per_pose;
+    task.coils_per_pattern = coilsPerPattern(options_);
+    task.minimum_spacing = options_.minimum_spacing;
+    return task;
   }
+
+  /// Whether the poses selected so far may reach what is wanted.
+  bool isPromising() const {
+    const double promise = task_ ? kPatternPromise : kExchangePromise;
+    return selection_.worstStddev() < promise * options_.wanted_stddev;
+  }
+
+  /// Chooses what the poses selected so far become by exchanges.
+  void choose(bool is_last) {
+    chosen_.clear();
+    if (task_) {
+      chooseByPatterns(is_last);
+      return;
+    }
+    const int most_passes = is_last ? kMostPasses : kPassesWhileGrowing;
+    for (int pass = 0; pass < most_passes && exchanges_ < kMostExchanges && !isTimeUp(); ++pass) {
+      exchanges_ += selection_.poses().size();
+      if (!selection_.exchange()) {
+        break;
+      }
+    }
+    for (const SelectedPose& pose : selection_.poses()) {
+      chosen_.push_back(chosen(candidates_, pose));
+    }
+  }
+
+  void chooseByPatterns(bool is_last) {
+    std::vector<std::size_t> poses;
+    for (const SelectedPose& pose : selection_.poses()) {
+      poses.push_back(pose.candidate);
+    }
+    WeighingDesign design(*task_, candidates_, poses, options_.is_time_up);
+    design.choosePatterns();
+    if (is_last || design.worstStddev() < kPatternExchangePromise * options_.wanted_stddev) {
+      findBound(design);
+      design.exchange();
+    }
+    for (const DesignedPose& pose : design.poses()) {
+      chosen_.push_back(chosen(candidates_, pose));
+    }
+  }
+
+  void findBound(const WeighingDesign& design) {
+    bound_.reset();
+    if (design.poses().empty() || isTimeUp()) {
+      return;
+    }
+    if (candidates_of_bound_.empty()) {
+      PosePlanOptions wide = options_;
+      wide.candidates = std::max(options_.candidates,
+                                 std::min(kTimesForBound * options_.candidates, kMostForBound));
+      candidates_of_bound_ = drawCandidates(problem_, wide, coordinates_);
+    }
+    DesignBound bound(*task_,
+                      candidates_of_bound_,
+                      design.poses().size(),
+                      designInformation(*task_, candidates_, design.poses()));
+    bound.improve(options_.is_time_up);
+    if (bound.stddev() > 0.0) {
+      bound_ = bound.stddev();
+    }
+  }
+
+  bool isTimeUp() const { return options_.is_time_up && options_.is_time_up(); }
 
   /// Runs the cycle on noise-free samples of what is held and what is selected.
   void expect(PosePlan& plan) {
     std::vector<Sample> samples = held_;
-    for (const SelectedPose& pose : selection_.poses()) {
-      for (Sample& sample : visitSamples(problem_,
-                                         options_,
-                                         candidates_[pose.candidate].joint_position,
-                                         coilsOf(candidates_, pose))) {
+    for (const ChosenPose& pose : chosen_) {
+      for (Sample& sample : visitSamples(
+               problem_, options_, candidates_[pose.candidate].joint_position, pose.patterns)) {
         predictMeasurements(point_, sample);
         samples.push_back(std::move(sample));
       }
@@ -163,17 +288,16 @@ class Planner {
                        [](const ParameterEstimate& estimate) { return estimate.observable; });
   }
 
-  /// Lays the selected poses out for a short way.
+  /// Lays the chosen poses out for a short way.
   void lay(PosePlan& plan) const {
-    const std::vector<Eigen::Vector3d> positions = jointPositions(candidates_, selection_.poses());
+    const std::vector<Eigen::Vector3d> positions = jointPositions(candidates_, chosen_);
     const std::vector<std::size_t> order = travelOrder(options_.start, positions);
     plan.travel = travelLength(options_.start, positions, order);
     for (const std::size_t n : order) {
-      const SelectedPose& pose = selection_.poses()[n];
-      PlannedPose planned{positions[n], coilsOf(candidates_, pose)};
-      plan.torque_samples += planned.coils.size();
-      plan.orientation_samples += candidates_[pose.candidate].orientation ? 1 : 0;
-      plan.poses.push_back(std::move(planned));
+      const PoseCandidate& candidate = candidates_[chosen_[n].candidate];
+      plan.torque_samples += chosen_[n].patterns.size();
+      plan.orientation_samples += candidate.orientation ? 1 : 0;
+      plan.poses.push_back(planned(candidate, chosen_[n], task_.has_value()));
     }
   }
 
@@ -195,6 +319,7 @@ class Planner {
       plan.poses_needed =
           static_cast<std::size_t>(std::ceil(static_cast<double>(poses) * ratio * ratio));
     }
+    plan.stddev_bound = bound_;
     plan.message = sentence(plan, poses);
   }
 
@@ -211,6 +336,11 @@ class Planner {
         plan.torque_samples,
         plan.worst_parameter.c_str(),
         1e3 * plan.worst_stddev);
+    if (plan.stddev_bound) {
+      text += format(
+          " That is within %.1f %% of what any plan of as many poses and torques could reach.",
+          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)));
+    }
     if (options_.wanted_stddev > 0.0 && !plan.reached_wanted) {
       text += format(" About %zu poses are needed for %.3g mrad.",
                      *plan.poses_needed,
@@ -223,8 +353,13 @@ class Planner {
   const PosePlanOptions& options_;
   ModelPoint point_;  ///< of what is believed
   std::vector<Eigen::Index> coordinates_;
+  Eigen::MatrixXd known_;
   std::vector<PoseCandidate> candidates_;
   PoseSelection selection_;
+  std::optional<DesignTask> task_;  ///< where patterns of several coils are planned
+  std::vector<PoseCandidate> candidates_of_bound_;
+  std::optional<double> bound_;  ///< of the largest standard deviation [rad]
+  std::vector<ChosenPose> chosen_;
   std::vector<Sample> held_;   ///< with the values that fit the parameters in force
   std::size_t exchanges_ = 0;  ///< tried
   CycleOutcome outcome_;       ///< of the last expect()

@@ -1,6 +1,10 @@
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <limits>
+#include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -22,6 +26,14 @@ std::string poseLine(const PlannedPose& pose) {
   YamlLine line;
   line.add("joint_position", yamlNumbers(pose.joint_position));
   line.add("coils", yamlList(coils));
+  if (!pose.patterns.empty()) {
+    std::vector<std::string> patterns;
+    patterns.reserve(pose.patterns.size());
+    for (const CoilPattern& pattern : pose.patterns) {
+      patterns.push_back('"' + patternText(pattern) + '"');
+    }
+    line.add("patterns", yamlList(patterns));
+  }
   return line.text();
 }
 
@@ -42,6 +54,28 @@ std::size_t readCount(const YamlMap& map, const std::string& key) {
   return static_cast<std::size_t>(map.integer(key, 0, kMostOfAnything));
 }
 
+/// "+1 -4": coil 1 at +current, coil 4 at −current, at once.
+CoilPattern readPattern(const YamlMap& map, const std::string& text) {
+  CoilPattern pattern;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::size_t number = 0;
+    const char* end = word.data() + word.size();
+    const auto [last, error] = std::from_chars(word.data() + 1, end, number);
+    const bool has_sign = word.front() == '+' || word.front() == '-';
+    if (!has_sign || error != std::errc{} || last != end || number == 0 ||
+        number > kMostOfAnything) {
+      map.fail("patterns", "\"" + text + "\" is no pattern such as \"+1 -4\".");
+    }
+    const std::size_t coil = indexOf(number).value();
+    if (!pattern.empty() && coil <= pattern.back().coil) {
+      map.fail("patterns", "\"" + text + "\": coils ascend, each at most once.");
+    }
+    pattern.push_back({coil, word.front() == '-' ? -1 : 1});
+  }
+  return pattern;
+}
+
 PlannedPose readPose(const YamlMap& map) {
   PlannedPose pose;
   pose.joint_position = readVector(map, "joint_position", ValueRange::finite("rad"));
@@ -51,6 +85,16 @@ PlannedPose readPose(const YamlMap& map) {
       map.fail("coils", "coils are whole numbers, counted from 1.");
     }
     pose.coils.push_back(indexOf(number).value());
+  }
+  if (map.has("patterns")) {
+    for (const std::string& text : map.texts("patterns")) {
+      pose.patterns.push_back(readPattern(map, text));
+      for (const SignedCoil& coil : pose.patterns.back()) {
+        if (std::find(pose.coils.begin(), pose.coils.end(), coil.coil) == pose.coils.end()) {
+          map.fail("patterns", "\"" + text + "\" excites a coil that is not among the coils.");
+        }
+      }
+    }
   }
   return pose;
 }
@@ -83,6 +127,9 @@ void readExpectations(const YamlMap& map, PosePlan& plan) {
   plan.orientation_uncertainty =
       map.number("orientation_uncertainty", ValueRange::nonNegative("rad"));
   plan.torque_uncertainty = map.number("torque_uncertainty", ValueRange::nonNegative("N m/A"));
+  if (map.has("stddev_bound")) {
+    plan.stddev_bound = map.number("stddev_bound", ValueRange::nonNegative());
+  }
   plan.reached_wanted = map.boolean("reached_wanted");
   if (map.has("poses_needed")) {
     plan.poses_needed = readCount(map, "poses_needed");
@@ -116,6 +163,9 @@ void writeExpectations(YamlWriter& writer, const PosePlan& plan) {
   writer.entry(2, "worst_stddev", yamlNumber(plan.worst_stddev));
   writer.entry(2, "orientation_uncertainty", yamlNumber(plan.orientation_uncertainty));
   writer.entry(2, "torque_uncertainty", yamlNumber(plan.torque_uncertainty));
+  if (plan.stddev_bound) {
+    writer.entry(2, "stddev_bound", yamlNumber(*plan.stddev_bound));
+  }
   writer.entry(2, "reached_wanted", yamlBoolean(plan.reached_wanted));
   if (plan.poses_needed) {
     writer.entry(2, "poses_needed", std::to_string(*plan.poses_needed));
@@ -137,7 +187,8 @@ std::string renderSessionPlan(const SessionPlanRecord& record) {
   for (const PlannedPose& pose : record.plan.poses) {
     poses.push_back(poseLine(pose));
   }
-  writer.line(1, "# in the order to be visited: sensor angles [rad], coils to excite in turn");
+  writer.line(
+      1, "# in the order to be visited: sensor angles [rad], coils to excite in turn, or patterns");
   writer.list(1, "poses", poses);
   writeExpectations(writer, record.plan);
   return writer.text();
@@ -175,13 +226,17 @@ SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator)
   for (const PlannedPose& pose : record.plan.poses) {
     PlannedDwell dwell;
     dwell.joint_position = pose.joint_position;
-    for (const std::size_t coil : pose.coils) {
-      if (coil >= actuator.coils.size()) {
-        throw ConfigError("The session plan excites coil " + std::to_string(numberOf(coil)) +
-                          ", but coils count from 1 to " + std::to_string(coils) + ".");
+    for (const CoilPattern& pattern : pose.excitations()) {
+      Eigen::VectorXd currents = Eigen::VectorXd::Zero(coils);
+      for (const SignedCoil& signed_coil : pattern) {
+        if (signed_coil.coil >= actuator.coils.size()) {
+          throw ConfigError("The session plan excites coil " +
+                            std::to_string(numberOf(signed_coil.coil)) +
+                            ", but coils count from 1 to " + std::to_string(coils) + ".");
+        }
+        currents[static_cast<Eigen::Index>(signed_coil.coil)] = signed_coil.sign * record.current;
       }
-      dwell.patterns.emplace_back(record.current *
-                                  Eigen::VectorXd::Unit(coils, static_cast<Eigen::Index>(coil)));
+      dwell.patterns.push_back(currents);
     }
     session.dwells.push_back(dwell);
   }

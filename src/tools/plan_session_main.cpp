@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
@@ -96,8 +97,13 @@ void printPlan(const PosePlan& plan) {
     const PlannedPose& pose = plan.poses[n];
     const Eigen::Vector3d& q = pose.joint_position;
     std::printf("%3zu  joints %7.3f %7.3f %7.3f rad  coils", n + 1, q[0], q[1], q[2]);
-    for (const std::size_t coil : pose.coils) {
-      std::printf(" %zu", numberOf(coil));
+    if (pose.patterns.empty()) {
+      for (const std::size_t coil : pose.coils) {
+        std::printf(" %zu", numberOf(coil));
+      }
+    }
+    for (const CoilPattern& pattern : pose.patterns) {
+      std::printf(" (%s)", patternText(pattern).c_str());
     }
     std::printf("%s\n", pose.coils.empty() ? " none" : "");
   }
@@ -108,6 +114,17 @@ void printPlan(const PosePlan& plan) {
               plan.expected.size(),
               open,
               plan.travel);
+}
+
+/// Options of the plan, with the time budget from now on.
+PosePlanOptions planOptions(const PlanSessionOptions& options) {
+  PosePlanOptions result = options.plan;
+  if (options.time_budget > 0.0) {
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::duration<double>(options.time_budget);
+    result.is_time_up = [end] { return std::chrono::steady_clock::now() > end; };
+  }
+  return result;
 }
 
 void writePlan(const PlanSessionOptions& options) {
@@ -124,7 +141,7 @@ void writePlan(const PlanSessionOptions& options) {
   problem.estimation = session.config().estimation;
   problem.state = stateFrom(session);
   assumeEarlierCycles(session.model(), options.cycle, problem.state);
-  PosePlan plan = planPoses(problem, options.plan);
+  PosePlan plan = planPoses(problem, planOptions(options));
   if (!plan.success) {
     throw DataError(plan.message);
   }

@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
@@ -11,9 +12,9 @@ namespace {
 constexpr char kIntroduction[] =
     "Usage: plan_session --actuator A.yaml --output PLAN.yaml [options] [BAG...]\n"
     "\n"
-    "Plans the poses of a calibration session, and the coils to excite at each, that tell most "
-    "about\n"
-    "the parameters. The plan holds the standard deviation that each parameter will reach.\n"
+    "Plans the poses of a calibration session, and the coils to excite at each, that tell most\n"
+    "about the parameters. The plan holds the standard deviation that each parameter will reach,\n"
+    "and says how near it comes to what any plan of as many poses and torques could reach.\n"
     "Recordings and samples that are given count as measured already. simulate_recording --plan\n"
     "carries a plan out. A calibrated description plans from its values.\n"
     "Exit status: 0 the plan is written, 2 it is not (and the reason on the standard error).\n\n";
@@ -23,6 +24,7 @@ struct RawValues {
   std::string cycle = "refine";
   std::string tracker = "on";
   std::string criterion = "worst";
+  std::string patterns = "weighing";
   double joint_stddev = 0.0;
 };
 
@@ -38,11 +40,15 @@ void addFileOptions(CommandLine& line, PlanSessionOptions& options) {
   line.addOperands(options.bags);
 }
 
-void addPlanOptions(CommandLine& line, PosePlanOptions& plan, RawValues& raw) {
+void addPlanOptions(CommandLine& line, PosePlanOptions& plan, double& time_budget, RawValues& raw) {
   line.beginGroup("Plan");
   line.add("cycle", raw.cycle, "CYCLE", "to plan for: refine, joint, poles:J or coil:J");
   line.add("poses", plan.max_poses, "N", "at most");
-  line.add("torques-per-pose", plan.coils_per_pose, "N", "coils excited in turn, at most");
+  line.add("torques-per-pose", plan.coils_per_pose, "N", "coils or patterns in turn, at most");
+  line.add("patterns",
+           raw.patterns,
+           "single|weighing",
+           "one coil at a time, or several at once with chosen signs (refine only)");
   line.add("wanted-stddev",
            plan.wanted_stddev,
            "RAD",
@@ -55,11 +61,19 @@ void addPlanOptions(CommandLine& line, PosePlanOptions& plan, RawValues& raw) {
   line.add("spin-maximum", plan.spin_maximum, "RAD", "of joint 3");
   line.add("spacing", plan.minimum_spacing, "RAD", "between two poses, at least");
   line.add("current", plan.current, "A", "of an excited coil");
+  line.add("total-current",
+           plan.total_current,
+           "A",
+           "sum of all |currents| of a pattern, at most, as the amplifier's limit");
   line.add("tracker", raw.tracker, "on|off", "at the poses of a refinement");
   line.add("criterion",
            raw.criterion,
            "worst|information",
            "smallest worst standard deviation, or largest information (D-optimal)");
+  line.add("time-budget",
+           time_budget,
+           "S",
+           "write the best plan so far after this time; 0: plan to the end");
   line.add("candidates", plan.candidates, "N", "random poses to choose from");
   line.add("seed", plan.seed, "N", "of these poses");
 }
@@ -89,7 +103,7 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
   RawValues raw;
   CommandLine line(kIntroduction);
   addFileOptions(line, options);
-  addPlanOptions(line, options.plan, raw);
+  addPlanOptions(line, options.plan, options.time_budget, raw);
   addSensorOptions(line, options.plan, raw);
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
@@ -103,6 +117,11 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
   files.requireSeparate();
   options.cycle = parseCycle(raw.cycle);
   options.plan.tracker_on = choose<bool>("tracker", raw.tracker, {{"on", true}, {"off", false}});
+  options.plan.patterns = choose<PlanPatterns>(
+      "patterns",
+      raw.patterns,
+      {{"single", PlanPatterns::kSingle}, {"weighing", PlanPatterns::kWeighing}});
+  requireInRange("--time-budget", options.time_budget, ValueRange::nonNegative("s"));
   options.plan.criterion = choose<PlanCriterion>(
       "criterion",
       raw.criterion,

@@ -21,6 +21,7 @@ struct PlanSessionOptions {
   std::string ns = "/actuator";
   CycleRequest cycle{Cycle::kRefine};
   PosePlanOptions plan;
+  double time_budget = 0.0;  ///< [s]; 0: none
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };
 

@@ -137,11 +137,21 @@ TEST(CycleSelection, TheRefinementNeedsWhatAnotherCycleNeedsOrTorquesAtManyPoses
     torques[n].current[20] = 2.0;
     torques[n].joint_position[0] = 0.2 * static_cast<double>(n);
   }
-  EXPECT_EQ(textOf(nextOf(torques)), "");
-  torques = joined(torques, samplesWithCoils({1}));
   EXPECT_EQ(textOf(nextOf(torques)), "refine");
   torques[3].joint_position = torques[4].joint_position;
   EXPECT_EQ(textOf(nextOf(torques)), "");
+}
+
+TEST(CycleSelection, TorquesOfSeveralCoilsAtOnceServeTheRefinementOnly) {
+  std::vector<Sample> torques = samplesWithCoils({1, 2, 3});
+  for (Sample& sample : torques) {
+    sample.current[20] = -2.0;
+  }
+  EXPECT_EQ(textOf(possibleCycles(paperModel(), torques, {})), "refine");
+  EXPECT_EQ(textOf(nextOf(torques)), "");
+  torques = joined(torques, orientationSamples(3));
+  EXPECT_EQ(textOf(possibleCycles(paperModel(), torques, {})), "joint,refine");
+  EXPECT_EQ(textOf(nextOf(torques)), "joint,refine");
 }
 
 TEST(CycleSelection, HeldOutAndMixedSamplesAskForNoCycle) {

@@ -21,7 +21,7 @@ Sample sampleAt(const Eigen::Vector3d& joints, const std::vector<double>& curren
 TEST(PlanGuidance, LeadsFromPoseToPose) {
   const Eigen::Vector3d first(0.1, -0.2, 1.5);
   const Eigen::Vector3d second(0.0, 0.3, 0.0);
-  const std::vector<PlannedPose> plan = {{first, {0, 2}}, {second, {}}};
+  const std::vector<PlannedPose> plan = {{first, {0, 2}, {}}, {second, {}, {}}};
   std::vector<Sample> samples;
   EXPECT_EQ(planStep(plan, samples, kThreshold),
             "Go on with the plan, 0 of 2 poses are measured: turn the rotor to joints 0.10, -0.20, "
@@ -38,8 +38,28 @@ TEST(PlanGuidance, LeadsFromPoseToPose) {
   EXPECT_EQ(planStep(plan, samples, kThreshold), "");
 }
 
+TEST(PlanGuidance, TellsSignsOfPatterns) {
+  PlannedPose pose{Eigen::Vector3d::Zero(), {0, 1, 2}, {}};
+  pose.patterns = {{{0, 1}, {2, -1}}, {{1, 1}, {2, 1}}};
+  std::vector<Sample> samples;
+  EXPECT_NE(
+      planStep({pose}, samples, kThreshold)
+          .find("capture without current, then with coils (+1 -3) and (+2 +3) excited in turn."),
+      std::string::npos)
+      << planStep({pose}, samples, kThreshold);
+  // Neither a coil alone nor other signs; the opposite tells the same.
+  samples = {sampleAt(Eigen::Vector3d::Zero(), {2.0, 0.0, 0.0}),
+             sampleAt(Eigen::Vector3d::Zero(), {2.0, 0.0, 2.0}),
+             sampleAt(Eigen::Vector3d::Zero(), {0.0, -2.0, -2.0})};
+  EXPECT_NE(planStep({pose}, samples, kThreshold).find("then with coils (+1 -3) excited."),
+            std::string::npos)
+      << planStep({pose}, samples, kThreshold);
+  samples.push_back(sampleAt(Eigen::Vector3d::Zero(), {2.0, 0.0, -2.0}));
+  EXPECT_EQ(planStep({pose}, samples, kThreshold), "");
+}
+
 TEST(PlanGuidance, HeldOutAndDistantSamplesCarryOutNothing) {
-  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}}};
+  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}, {}}};
   Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
   held_out.validation = true;
   const Sample distant = sampleAt(Eigen::Vector3d(0.0, 0.0, 0.2), {0.0, 0.0, 0.0});

@@ -53,7 +53,7 @@ class PosePlanner : public ::testing::Test {
     std::vector<Sample> samples;
     for (const PlannedPose& pose : plan.poses) {
       for (const Sample& sample :
-           visitSamples(problem_, options_, pose.joint_position, pose.coils)) {
+           visitSamples(problem_, options_, pose.joint_position, pose.excitations())) {
         samples.push_back(sample);
         predictMeasurements({model_, problem_.state.belief.x}, samples.back());
       }

@@ -34,6 +34,26 @@ class Planning(unittest.TestCase):
         self.assertEqual(len(answer.expected), 9 + 2 * 8 + 2 * 24)
         self.assertLess(max(estimate.stddev for estimate in answer.expected), 2e-3)
 
+    def test_plans_several_coils_at_once_on_request(self):
+        request = {"cycle": "refine", "max_poses": 8, "current": 1.5, "total_current": 4.5, "time_budget": 20.0}
+        single = self.plan(**request)
+        self.assertTrue(all(not pose.patterns for pose in single.poses))
+        answer = self.plan(patterns="weighing", **request)
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn("of what any plan", answer.message)
+        worst = max(estimate.stddev for estimate in answer.expected)
+        self.assertLess(worst, max(estimate.stddev for estimate in single.expected))
+        self.assertGreater(answer.stddev_bound, 0.0)
+        self.assertLessEqual(answer.stddev_bound, worst)
+        for pose in answer.poses:
+            self.assertEqual(len(pose.patterns), 6)
+            for pattern in pose.patterns:
+                self.assertEqual(len(pattern.current), 24)
+                excited = [n + 1 for n, current in enumerate(pattern.current) if current]
+                self.assertEqual(len(excited), 3)
+                self.assertTrue(set(excited) <= set(pose.coils))
+                self.assertEqual({abs(current) for current in pattern.current}, {0.0, 1.5})
+
     def test_plans_single_cycles(self):
         joint = self.plan(cycle="joint", max_poses=6)
         self.assertTrue(joint.success, joint.message)
@@ -48,6 +68,9 @@ class Planning(unittest.TestCase):
             ({"cycle": "everything", "max_poses": 5}, "everything"),
             ({"cycle": "coil", "coil": 99, "max_poses": 5}, "99"),
             ({"cycle": "refine", "max_poses": 0}, "max_poses"),
+            ({"cycle": "refine", "max_poses": 5, "patterns": "all"}, "all"),
+            ({"cycle": "refine", "max_poses": 5, "patterns": "weighing", "total_current": 1.0}, "total_current"),
+            ({"cycle": "refine", "max_poses": 5, "time_budget": -1.0}, "time_budget"),
         ):
             answer = self.plan(**request)
             self.assertFalse(answer.success)

@@ -116,6 +116,7 @@ class GuidedSession(unittest.TestCase):
         self.assertTrue(session.says("all 73 parameters are identified"), session.lines)
         self.assertTrue(session.says("Grade: good."), session.lines)
         self.check_result(session)
+        self.check_patterns()
 
     def fault_is_told_and_cured(self, session, fault, part):
         self.lab.fault(fault, True)
@@ -139,6 +140,16 @@ class GuidedSession(unittest.TestCase):
                 ["rosnode", "kill", f"{NAMESPACE}/calibration"], check=True, stdout=subprocess.DEVNULL
             )
             self.further_samples(2)
+
+    def check_patterns(self):
+        """Of the plan: several coils at once, some currents negative; of held-out samples: one coil at most."""
+        samples = self.client.held().values()
+        planned = [sample.current for sample in samples if sample.has_torque and not sample.validation]
+        self.assertTrue(any(min(current) < -1.0 for current in planned))
+        self.assertLess(max(sum(map(abs, current)) for current in planned), 8.5)
+        for sample in samples:
+            excited = sum(abs(current) > 1.0 for current in sample.current)
+            self.assertLessEqual(excited, 1 if sample.validation else 4)
 
     def check_result(self, session):
         saved = next(line for line in session.lines if line.startswith("Saved "))

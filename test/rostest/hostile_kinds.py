@@ -309,6 +309,9 @@ def text(value):
 # -- kinds of requests: service, and the bytes of its request --------------------------------------------------------
 
 
+# Patterns, currents and time budget of a plan, as by default.
+REST_OF_PLAN = text("") + struct.pack("<ddd", 0.0, 0.0, 0.0)
+
 REQUESTS = {
     "half a request": ("calibration/capture", b"\0\0"),
     "an empty request": ("calibration/plan_poses", b""),
@@ -321,9 +324,23 @@ REQUESTS = {
     "sample 4294967295": ("calibration/remove_sample", struct.pack("<I", 0xFFFFFFFF)),
     "coil 4294967295": ("calibration/calibrate_coil", struct.pack("<I", 0xFFFFFFFF)),
     "no coil": ("calibration/calibrate_poles", struct.pack("<I", 0)),
-    "a path for a cycle": ("calibration/plan_poses", text(TRICK) + struct.pack("<IId", 1, 1, 0.0)),
-    "escapes for a cycle": ("calibration/plan_poses", text(ESCAPES) + struct.pack("<IId", 1, 1, 0.0)),
-    "a cycle of a megabyte": ("calibration/plan_poses", text("x" * 1000000) + struct.pack("<IId", 1, 1, 0.0)),
-    "a plan without end": ("calibration/plan_poses", text("joint") + struct.pack("<IId", 0, 0xFFFFFFFF, math.nan)),
+    "a path for a cycle": ("calibration/plan_poses", text(TRICK) + struct.pack("<IId", 1, 1, 0.0) + REST_OF_PLAN),
+    "escapes for a cycle": ("calibration/plan_poses", text(ESCAPES) + struct.pack("<IId", 1, 1, 0.0) + REST_OF_PLAN),
+    "a cycle of a megabyte": (
+        "calibration/plan_poses",
+        text("x" * 1000000) + struct.pack("<IId", 1, 1, 0.0) + REST_OF_PLAN,
+    ),
+    "a plan without end": (
+        "calibration/plan_poses",
+        text("joint") + struct.pack("<IId", 0, 0xFFFFFFFF, math.nan) + REST_OF_PLAN,
+    ),
+    "a path for patterns": (
+        "calibration/plan_poses",
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text(TRICK) + struct.pack("<ddd", 0.0, 0.0, 0.0),
+    ),
+    "NaN of currents and of a time": (
+        "calibration/plan_poses",
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd", *[math.nan] * 3),
+    ),
     "a logger by a path": ("visualization/set_logger_level", text(TRICK) + text(ESCAPES)),
 }

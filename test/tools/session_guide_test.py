@@ -2,52 +2,78 @@
 """What a guided session does next, and what it tells, without ROS."""
 
 import io
+import threading
 import unittest
 from types import SimpleNamespace
 from unittest import mock
 
-from spherical_actuator_calibration.session_guide import progress, session
+from spherical_actuator_calibration.session_guide import laboratory, progress, session
+from spherical_actuator_calibration.session_guide.calibration import excitations_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
 from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 
-class ExcitedCoil(unittest.TestCase):
-    def test_is_the_one_that_carries_current(self):
-        self.assertEqual(progress.excited_coil([0.001, -0.002, 0.0], 0.05), 0)
-        self.assertEqual(progress.excited_coil([0.001, -0.05, 0.0], 0.05), 2)
-        self.assertIsNone(progress.excited_coil([2.0, -1.99, 0.0], 0.05))
-        self.assertEqual(progress.excited_coil([], 0.05), 0)
+class ExcitedCoils(unittest.TestCase):
+    def test_are_those_that_carry_current_with_their_signs(self):
+        self.assertEqual(progress.excited_coils([0.001, -0.002, 0.0], 0.05), ())
+        self.assertEqual(progress.excited_coils([0.001, -0.05, 0.0], 0.05), (-2,))
+        self.assertEqual(progress.excited_coils([2.0, -1.99, 0.0], 0.05), (1, -2))
+        self.assertEqual(progress.excited_coils([], 0.05), ())
+
+    def test_in_words(self):
+        self.assertEqual(progress.in_words((3,)), "Coil 3")
+        self.assertEqual(progress.in_words((1, -4, 12)), "Coils +1 -4 +12")
+
+
+class PlannedPatterns(unittest.TestCase):
+    def test_without_patterns_each_coil_is_alone(self):
+        self.assertEqual(excitations_of(SimpleNamespace(coils=[2, 5], patterns=[])), ((2,), (5,)))
+
+    def test_patterns_have_their_signs(self):
+        patterns = [SimpleNamespace(current=[2.0, -2.0, 0.0]), SimpleNamespace(current=[0.0, 2.0, 2.0])]
+        self.assertEqual(excitations_of(SimpleNamespace(coils=[1, 2, 3], patterns=patterns)), ((1, -2), (2, 3)))
+
+
+class Excitation(unittest.TestCase):
+    def test_commands_the_signs_of_a_pattern(self):
+        bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
+        bench._coils, bench._lock = 4, threading.Lock()
+        bench.excite((1, -3), 1.5)
+        self.assertEqual(bench._command, [1.5, 0.0, -1.5, 0.0])
+        bench.excite((), 0.0)
+        self.assertEqual(bench._command, [0.0] * 4)
 
 
 class MissingPatterns(unittest.TestCase):
-    POSE = Pose((0.1, -0.2, 1.5), (3, 7))
+    POSE = Pose((0.1, -0.2, 1.5), ((3,), (1, -7)))
 
-    def at(self, coil, joints=(0.1, -0.2, 1.5), validation=False):
-        return Measured(joints, coil, validation)
+    def at(self, pattern, joints=(0.1, -0.2, 1.5), validation=False):
+        return Measured(joints, pattern, validation)
 
     def test_the_one_without_current_comes_first(self):
-        self.assertEqual(progress.missing_patterns(self.POSE, []), [0, 3, 7])
+        self.assertEqual(progress.missing_patterns(self.POSE, []), [(), (3,), (1, -7)])
 
     def test_what_is_held_is_left_out(self):
-        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(0), self.at(7)]), [3])
+        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(()), self.at((1, -7))]), [(3,)])
 
     def test_another_pose_or_purpose_does_not_count(self):
-        elsewhere = self.at(0, joints=(0.1, -0.2, 1.53))
-        held_out = self.at(3, validation=True)
-        self.assertEqual(progress.missing_patterns(self.POSE, [elsewhere, held_out]), [0, 3, 7])
+        elsewhere = self.at((), joints=(0.1, -0.2, 1.53))
+        held_out = self.at((3,), validation=True)
+        self.assertEqual(progress.missing_patterns(self.POSE, [elsewhere, held_out]), [(), (3,), (1, -7)])
 
-    def test_several_coils_at_once_are_no_pattern_of_a_plan(self):
-        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(None)]), [0, 3, 7])
+    def test_other_coils_or_signs_are_another_pattern(self):
+        held = [self.at((1, 7)), self.at((1, -3, -7))]
+        self.assertEqual(progress.missing_patterns(self.POSE, held), [(), (3,), (1, -7)])
 
 
 class PosesOf(unittest.TestCase):
     def test_counts_places_not_samples(self):
         samples = [
-            Measured((0.0, 0.0, 0.0), 0, False),
-            Measured((0.001, 0.0, 0.0), 4, False),
-            Measured((0.3, 0.0, 0.0), 0, False),
-            Measured((0.3, 0.0, 0.0), 2, True),
+            Measured((0.0, 0.0, 0.0), (), False),
+            Measured((0.001, 0.0, 0.0), (4,), False),
+            Measured((0.3, 0.0, 0.0), (), False),
+            Measured((0.3, 0.0, 0.0), (1, -2), True),
         ]
         places = progress.poses_of(samples)
         self.assertEqual([p.validation for p in places], [False, False, True])
@@ -61,11 +87,11 @@ class ValidationPoses(unittest.TestCase):
         for pose in poses:
             self.assertTrue(pose.validation)
             self.assertLessEqual(max(abs(pose.joints[0]), abs(pose.joints[1])), 0.5)
-            self.assertEqual(len(set(pose.coils)), 3)
-            self.assertTrue(all(1 <= coil <= 24 for coil in pose.coils))
+            self.assertEqual(len(set(pose.excitations)), 3)
+            self.assertTrue(all(1 <= coil <= 24 for (coil,) in pose.excitations))
 
     def test_no_more_coils_than_there_are(self):
-        self.assertEqual(progress.validation_poses(1, 5, 2, 0.5, 1)[0].coils, (1, 2))
+        self.assertEqual(progress.validation_poses(1, 5, 2, 0.5, 1)[0].excitations, ((1,), (2,)))
 
 
 class Cycles(unittest.TestCase):
@@ -122,6 +148,8 @@ class CommandLine(unittest.TestCase):
             (["--poses", "2"], "--poses"),
             (["--current", "-1"], "--current"),
             (["--dwell", "nan"], "--dwell"),
+            (["--patterns", "all"], "--patterns"),
+            (["--total-current", "1.9"], "--total-current"),
             (["--ns", "actuator"], "--ns"),
         ):
             with self.assertRaisesRegex(OptionError, name):
@@ -135,15 +163,15 @@ class Coils:
         self._clock = clock
         self._cured_at = cured_at
         self._needs_zero = needs_zero
-        self._pattern = 3
+        self._pattern = (3,)
 
-    def excite(self, coil, _current):
-        self._pattern = coil
-        if coil == 0 and self._clock[0] >= self._cured_at:
+    def excite(self, pattern, _current):
+        self._pattern = pattern
+        if not pattern and self._clock[0] >= self._cured_at:
             self._needs_zero = False
 
     def is_excited(self):
-        return self._clock[0] >= self._cured_at and not self._needs_zero and self._pattern == 3
+        return self._clock[0] >= self._cured_at and not self._needs_zero and self._pattern == (3,)
 
     @staticmethod
     def driver_complaint():
@@ -166,7 +194,7 @@ class WaitingForCurrent(unittest.TestCase):
         fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
         with mock.patch.object(session, "rospy", fake):
             try:
-                guided._wait_for_current(3)
+                guided._wait_for_current((3,))
             except RuntimeError as error:
                 return clock[0], str(error)
         return clock[0], screen.getvalue()

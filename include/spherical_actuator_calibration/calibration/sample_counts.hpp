@@ -54,6 +54,8 @@ class SampleCounts {
   bool enoughForRefinement() const { return torque_poses_.isEnough(); }
   /// Per coil, with a torque and no other coil excited; empty without a torque model.
   const std::vector<std::size_t>& perCoil() const { return per_coil_; }
+  /// With a torque and several coils excited at once: they serve a refinement only.
+  std::size_t ofSeveralCoils() const { return of_several_coils_; }
 
  private:
   double current_threshold_;
@@ -62,6 +64,7 @@ class SampleCounts {
   PoseCount joint_poses_;
   PoseCount torque_poses_;
   std::vector<std::size_t> per_coil_;
+  std::size_t of_several_coils_ = 0;
 };
 
 }  // namespace sac

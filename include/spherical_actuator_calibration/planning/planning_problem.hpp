@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -31,13 +32,23 @@ enum class PlanCriterion {
   kInformation,  ///< a large determinant of the information matrix (D-optimal)
 };
 
+/// What one torque is measured with.
+enum class PlanPatterns {
+  kSingle,    ///< one coil alone, at +current
+  kWeighing,  ///< several coils at once, each at +current or −current; kRefine only, else kSingle
+};
+
 /// What a session may be like.
 struct PosePlanOptions {
   std::size_t max_poses = 10;
   /// Stop as soon as every parameter is expected to be this good [rad]; 0: use all poses.
   double wanted_stddev = 0.0;
-  std::size_t coils_per_pose = 6;  ///< excited in turn at one pose, at most; kRefine only
-  double current = 2.0;            ///< of an excited coil [A]
+  std::size_t coils_per_pose = 6;  ///< torques measured at one pose, at most; kRefine only
+  PlanPatterns patterns = PlanPatterns::kSingle;
+  double current = 2.0;  ///< of an excited coil [A]
+  /// Sum of all |currents| of a pattern, at most [A]: as the shipped amplifier's limit. So many
+  /// coils as it allows are excited at once; only for kWeighing.
+  double total_current = 8.0;
   /// The orientation is measured at every pose. For kRefine only: the joint cycle always measures
   /// it, poles and coils never use it.
   bool tracker_on = true;
@@ -56,6 +67,10 @@ struct PosePlanOptions {
 
   std::size_t candidates = 400;  ///< random poses to choose from
   std::uint64_t seed = 1;        ///< of these poses
+
+  /// Asked between steps: once it is true, the best plan so far is returned, and the bound as far
+  /// as it is known. Without it, or while it is false, the same options give the same plan.
+  std::function<bool()> is_time_up;
 };
 
 /// Throws ConfigError that names the option, its value and the allowed range for this problem.

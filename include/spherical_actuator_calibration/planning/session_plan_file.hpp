@@ -35,9 +35,9 @@ std::string renderSessionPlan(const SessionPlanRecord& record);
 /// Reads a plan file. Throws ConfigError that names file, line and key.
 SessionPlanRecord loadSessionPlan(const std::string& path);
 
-/// The dwells of a planned session: one per pose, its coils excited in turn. Throws ConfigError
-/// when the plan is for an actuator of another name, for another unit, or for a coil that there is
-/// not.
+/// The dwells of a planned session: one per pose, its coils or patterns excited in turn. Throws
+/// ConfigError when the plan is for an actuator of another name, for another unit, or for a coil
+/// that there is not.
 SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator);
 
 }  // namespace sac

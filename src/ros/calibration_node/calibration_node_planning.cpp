@@ -1,3 +1,5 @@
+#include <chrono>
+#include <cmath>
 #include <exception>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -20,15 +22,28 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
+/// Whether so many seconds have passed from now on; nothing for 0.
+std::function<bool()> budget(double seconds) {
+  if (seconds == 0.0) {
+    return {};
+  }
+  if (!std::isfinite(seconds) || seconds < 0.0) {
+    throw ConfigError("time_budget: it is a time in s, or 0 to plan to the end.");
+  }
+  using Clock = std::chrono::steady_clock;
+  return [begin = Clock::now(), seconds] {
+    return std::chrono::duration<double>(Clock::now() - begin).count() > seconds;
+  };
+}
+
 }  // namespace
 
 // Planning takes seconds: it works on a copy, so that nothing waits for it.
 bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
                                 msg::PlanPoses::Response& response) {
   try {
-    PosePlanOptions plan_options;
-    plan_options.max_poses = request.max_poses;
-    plan_options.wanted_stddev = request.wanted_stddev;
+    PosePlanOptions plan_options = planOptionsFromRos(request);
+    plan_options.is_time_up = budget(request.time_budget);
     PlanningProblem problem;
     problem.request = plannedCycle(request);
     std::vector<Sample> held;
@@ -45,7 +60,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     }
     problem.held = &held;
     const PosePlan plan = sac::planPoses(problem, plan_options);
-    response = planToRos(plan);
+    response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
     plan_ = plan.poses;
     publishStatus();

@@ -3,12 +3,31 @@
 #include <algorithm>
 #include <iterator>
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
 
-msg::PlanPoses::Response planToRos(const PosePlan& plan) {
+PosePlanOptions planOptionsFromRos(const msg::PlanPoses::Request& request) {
+  PosePlanOptions options;
+  options.max_poses = request.max_poses;
+  options.wanted_stddev = request.wanted_stddev;
+  if (request.patterns == "weighing") {
+    options.patterns = PlanPatterns::kWeighing;
+  } else if (!request.patterns.empty() && request.patterns != "single") {
+    throw ConfigError("patterns: " + request.patterns + " are none; single and weighing are.");
+  }
+  if (request.current != 0.0) {
+    options.current = request.current;
+  }
+  if (request.total_current != 0.0) {
+    options.total_current = request.total_current;
+  }
+  return options;
+}
+
+msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::size_t coils) {
   msg::PlanPoses::Response message;
   message.success = static_cast<std::uint8_t>(plan.success);
   message.message = plan.message;
@@ -20,7 +39,15 @@ msg::PlanPoses::Response planToRos(const PosePlan& plan) {
     for (const std::size_t coil : pose.coils) {
       item.coils.push_back(static_cast<std::uint32_t>(numberOf(coil)));
     }
+    for (const CoilPattern& pattern : pose.patterns) {
+      std::vector<double>& currents = item.patterns.emplace_back().current;
+      currents.assign(coils, 0.0);
+      for (const SignedCoil& coil : pattern) {
+        currents.at(coil.coil) = coil.sign * current;
+      }
+    }
   }
+  message.stddev_bound = plan.stddev_bound.value_or(0.0);
   std::transform(plan.expected.begin(),
                  plan.expected.end(),
                  std::back_inserter(message.expected),

@@ -5,7 +5,7 @@ from spherical_actuator_calibration.msg import CalibrationStatus
 from spherical_actuator_calibration.srv import Calibrate, Capture, ListSamples, PlanPoses, RemoveSample
 from std_srvs.srv import Trigger
 
-from .progress import Measured, Pose, excited_coil, service_of
+from .progress import Measured, Pose, excited_coils, service_of
 
 SERVICES = {
     "calibrate_coil": Calibrate,
@@ -95,19 +95,29 @@ class Calibration:
         return self.call(service, coil=coil)
 
     def pattern_of(self, sample):
-        """The coil that a sample excites, see excited_coil."""
-        return excited_coil(sample.current, self._status.current_threshold)
+        """The coils that a sample excites, see excited_coils."""
+        return excited_coils(sample.current, self._status.current_threshold)
 
     def measured(self):
         """Samples that are held."""
         samples = self.call("list_samples").samples
         return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation) for s in samples]
 
-    def plan(self, poses, wanted_stddev, cycle="refine"):
-        """Planned poses, in their order; raises RuntimeError with the reason when there is no plan."""
+    def plan(self, poses, wanted_stddev, cycle="refine", **excitation):
+        """Planned poses, in their order; raises RuntimeError with the reason when there is no plan.
+
+        excitation: patterns, current and total_current of the request.
+        """
         answer = self.call(
-            "plan_poses", cycle=cycle, coil=0, max_poses=poses, wanted_stddev=wanted_stddev
+            "plan_poses", cycle=cycle, coil=0, max_poses=poses, wanted_stddev=wanted_stddev, **excitation
         )
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)
-        return [Pose(tuple(p.joint_position), tuple(p.coils)) for p in answer.poses], answer.message
+        return [Pose(tuple(p.joint_position), excitations_of(p)) for p in answer.poses], answer.message
+
+
+def excitations_of(planned):
+    """Patterns of a PlannedPose."""
+    if not planned.patterns:
+        return tuple((coil,) for coil in planned.coils)
+    return tuple(excited_coils(pattern.current, 1e-9) for pattern in planned.patterns)

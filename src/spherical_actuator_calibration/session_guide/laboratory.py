@@ -65,12 +65,12 @@ class Laboratory:
             fresh = self._joints_time is not None and rospy.get_time() - self._joints_time < STALE
             return self._joints if fresh else None
 
-    def excite(self, coil, current):
-        """Only this coil, counted from 1; 0: none."""
+    def excite(self, pattern, current):
+        """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none."""
         with self._lock:
             self._command = [0.0] * self._coils
-            if coil:
-                self._command[coil - 1] = current
+            for coil in pattern:
+                self._command[abs(coil) - 1] = current if coil > 0 else -current
 
     def is_excited(self):
         """Whether the measured currents are those commanded."""
@@ -91,7 +91,7 @@ class Laboratory:
 
     def release(self):
         """All currents to zero, told several times, as a last message may be lost."""
-        self.excite(0, 0.0)
+        self.excite((), 0.0)
         for _ in range(3):
             self._repeat(None)
             rospy.rostime.wallsleep(0.02)

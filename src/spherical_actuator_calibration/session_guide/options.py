@@ -17,6 +17,8 @@ class Options:
     validation_poses: int = 2
     coils_per_validation_pose: int = 2
     current: float = 2.0
+    patterns: str = "weighing"
+    total_current: float = 8.0
     dwell: float = 0.5
     settling: float = 0.3
     current_timeout: float = 120.0
@@ -31,6 +33,7 @@ class Options:
             "validation_poses": (0, 1000),
             "coils_per_validation_pose": (1, 1000),
             "current": (0.01, 1000.0),
+            "total_current": (self.current, 1e6),
             "dwell": (0.05, 600.0),
             "settling": (0.0, 600.0),
             "current_timeout": (1.0, 3600.0),
@@ -41,6 +44,8 @@ class Options:
             if not least <= value <= most:
                 option = "--" + name.replace("_", "-")
                 raise OptionError(f"{option}: {value} is outside [{least}, {most}].")
+        if self.patterns not in ("single", "weighing"):
+            raise OptionError(f'--patterns: "{self.patterns}" is neither single nor weighing.')
         if not self.ns.startswith("/") or self.ns.endswith("/"):
             raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
 
@@ -63,6 +68,17 @@ def parse(arguments):
         help="poses that judge the result (%(default)s)",
     )
     add("--current", type=float, default=default.current, help="of an excited coil [A] (%(default)s)")
+    add(
+        "--patterns",
+        default=default.patterns,
+        help="single: one coil at a time; weighing: several at once with chosen signs (%(default)s)",
+    )
+    add(
+        "--total-current",
+        type=float,
+        default=default.total_current,
+        help="sum of all |currents| of a pattern, at most, as the amplifier's limit [A] (%(default)s)",
+    )
     add("--dwell", type=float, default=default.dwell, help="of each capture [s] (%(default)s)")
     add("--settling", type=float, default=default.settling, help="before it [s] (%(default)s)")
     add(

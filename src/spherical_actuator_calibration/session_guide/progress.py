@@ -8,35 +8,43 @@ SAME_POSE = 0.02  # [rad] largest difference of joint angles
 
 @dataclasses.dataclass(frozen=True)
 class Pose:
-    """A pose to measure at: raw joint angles [rad], coils to excite in turn, counted from 1."""
+    """A pose to measure at: raw joint angles [rad], patterns of coils to excite in turn.
+
+    A pattern holds the numbers of the coils that are excited at once, counted from 1, ascending, negative where the
+    current is; it is empty without current.
+    """
 
     joints: tuple
-    coils: tuple
+    excitations: tuple
     validation: bool = False
 
     def is_at(self, joints, tolerance=SAME_POSE):
         return max(abs(a - b) for a, b in zip(self.joints, joints)) <= tolerance
 
     def patterns(self):
-        """Coils in the order of their capture; 0 is the pattern without current, which comes first."""
-        return (0,) + tuple(self.coils)
+        """In the order of their capture; that without current comes first."""
+        return ((),) + tuple(self.excitations)
 
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here: where, which coil (0: none, None: several), whether held out."""
+    """What counts of a sample here: where, which pattern, whether held out."""
 
     joints: tuple
-    coil: int
+    pattern: tuple
     validation: bool
 
 
-def excited_coil(currents, threshold):
-    """Number of the one coil that counts as excited; 0 without any, None when there are several."""
-    excited = [n + 1 for n, i in enumerate(currents) if abs(i) >= threshold]
-    if not excited:
-        return 0
-    return excited[0] if len(excited) == 1 else None
+def excited_coils(currents, threshold):
+    """The pattern of the coils that count as excited."""
+    return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
+
+
+def in_words(pattern):
+    """Coil 3; coils +1 -4."""
+    if len(pattern) == 1 and pattern[0] > 0:
+        return f"Coil {pattern[0]}"
+    return "Coils " + " ".join(f"{coil:+d}" for coil in pattern)
 
 
 def poses_of(measured):
@@ -53,7 +61,7 @@ def poses_of(measured):
 def missing_patterns(pose, measured):
     """Patterns of a pose that no sample holds yet."""
     there = [s for s in measured if s.validation == pose.validation and pose.is_at(s.joints)]
-    held = {sample.coil for sample in there}
+    held = {sample.pattern for sample in there}
     return [pattern for pattern in pose.patterns() if pattern not in held]
 
 
@@ -68,7 +76,7 @@ def validation_poses(count, coils_each, coils, tilt, seed):
             generator.uniform(-3.0, 3.0),
         )
         excited = sorted(generator.sample(range(1, coils + 1), min(coils_each, coils)))
-        poses.append(Pose(joints, tuple(excited), validation=True))
+        poses.append(Pose(joints, tuple((coil,) for coil in excited), validation=True))
     return poses
 
 

@@ -79,7 +79,13 @@ class Session:
         return planned + validation
 
     def _plan(self, count):
-        poses, message = self._calibration.plan(count, self._options.wanted_stddev)
+        poses, message = self._calibration.plan(
+            count,
+            self._options.wanted_stddev,
+            patterns=self._options.patterns,
+            current=self._options.current,
+            total_current=self._options.total_current,
+        )
         self._terminal.say("Plan: " + message)
         return poses
 
@@ -91,10 +97,10 @@ class Session:
         for number, pose in enumerate(open_poses, 1):
             self._measure_pose(pose, number, len(open_poses))
             self._look_at_the_joint()
-        self._laboratory.excite(0, 0.0)
+        self._laboratory.excite((), 0.0)
 
     def _measure_pose(self, pose, number, count):
-        self._laboratory.excite(0, 0.0)
+        self._laboratory.excite((), 0.0)
         angles = ", ".join(f"{angle:.2f}" for angle in pose.joints)
         kind = "held-out pose" if pose.validation else "pose"
         if self._options.drive_fixture:
@@ -140,7 +146,10 @@ class Session:
         begin = rospy.get_time()
         while not self._has_current():
             waited = rospy.get_time() - begin
-            what = f"Coil {pattern} does not carry its current" if pattern else "A coil carries current"
+            what = "A coil carries current"
+            if pattern:
+                verb = "does not carry its current" if len(pattern) == 1 else "do not carry their currents"
+                what = f"{progress.in_words(pattern)} {verb}"
             complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
             if waited > self._options.current_timeout:
                 raise RuntimeError(
@@ -149,7 +158,7 @@ class Session:
             self._terminal.say_once(
                 f"{what}: check the amplifier (tripped?) and the coil driver ({complaint})."
             )
-            self._laboratory.excite(0, 0.0)
+            self._laboratory.excite((), 0.0)
             rospy.sleep(PAUSE)
             self._laboratory.excite(pattern, self._options.current)
 

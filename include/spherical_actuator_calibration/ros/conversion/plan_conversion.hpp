@@ -1,12 +1,18 @@
 #pragma once
 
+#include <cstddef>
+
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
 
-/// Answer of the service plan_poses.
-msg::PlanPoses::Response planToRos(const PosePlan& plan);
+/// Options of the service plan_poses: what a request leaves at zero is as by default. Throws
+/// ConfigError when it names patterns that there are not.
+PosePlanOptions planOptionsFromRos(const msg::PlanPoses::Request& request);
+
+/// Answer of the service plan_poses. `current`: of an excited coil [A]; `coils`: of the actuator.
+msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::size_t coils);
 
 }  // namespace sac

@@ -1,0 +1,137 @@
+#include "design_task.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "spherical_actuator_calibration/base/pi.hpp"
+
+namespace sac {
+namespace {
+
+/// Beyond this slope [rad/rad] an angle says nothing: its axis is along that of the angles.
+constexpr double kSteepest = 1e3;
+
+/// Difference of two values; of angles the short way round.
+double difference(double a, double b, bool is_angle) {
+  return is_angle ? std::remainder(a - b, 2.0 * kPi) : a - b;
+}
+
+/// Adds the derivative by `term`, times `sign`, to columns that hold all of its.
+void addTerm(const WhitenedObservation& term, double sign, WhitenedObservation& sum) {
+  auto place = sum.columns.begin();
+  for (std::size_t k = 0; k < term.columns.size(); ++k) {
+    place = std::lower_bound(place, sum.columns.end(), term.columns[k]);
+    sum.jacobian.col(place - sum.columns.begin()) +=
+        sign * term.jacobian.col(static_cast<Eigen::Index>(k));
+  }
+}
+
+/// The terms of a pattern, what is unexcited among them.
+std::vector<std::pair<const WhitenedObservation*, int>> termsOf(const PoseCandidate& candidate,
+                                                                const TermPattern& pattern) {
+  std::vector<std::pair<const WhitenedObservation*, int>> terms;
+  for (const SignedTerm& signed_term : pattern) {
+    terms.emplace_back(&candidate.terms[signed_term.term], signed_term.sign);
+  }
+  if (candidate.unexcited) {
+    terms.emplace_back(&*candidate.unexcited, 1);
+  }
+  return terms;
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> reportedDerivative(const ParameterSpace& space,
+                                               const Eigen::VectorXd& x,
+                                               const std::vector<Eigen::Index>& coordinates) {
+  constexpr double kStep = 1e-6;
+  const auto count = static_cast<Eigen::Index>(coordinates.size());
+  Eigen::MatrixXd derivative(count, count);
+  for (Eigen::Index b = 0; b < count; ++b) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
+    step[coordinates[static_cast<std::size_t>(b)]] = kStep;
+    const Eigen::VectorXd above = space.reportedValues(x + step);
+    const Eigen::VectorXd below = space.reportedValues(x - step);
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const Eigen::Index p = coordinates[static_cast<std::size_t>(a)];
+      derivative(a, b) = difference(above[p], below[p], p < space.effect()) / (2.0 * kStep);
+    }
+  }
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const bool is_angle = coordinates[static_cast<std::size_t>(a)] < space.effect();
+    if (!derivative.row(a).allFinite() || (is_angle && derivative.row(a).norm() > kSteepest)) {
+      derivative.row(a).setZero();
+    }
+  }
+  return derivative.sparseView(1.0, 1e-9);
+}
+
+Eigen::VectorXd reportedVariances(const DesignTask& task, const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd mapped = task.reported * covariance;
+  return (mapped * task.reported.transpose()).diagonal();
+}
+
+WhitenedObservation patternObservation(const DesignTask& task,
+                                       const PoseCandidate& candidate,
+                                       const TermPattern& pattern) {
+  WhitenedObservation sum;
+  const auto terms = termsOf(candidate, pattern);
+  for (const auto& [term, sign] : terms) {
+    sum.columns.insert(sum.columns.end(), term->columns.begin(), term->columns.end());
+  }
+  std::sort(sum.columns.begin(), sum.columns.end());
+  sum.columns.erase(std::unique(sum.columns.begin(), sum.columns.end()), sum.columns.end());
+  sum.jacobian.setZero(3, static_cast<Eigen::Index>(sum.columns.size()));
+  for (const auto& [term, sign] : terms) {
+    addTerm(*term, sign, sum);
+  }
+  if (!task.joint_variance.isZero(0.0)) {
+    Eigen::Matrix3d noise = Eigen::Matrix3d::Identity();
+    for (std::size_t k = 0; k < sum.columns.size(); ++k) {
+      // A joint sensor's error acts as an offset of that joint does.
+      const Eigen::Index joint = sum.columns[k] / ParameterSpace::kPerJoint;
+      if (joint < 3 && sum.columns[k] % ParameterSpace::kPerJoint == 0) {
+        const Eigen::Vector3d effect = sum.jacobian.col(static_cast<Eigen::Index>(k));
+        noise += task.joint_variance[joint] * effect * effect.transpose();
+      }
+    }
+    sum.jacobian = whiteningOf(noise) * sum.jacobian;
+  }
+  return sum;
+}
+
+Eigen::MatrixXd designInformation(const DesignTask& task,
+                                  const std::vector<PoseCandidate>& candidates,
+                                  const std::vector<DesignedPose>& poses) {
+  InformationSum sum(task.known);
+  for (const DesignedPose& pose : poses) {
+    const PoseCandidate& candidate = candidates[pose.candidate];
+    if (candidate.orientation) {
+      sum.add(*candidate.orientation);
+    }
+    for (const TermPattern& pattern : pose.patterns) {
+      sum.add(patternObservation(task, candidate, pattern));
+    }
+  }
+  return sum.information();
+}
+
+double steepNorm(const Eigen::VectorXd& variances, double exponent) {
+  const double largest = variances.maxCoeff();
+  const double sum = (variances.array() / largest).pow(exponent).sum();
+  return largest * std::pow(sum, 1.0 / exponent);
+}
+
+Eigen::VectorXd steepWeights(const Eigen::VectorXd& variances, double exponent) {
+  const Eigen::VectorXd weights =
+      (variances.array() / variances.maxCoeff()).max(0.0).pow(exponent - 1.0);
+  return weights / weights.sum();
+}
+
+Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& information) {
+  return information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+}  // namespace sac

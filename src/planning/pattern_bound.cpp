@@ -1,0 +1,179 @@
+#include "pattern_bound.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <vector>
+
+namespace sac {
+namespace {
+
+/// tr(J_a G J_bᵀ), from H = G J_bᵀ.
+double traceOf(const WhitenedObservation& a, const Eigen::Matrix<double, Eigen::Dynamic, 3>& H) {
+  double trace = 0.0;
+  for (std::size_t k = 0; k < a.columns.size(); ++k) {
+    trace += a.jacobian.col(static_cast<Eigen::Index>(k)).dot(H.row(a.columns[k]));
+  }
+  return trace;
+}
+
+/// tr(J_a G J_bᵀ) of all pairs of terms.
+Eigen::MatrixXd coilForm(const PoseCandidate& candidate, const Eigen::MatrixXd& sensitivity) {
+  std::vector<const WhitenedObservation*> terms;
+  for (const WhitenedObservation& term : candidate.terms) {
+    terms.push_back(&term);
+  }
+  if (candidate.unexcited) {
+    terms.push_back(&*candidate.unexcited);
+  }
+  const auto count = static_cast<Eigen::Index>(terms.size());
+  Eigen::MatrixXd form(count, count);
+  for (Eigen::Index b = 0; b < count; ++b) {
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> H =
+        terms[static_cast<std::size_t>(b)]->timesTransposed(sensitivity);
+    for (Eigen::Index a = 0; a <= b; ++a) {
+      form(a, b) = traceOf(*terms[static_cast<std::size_t>(a)], H);
+      form(b, a) = form(a, b);
+    }
+  }
+  return form;
+}
+
+/// Branch and bound over the coils of a pattern.
+class FormMaximum {
+ public:
+  FormMaximum(const Eigen::MatrixXd& Q, std::size_t coils, std::size_t most, double enough)
+      : Q_(Q), most_(std::min(most, coils)), order_(coils) {
+    largest_.value = enough;
+    std::iota(order_.begin(), order_.end(), 0);
+    pull_ = Eigen::VectorXd::Zero(Q.rows());
+    double value = 0.0;
+    if (Q.rows() > static_cast<Eigen::Index>(coils)) {
+      pull_ = Q.rightCols<1>();
+      value = Q(Q.rows() - 1, Q.rows() - 1);
+    }
+    rankTogether();
+    std::sort(order_.begin(), order_.end(), [&](Eigen::Index a, Eigen::Index b) {
+      return promise(a, most_) > promise(b, most_);
+    });
+    const double at_root = reachable(0, most_, value);
+    descend(0, most_, value);
+    if (branches_ > kMostBranches && at_root > largest_.value) {
+      largest_ = {at_root, {}};
+    }
+  }
+
+  const PatternMaximum& largest() const { return largest_; }
+
+ private:
+  static constexpr std::size_t kMostBranches = 100'000;
+
+  /// Per coil, sums over the largest |Q_ij| of its row, of 0, 1, 2... of them.
+  void rankTogether() {
+    for (std::size_t a = 0; a < order_.size(); ++a) {
+      std::vector<double> row;
+      for (std::size_t b = 0; b < order_.size(); ++b) {
+        if (b != a) {
+          row.push_back(std::abs(Q_(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))));
+        }
+      }
+      std::sort(row.begin(), row.end(), std::greater<>());
+      std::vector<double> sums(1, 0.0);
+      for (const double share : row) {
+        sums.push_back(sums.back() + share);
+      }
+      together_.push_back(std::move(sums));
+    }
+  }
+
+  /// What coil a adds at most, as one of `open` coils that are to be chosen.
+  double promise(Eigen::Index a, std::size_t open) const {
+    const std::vector<double>& sums = together_[static_cast<std::size_t>(a)];
+    return Q_(a, a) + 2.0 * std::abs(pull_[a]) + sums[std::min(open - 1, sums.size() - 1)];
+  }
+
+  /// At most, with `open` coils from order_[next] on.
+  double reachable(std::size_t next, std::size_t open, double value) const {
+    std::vector<double> promises;
+    for (std::size_t n = next; n < order_.size(); ++n) {
+      promises.push_back(open == 0 ? 0.0 : promise(order_[n], open));
+    }
+    const std::size_t count = std::min(open, promises.size());
+    std::partial_sort(promises.begin(),
+                      promises.begin() + static_cast<std::ptrdiff_t>(count),
+                      promises.end(),
+                      std::greater<>());
+    return std::accumulate(
+        promises.begin(), promises.begin() + static_cast<std::ptrdiff_t>(count), value);
+  }
+
+  void descend(std::size_t next, std::size_t open, double value) {
+    if (open == 0 || next == order_.size()) {
+      if (value > largest_.value) {
+        largest_ = {value, chosen_};
+      }
+      return;
+    }
+    if (++branches_ > kMostBranches || reachable(next, open, value) <= largest_.value) {
+      return;
+    }
+    const Eigen::Index coil = order_[next];
+    const double pull = pull_[coil];
+    for (const int sign : {pull < 0.0 ? -1 : 1, pull < 0.0 ? 1 : -1}) {
+      chosen_.push_back({static_cast<std::size_t>(coil), sign});
+      pull_ += sign * Q_.col(coil);
+      descend(next + 1, open - 1, value + Q_(coil, coil) + 2.0 * sign * pull);
+      pull_ -= sign * Q_.col(coil);
+      chosen_.pop_back();
+    }
+    descend(next + 1, open, value);
+  }
+
+  const Eigen::MatrixXd& Q_;
+  std::size_t most_;
+  PatternMaximum largest_;
+  TermPattern chosen_;
+  std::vector<Eigen::Index> order_;
+  Eigen::VectorXd pull_;  ///< Σ_i s_i Q_ij of those chosen
+  std::vector<std::vector<double>> together_;
+  std::size_t branches_ = 0;
+};
+
+}  // namespace
+
+Eigen::MatrixXd sensitivityOf(const DesignTask& task,
+                              const Eigen::MatrixXd& covariance,
+                              const Eigen::VectorXd& weights) {
+  const Eigen::MatrixXd mapped = task.reported * covariance;
+  return mapped.transpose() * (weights.asDiagonal() * mapped);
+}
+
+PatternMaximum largestForm(const Eigen::MatrixXd& Q,
+                           std::size_t coils,
+                           std::size_t most,
+                           double enough) {
+  return FormMaximum(Q, coils, most, enough).largest();
+}
+
+PatternMaximum visitSensitivity(const DesignTask& task,
+                                const PoseCandidate& candidate,
+                                const Eigen::MatrixXd& sensitivity,
+                                double enough) {
+  double of_orientation = 0.0;
+  if (candidate.orientation) {
+    of_orientation =
+        traceOf(*candidate.orientation, candidate.orientation->timesTransposed(sensitivity));
+  }
+  const std::size_t coils = candidate.terms.size();
+  if (coils == 0) {
+    return {std::max(enough, of_orientation), {}};
+  }
+  const auto torques = static_cast<double>(task.patterns_per_pose);
+  const double enough_of_one = std::max(0.0, (enough - of_orientation) / torques);
+  PatternMaximum maximum =
+      largestForm(coilForm(candidate, sensitivity), coils, task.coils_per_pattern, enough_of_one);
+  maximum.value = std::max(enough, of_orientation + torques * maximum.value);
+  return maximum;
+}
+
+}  // namespace sac

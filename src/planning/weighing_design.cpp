@@ -1,0 +1,199 @@
+#include "weighing_design.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "pattern_bound.hpp"
+#include "pattern_search.hpp"
+
+namespace sac {
+namespace {
+
+/// Exponents of the norm of variances, in turn: the first ones lead away from plans that are good
+/// for the worst parameter alone.
+constexpr double kExponents[] = {8.0, 24.0, 72.0};
+constexpr int kMostPasses = 6;
+/// Exchanges that gain less, of the logarithm of a standard deviation, are rounding or not worth
+/// it.
+constexpr double kLeastGain = 1e-5;
+/// Candidates that are looked at closely where a pose is exchanged.
+constexpr std::size_t kPromising = 8;
+
+/// Adds what an observation tells to a covariance (way = 1), or takes it off (way = −1).
+void observe(const WhitenedObservation& observation, double way, Eigen::MatrixXd& covariance) {
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> effect = observation.timesTransposed(covariance);
+  const Eigen::Matrix3d innovation = Eigen::Matrix3d::Identity() + way * observation.times(effect);
+  const Eigen::Matrix3d root =
+      innovation.llt().matrixL().solve(Eigen::Matrix3d::Identity()).transpose();
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = effect * root;
+  covariance.noalias() -= way * gain * gain.transpose();
+}
+
+}  // namespace
+
+WeighingDesign::WeighingDesign(const DesignTask& task,
+                               const std::vector<PoseCandidate>& candidates,
+                               const std::vector<std::size_t>& poses,
+                               std::function<bool()> is_time_up)
+    : task_(task),
+      candidates_(candidates),
+      is_time_up_(std::move(is_time_up)),
+      exponent_(kExponents[0]) {
+  for (const std::size_t candidate : poses) {
+    poses_.push_back({candidate, {}});
+  }
+}
+
+void WeighingDesign::choosePatterns() {
+  Eigen::MatrixXd covariance = this->covariance();
+  for (DesignedPose& pose : poses_) {
+    if (candidates_[pose.candidate].orientation) {
+      observe(*candidates_[pose.candidate].orientation, 1.0, covariance);
+    }
+  }
+  // Each pattern is chosen with all poses' orientations known, and those chosen before it.
+  for (std::size_t n = 0; n < task_.patterns_per_pose; ++n) {
+    for (DesignedPose& pose : poses_) {
+      const PoseCandidate& candidate = candidates_[pose.candidate];
+      if (candidate.terms.empty()) {
+        continue;
+      }
+      pose.patterns.push_back(
+          PatternSearch(task_, candidate, covariance, weightsAt(covariance)).best());
+      observe(patternObservation(task_, candidate, pose.patterns.back()), 1.0, covariance);
+    }
+  }
+  exchangePatterns();
+}
+
+void WeighingDesign::exchange() {
+  for (const double exponent : kExponents) {
+    exponent_ = exponent;
+    for (int pass = 0; pass < kMostPasses && !isTimeUp(); ++pass) {
+      bool has_changed = false;
+      for (int inner = 0; inner < kMostPasses && exchangePatterns(); ++inner) {
+        has_changed = true;
+      }
+      has_changed = exchangePoses() || has_changed;
+      if (!has_changed) {
+        break;
+      }
+    }
+  }
+  for (int pass = 0; pass < kMostPasses && exchangePatterns(); ++pass) {
+  }
+}
+
+bool WeighingDesign::exchangePatterns() {
+  bool has_changed = false;
+  for (DesignedPose& pose : poses_) {
+    const PoseCandidate& at = candidates_[pose.candidate];
+    // Anew for each pose, so that rounding does not add up.
+    Eigen::MatrixXd covariance = this->covariance();
+    for (TermPattern& pattern : pose.patterns) {
+      if (isTimeUp()) {
+        return has_changed;
+      }
+      Eigen::MatrixXd without = covariance;
+      observe(patternObservation(task_, at, pattern), -1.0, without);
+      const PatternSearch search(task_, at, without, weightsAt(without));
+      TermPattern changed = search.improved(pattern);
+      TermPattern anew = search.best();
+      if (search.reduction(anew) > search.reduction(changed)) {
+        changed = std::move(anew);
+      }
+      observe(patternObservation(task_, at, changed), 1.0, without);
+      if (meritOf(without) < meritOf(covariance) - kLeastGain) {
+        pattern = std::move(changed);
+        covariance = std::move(without);
+        has_changed = true;
+      }
+    }
+  }
+  return has_changed;
+}
+
+bool WeighingDesign::exchangePoses() {
+  bool has_changed = false;
+  for (std::size_t n = 0; n < poses_.size() && !isTimeUp(); ++n) {
+    double reached = meritOf(covariance());
+    // The first one is taken out, what takes its place is the last.
+    DesignedPose best_pose = poses_.front();
+    poses_.erase(poses_.begin());
+    const Eigen::MatrixXd without = covariance();
+    for (const std::size_t candidate : promising(without)) {
+      Eigen::MatrixXd with = without;
+      DesignedPose pose = designedAt(candidate, with);
+      const double merit = meritOf(with);
+      if (merit < reached - kLeastGain) {
+        reached = merit;
+        best_pose = std::move(pose);
+        has_changed = true;
+      }
+    }
+    poses_.push_back(std::move(best_pose));
+  }
+  return has_changed;
+}
+
+DesignedPose WeighingDesign::designedAt(std::size_t candidate, Eigen::MatrixXd& covariance) const {
+  const PoseCandidate& at = candidates_[candidate];
+  DesignedPose pose{candidate, {}};
+  if (at.orientation) {
+    observe(*at.orientation, 1.0, covariance);
+  }
+  while (!at.terms.empty() && pose.patterns.size() < task_.patterns_per_pose) {
+    pose.patterns.push_back(PatternSearch(task_, at, covariance, weightsAt(covariance)).best());
+    observe(patternObservation(task_, at, pose.patterns.back()), 1.0, covariance);
+  }
+  return pose;
+}
+
+std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) const {
+  const Eigen::MatrixXd sensitivity = sensitivityOf(task_, covariance, weightsAt(covariance));
+  std::vector<std::pair<double, std::size_t>> ranks;
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    if (keepsDistance(c)) {
+      ranks.emplace_back(-visitSensitivity(task_, candidates_[c], sensitivity, 0.0).value, c);
+    }
+  }
+  const std::size_t count = std::min(kPromising, ranks.size());
+  std::partial_sort(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(count), ranks.end());
+  std::vector<std::size_t> result;
+  for (std::size_t n = 0; n < count; ++n) {
+    result.push_back(ranks[n].second);
+  }
+  return result;
+}
+
+bool WeighingDesign::keepsDistance(std::size_t candidate) const {
+  const double largest_cosine = std::cos(task_.minimum_spacing);
+  const Eigen::Matrix3d& R = candidates_[candidate].R_stator_rotor;
+  return std::none_of(poses_.begin(), poses_.end(), [&](const DesignedPose& pose) {
+    const Eigen::Matrix3d& R_other = candidates_[pose.candidate].R_stator_rotor;
+    // The trace of R_otherᵀ R is 1 + 2 cos of the angle between them.
+    return pose.candidate == candidate ||
+           0.5 * (R_other.cwiseProduct(R).sum() - 1.0) > largest_cosine;
+  });
+}
+
+Eigen::MatrixXd WeighingDesign::covariance() const {
+  return covarianceOf(designInformation(task_, candidates_, poses_));
+}
+
+Eigen::VectorXd WeighingDesign::weightsAt(const Eigen::MatrixXd& covariance) const {
+  return steepWeights(reportedVariances(task_, covariance), exponent_);
+}
+
+double WeighingDesign::meritOf(const Eigen::MatrixXd& covariance) const {
+  return 0.5 * std::log(steepNorm(reportedVariances(task_, covariance), exponent_));
+}
+
+double WeighingDesign::worstStddev() const {
+  return std::sqrt(reportedVariances(task_, covariance()).maxCoeff());
+}
+
+}  // namespace sac

@@ -1,0 +1,327 @@
+/// Plans with patterns of several coils at once, and the bound that they are told against.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <gtest/gtest.h>
+
+#include "design_bound.hpp"
+#include "pattern_bound.hpp"
+#include "pattern_search.hpp"
+#include "pose_candidates.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
+#include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
+#include "support/scenarios.hpp"
+#include "weighing_design.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kTilt = 0.3;  // [rad]
+
+class WeighingPlan : public ::testing::Test {
+ protected:
+  WeighingPlan() {
+    problem_.model = &model_;
+    problem_.held = &held_;
+    problem_.state = nominalState(model_.space(), {});
+    options_.tilt_limit = kTilt;
+    options_.patterns = PlanPatterns::kWeighing;
+    options_.candidates = 100;  // for the speed of the tests
+  }
+
+  /// Largest standard deviation of all parameters at the bound of the planned samples [rad].
+  double boundOf(const PosePlan& plan) const {
+    std::vector<Sample> samples;
+    for (const PlannedPose& pose : plan.poses) {
+      for (const Sample& sample :
+           visitSamples(problem_, options_, pose.joint_position, pose.excitations())) {
+        samples.push_back(sample);
+        predictMeasurements({model_, problem_.state.belief.x}, samples.back());
+      }
+    }
+    const Eigen::VectorXd& x = problem_.state.belief.x;
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(x.size()));
+    std::iota(all.begin(), all.end(), 0);
+    return model_.space()
+        .reportedStddevs(x, cramerRaoBound(model_, samples, {Cycle::kRefine}, all, x))
+        .maxCoeff();
+  }
+
+  std::vector<PoseCandidate> candidates(std::size_t count, std::uint64_t seed) const {
+    PosePlanOptions options = options_;
+    options.candidates = count;
+    options.seed = seed;
+    return drawCandidates(problem_, options, plannedCoordinates(problem_));
+  }
+
+  DesignTask task() const {
+    const std::vector<Eigen::Index> coordinates = plannedCoordinates(problem_);
+    const auto count = static_cast<Eigen::Index>(coordinates.size());
+    DesignTask task;
+    task.known = 1e3 * Eigen::MatrixXd::Identity(count, count);
+    task.reported = reportedDerivative(model_.space(), problem_.state.belief.x, coordinates);
+    return task;
+  }
+
+  Actuator nominal_ = scenarios::paperNominal();
+  CalibrationModel model_{ParameterSpace(nominal_)};
+  std::vector<Sample> held_;
+  PlanningProblem problem_;
+  PosePlanOptions options_;
+};
+
+/// As many as there are, all of them drawn from a seed.
+std::vector<DesignedPose> randomDesign(const std::vector<PoseCandidate>& candidates,
+                                       const DesignTask& task,
+                                       std::size_t visits,
+                                       std::uint64_t seed) {
+  NoiseSource noise(seed, RandomPurpose::kPoseCandidates);
+  const auto below = [&noise](std::size_t count) {
+    return static_cast<std::size_t>(noise.share() * static_cast<double>(count));
+  };
+  std::vector<DesignedPose> design(visits);
+  for (DesignedPose& pose : design) {
+    do {
+      pose.candidate = below(candidates.size());
+    } while (candidates[pose.candidate].terms.size() < task.coils_per_pattern);
+    std::vector<std::size_t> terms(candidates[pose.candidate].terms.size());
+    std::iota(terms.begin(), terms.end(), 0);
+    pose.patterns.resize(task.patterns_per_pose);
+    for (TermPattern& pattern : pose.patterns) {
+      for (std::size_t n = 0; n < task.coils_per_pattern; ++n) {
+        std::swap(terms[n], terms[n + below(terms.size() - n)]);
+        pattern.push_back({terms[n], noise.share() < 0.5 ? 1 : -1});
+      }
+    }
+  }
+  return design;
+}
+
+double worstStddev(const DesignTask& task,
+                   const std::vector<PoseCandidate>& candidates,
+                   const std::vector<DesignedPose>& design) {
+  const Eigen::MatrixXd information = designInformation(task, candidates, design);
+  return std::sqrt(reportedVariances(task, covarianceOf(information)).maxCoeff());
+}
+
+TEST_F(WeighingPlan, OfTenPosesAndSixtyTorquesBeatsOneCoilAtATimeAndComesNearTheBound) {
+  options_.candidates = PosePlanOptions{}.candidates;
+  const PosePlan plan = planPoses(problem_, options_);
+  ASSERT_TRUE(plan.success) << plan.message;
+  EXPECT_LE(plan.poses.size(), 10U);
+  EXPECT_LE(plan.torque_samples, 60U);
+  EXPECT_LE(plan.worst_stddev, 0.20e-3);
+  ASSERT_TRUE(plan.stddev_bound.has_value());
+  EXPECT_LE(plan.worst_stddev, 1.05 * *plan.stddev_bound);
+  EXPECT_GE(plan.worst_stddev, *plan.stddev_bound);
+  EXPECT_NE(plan.message.find("of what any plan of as many poses and torques could reach"),
+            std::string::npos)
+      << plan.message;
+  options_.patterns = PlanPatterns::kSingle;
+  EXPECT_LT(plan.worst_stddev, 0.9 * planPoses(problem_, options_).worst_stddev);
+}
+
+TEST_F(WeighingPlan, ExpectsTheCramerRaoBoundOfTheSamplesThatItAsksFor) {
+  const PosePlan plan = planPoses(problem_, options_);
+  EXPECT_NEAR(plan.worst_stddev / boundOf(plan), 1.0, 1e-6);
+}
+
+TEST_F(WeighingPlan, KeepsTheLimitsOfCurrents) {
+  options_.total_current = 7.0;  // three coils of 2 A
+  options_.max_poses = 8;
+  const PosePlan plan = planPoses(problem_, options_);
+  ASSERT_EQ(plan.poses.size(), 8U);
+  bool has_negative = false;
+  for (const PlannedPose& pose : plan.poses) {
+    EXPECT_LE(pose.patterns.size(), options_.coils_per_pose);
+    for (const CoilPattern& pattern : pose.patterns) {
+      EXPECT_EQ(pattern.size(), 3U);
+      for (const SignedCoil& coil : pattern) {
+        EXPECT_TRUE(std::binary_search(pose.coils.begin(), pose.coils.end(), coil.coil));
+        has_negative = has_negative || coil.sign == -1;
+      }
+    }
+    for (const Sample& sample :
+         visitSamples(problem_, options_, pose.joint_position, pose.excitations())) {
+      EXPECT_LE(sample.current.cwiseAbs().maxCoeff(), 2.0);
+      EXPECT_LE(sample.current.cwiseAbs().sum(), 7.0);
+    }
+  }
+  EXPECT_TRUE(has_negative);
+}
+
+TEST_F(WeighingPlan, GivesTheSamePlanForTheSameSeed) {
+  options_.max_poses = 6;
+  const PosePlan first = planPoses(problem_, options_);
+  const PosePlan again = planPoses(problem_, options_);
+  ASSERT_EQ(first.poses.size(), again.poses.size());
+  for (std::size_t n = 0; n < first.poses.size(); ++n) {
+    EXPECT_EQ(first.poses[n].joint_position, again.poses[n].joint_position);
+    EXPECT_EQ(first.poses[n].patterns, again.poses[n].patterns);
+  }
+  EXPECT_EQ(first.stddev_bound, again.stddev_bound);
+}
+
+TEST_F(WeighingPlan, IsThereWhateverTimeIsLeft) {
+  const PosePlan whole = planPoses(problem_, options_);
+  double last = 1.0;
+  for (const int asked : {0, 10, 60}) {
+    options_.is_time_up = [left = asked]() mutable { return left-- <= 0; };
+    const PosePlan plan = planPoses(problem_, options_);
+    EXPECT_TRUE(plan.success) << plan.message;
+    EXPECT_EQ(plan.poses.size(), 10U);
+    EXPECT_EQ(plan.torque_samples, 60U);
+    EXPECT_EQ(plan.stddev_bound.has_value(), asked > 0);
+    EXPECT_LE(plan.worst_stddev, (1.0 + 1e-9) * last);
+    last = plan.worst_stddev;
+  }
+  EXPECT_LE(whole.worst_stddev, last);
+}
+
+TEST_F(WeighingPlan, StopsAtTheWantedStandardDeviation) {
+  options_.max_poses = 20;
+  options_.wanted_stddev = 2.5e-4;
+  const PosePlan plan = planPoses(problem_, options_);
+  EXPECT_TRUE(plan.reached_wanted);
+  EXPECT_LE(plan.worst_stddev, 2.5e-4);
+  EXPECT_LE(plan.poses.size(), 8U);
+  EXPECT_TRUE(plan.stddev_bound.has_value());
+}
+
+TEST_F(WeighingPlan, IsForTheJointCycleOnly) {
+  problem_.request = {Cycle::kJoint};
+  for (const PlannedPose& pose : planPoses(problem_, options_).poses) {
+    EXPECT_TRUE(pose.patterns.empty());
+  }
+}
+
+TEST_F(WeighingPlan, RefusesATotalBelowOneCoil) {
+  options_.total_current = 1.9;
+  EXPECT_THROW(planPoses(problem_, options_), ConfigError);
+}
+
+TEST_F(WeighingPlan, LinearisesPatternsAsTheEstimationDoes) {
+  // With an effect that no current turns, and joints' readings that are not exact.
+  EffectSelection effects;
+  effects["torque_bias"] = true;
+  const CalibrationModel with_bias{ParameterSpace(nominal_, effects)};
+  problem_.model = &with_bias;
+  problem_.state = nominalState(with_bias.space(), {});
+  options_.joint_stddev = {3e-4, 5e-4, 1e-3};
+  const DesignTask biased = [&] {
+    const std::vector<Eigen::Index> coordinates = plannedCoordinates(problem_);
+    DesignTask result;
+    result.known.setZero(with_bias.space().size(), with_bias.space().size());
+    result.reported = reportedDerivative(with_bias.space(), problem_.state.belief.x, coordinates);
+    result.joint_variance = options_.joint_stddev.cwiseAbs2();
+    return result;
+  }();
+  const PoseCandidate candidate = candidates(1, 3).front();
+  ASSERT_GE(candidate.coils.size(), 2U);
+  const Eigen::MatrixXd ours = designInformation(biased, {candidate}, {{0, {{{0, 1}, {1, -1}}}}});
+  // The same by the estimation itself.
+  std::vector<Sample> samples = visitSamples(problem_,
+                                             options_,
+                                             candidate.joint_position,
+                                             {{{candidate.coils[0], 1}, {candidate.coils[1], -1}}});
+  for (Sample& sample : samples) {
+    predictMeasurements({with_bias, problem_.state.belief.x}, sample);
+  }
+  problem_.held = &samples;
+  const Eigen::MatrixXd theirs = heldInformation(problem_, plannedCoordinates(problem_));
+  EXPECT_LT((ours - theirs).norm(), 1e-9 * theirs.norm());
+}
+
+TEST(PatternBound, IsTheLargestOfAllPatterns) {
+  NoiseSource noise(4, RandomPurpose::kPoseCandidates);
+  for (const Eigen::Index extra : {0, 1}) {
+    Eigen::MatrixXd root(3, 6 + extra);
+    for (double& value : root.reshaped()) {
+      value = noise.uniform(1.0);
+    }
+    const Eigen::MatrixXd Q = root.transpose() * root;
+    // Each coil of six off, or with either sign: at most three at once.
+    double largest = 0.0;
+    for (int code = 0; code < 729; ++code) {
+      Eigen::VectorXd s = Eigen::VectorXd::Ones(6 + extra);
+      int rest = code;
+      for (Eigen::Index n = 0; n < 6; ++n, rest /= 3) {
+        s[n] = rest % 3 - 1;
+      }
+      if (s.head(6).cwiseAbs().sum() <= 3.0) {
+        largest = std::max(largest, s.dot(Q * s));
+      }
+    }
+    EXPECT_NEAR(largestForm(Q, 6, 3, 0.0).value, largest, 1e-12);
+    EXPECT_EQ(largestForm(Q, 6, 3, 2.0 * largest).value, 2.0 * largest);
+    // No current between does better.
+    for (int n = 0; n < 2000; ++n) {
+      Eigen::VectorXd s = Eigen::VectorXd::Ones(6 + extra);
+      for (double& share : s.head(6)) {
+        share = noise.uniform(1.0);
+      }
+      s.head(6) *= std::min(1.0, 3.0 / s.head(6).cwiseAbs().sum());
+      EXPECT_LE(s.dot(Q * s), largest);
+    }
+  }
+}
+
+TEST_F(WeighingPlan, BoundHoldsForOtherDesignsAndOnOtherPoses) {
+  const std::vector<PoseCandidate> chosen = candidates(500, 1);
+  DesignTask task = this->task();
+  WeighingDesign design(task, chosen, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {});
+  design.choosePatterns();
+  DesignBound bound(task, chosen, 10, designInformation(task, chosen, design.poses()));
+  bound.improve({});
+  design.exchange();
+  EXPECT_GE(design.worstStddev(), bound.stddev());
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_GT(worstStddev(task, chosen, randomDesign(chosen, task, 10, seed)), bound.stddev());
+  }
+  // Ten times as many poses lower it by little, and never raise it.
+  const double dense = bound.stddevOver(candidates(5000, 2));
+  EXPECT_LE(dense, bound.stddev());
+  EXPECT_GE(dense, 0.97 * bound.stddev());
+}
+
+TEST_F(WeighingPlan, BoundHoldsForTheBestOfAllDesigns) {
+  // Few enough to try them all: two visits, one torque each, of the one pattern of two coils.
+  std::vector<PoseCandidate> chosen = candidates(12, 5);
+  DesignTask task = this->task();
+  task.patterns_per_pose = 1;
+  task.coils_per_pattern = 2;
+  task.minimum_spacing = 0.0;
+  task.known = designInformation(task, chosen, randomDesign(chosen, task, 60, 1));
+  double best = 1.0;
+  std::vector<std::vector<DesignedPose>> visits;
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    chosen[c].terms.resize(std::min<std::size_t>(3, chosen[c].terms.size()));
+    for (std::size_t a = 0; a < chosen[c].terms.size(); ++a) {
+      for (std::size_t b = a + 1; b < chosen[c].terms.size(); ++b) {
+        for (const int sign : {1, -1}) {
+          visits.push_back({{c, {{{a, 1}, {b, sign}}}}});
+        }
+      }
+    }
+  }
+  for (const auto& first : visits) {
+    for (const auto& second : visits) {
+      best = std::min(best, worstStddev(task, chosen, {first.front(), second.front()}));
+    }
+  }
+  DesignBound bound(task, chosen, 2, designInformation(task, chosen, {visits[0][0], visits[9][0]}));
+  bound.improve({});
+  EXPECT_LE(bound.stddev(), best);
+  EXPECT_GE(bound.stddev(), 0.9 * best);
+}
+
+}  // namespace
+}  // namespace sac
