@@ -18,7 +18,7 @@ from true_parameters import expect_truth
 
 POSES = 8
 OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
-OPTIONS += ("--validation-poses", "1", "--settling", "0.15")
+OPTIONS += ("--validation-poses", "1", "--settling", "0.15", "--patterns", "weighing")
 SESSION_TIMEOUT = 600.0  # [s]
 
 

@@ -17,7 +17,7 @@ class Options:
     validation_poses: int = 2
     coils_per_validation_pose: int = 2
     current: float = 2.0
-    patterns: str = "weighing"
+    patterns: str = "single"  # several coils at once do not tell which of them is wired wrongly
     total_current: float = 8.0
     dwell: float = 0.5
     settling: float = 0.3
