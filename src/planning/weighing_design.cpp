@@ -160,10 +160,9 @@ std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covari
       ranks.emplace_back(-visitSensitivity(task_, candidates_[c], sensitivity, 0.0).value, c);
     }
   }
-  const std::size_t count = std::min(kPromising, ranks.size());
-  std::partial_sort(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(count), ranks.end());
+  std::sort(ranks.begin(), ranks.end());
   std::vector<std::size_t> result;
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < std::min(kPromising, ranks.size()); ++n) {
     result.push_back(ranks[n].second);
   }
   return result;
