@@ -45,7 +45,7 @@ class PoseGuide {
 
  private:
   struct Pose {
-    std::array<double, 3> joints;
+    std::array<double, 3> joints = {};
     std::vector<std::uint32_t> patterns;
     std::set<std::uint32_t> measured;
   };
