@@ -44,9 +44,9 @@ struct Instant {
 /// future, newer than the one before, and given by the only one who commands: whoever was last
 /// accepted owns the coils until the last command has run out, and nothing that does not count has
 /// come from there for as long, or for 5 s where another one goes on commanding: who lives, but is
-/// late, does not lose them. A command holds for the
-/// watchdog's time from its stamp on, however late it arrived; a steady clock watches that. Nothing
-/// depends on a simulated clock, so that a recording which is played again drives no coil.
+/// late, does not lose them. A command holds for the watchdog's time from its stamp on, however
+/// late it arrived; a steady clock watches that. Nothing depends on a simulated clock, so that a
+/// recording which is played again drives no coil.
 ///
 /// Thread-safe: commands arrive in one thread, and are followed in another.
 class CurrentSupervisor {
@@ -55,7 +55,8 @@ class CurrentSupervisor {
   CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils);
 
   /// Takes a command that arrives now. Returns why it is refused, in a sentence for its sender, or
-  /// nothing. A refused one changes nothing, so that the one before runs out.
+  /// nothing. A refused one tells that its sender lives, and changes nothing else: the one before
+  /// runs out.
   std::string offer(const CoilCommand& command, const Instant& now);
   /// The command in force [A]; nothing when the currents must be zero, see zeroReason().
   std::optional<Eigen::VectorXd> command(double steady) const;

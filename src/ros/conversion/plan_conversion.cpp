@@ -5,6 +5,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {
@@ -16,7 +17,8 @@ PosePlanOptions planOptionsFromRos(const msg::PlanPoses::Request& request) {
   if (request.patterns == "weighing") {
     options.patterns = PlanPatterns::kWeighing;
   } else if (!request.patterns.empty() && request.patterns != "single") {
-    throw ConfigError("patterns: " + request.patterns + " are none; single and weighing are.");
+    throw ConfigError("patterns: \"" + printable(request.patterns) +
+                      "\" is neither single nor weighing.");
   }
   if (request.current != 0.0) {
     options.current = request.current;
