@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
@@ -15,6 +14,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/planning/time_budget.hpp"
 #include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 #include "tool_main.hpp"
 
@@ -119,11 +119,7 @@ void printPlan(const PosePlan& plan) {
 /// Options of the plan, with the time budget from now on.
 PosePlanOptions planOptions(const PlanSessionOptions& options) {
   PosePlanOptions result = options.plan;
-  if (options.time_budget > 0.0) {
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::duration<double>(options.time_budget);
-    result.is_time_up = [end] { return std::chrono::steady_clock::now() > end; };
-  }
+  result.is_time_up = timeIsUpAfter(options.time_budget);
   return result;
 }
 

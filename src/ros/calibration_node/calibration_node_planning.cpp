@@ -1,10 +1,9 @@
-#include <chrono>
-#include <cmath>
 #include <exception>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/planning/time_budget.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
 
@@ -22,20 +21,6 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
-/// Whether so many seconds have passed from now on; nothing for 0.
-std::function<bool()> budget(double seconds) {
-  if (seconds == 0.0) {
-    return {};
-  }
-  if (!std::isfinite(seconds) || seconds < 0.0) {
-    throw ConfigError("time_budget: it is a time in s, or 0 to plan to the end.");
-  }
-  using Clock = std::chrono::steady_clock;
-  return [begin = Clock::now(), seconds] {
-    return std::chrono::duration<double>(Clock::now() - begin).count() > seconds;
-  };
-}
-
 }  // namespace
 
 // Planning takes seconds: it works on a copy, so that nothing waits for it.
@@ -43,7 +28,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
                                 msg::PlanPoses::Response& response) {
   try {
     PosePlanOptions plan_options = planOptionsFromRos(request);
-    plan_options.is_time_up = budget(request.time_budget);
+    plan_options.is_time_up = timeIsUpAfter(request.time_budget);
     PlanningProblem problem;
     problem.request = plannedCycle(request);
     std::vector<Sample> held;
