@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -11,10 +10,10 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/planning_fixture.hpp"
 #include "pose_candidates.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"
@@ -22,50 +21,11 @@
 namespace sac {
 namespace {
 
-constexpr double kTilt = 0.3;
-
-/// The paper's actuator, not calibrated, and no samples: the least that a plan can start from.
-class PosePlanner : public ::testing::Test {
+class PosePlanner : public PlanningFixture {
  protected:
   PosePlanner() {
-    problem_.model = &model_;
-    problem_.held = &held_;
-    problem_.state = nominalState(model_.space(), {});
-    options_.tilt_limit = kTilt;
     options_.candidates = 150;  // for the speed of the tests
   }
-
-  std::vector<Eigen::Index> allCoordinates() const {
-    std::vector<Eigen::Index> all(static_cast<std::size_t>(model_.space().size()));
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-  }
-
-  /// Bound of the standard deviations of all parameters [rad].
-  Eigen::VectorXd boundOf(const std::vector<Sample>& samples) const {
-    const Eigen::VectorXd& x = problem_.state.belief.x;
-    return model_.space().reportedStddevs(
-        x, cramerRaoBound(model_, samples, {Cycle::kRefine}, allCoordinates(), x));
-  }
-
-  /// The samples that a plan asks for.
-  std::vector<Sample> samplesOf(const PosePlan& plan) const {
-    std::vector<Sample> samples;
-    for (const PlannedPose& pose : plan.poses) {
-      for (const Sample& sample :
-           visitSamples(problem_, options_, pose.joint_position, pose.excitations())) {
-        samples.push_back(sample);
-        predictMeasurements({model_, problem_.state.belief.x}, samples.back());
-      }
-    }
-    return samples;
-  }
-
-  Actuator nominal_ = scenarios::paperNominal();
-  CalibrationModel model_{ParameterSpace(nominal_)};
-  std::vector<Sample> held_;
-  PlanningProblem problem_;
-  PosePlanOptions options_;
 };
 
 std::vector<std::string> namesOf(const std::vector<ParameterEstimate>& estimates) {
