@@ -77,7 +77,10 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
 }
 
 bool LiveSession::removeSample(std::uint32_t id, const std::string& date) {
-  const bool is_removed = database_.removeSample(id, date) && session_.remove(id);
+  if (!database_.removeSample(id, date)) {
+    return false;
+  }
+  const bool is_removed = session_.remove(id);
   countAnew();
   return is_removed;
 }
