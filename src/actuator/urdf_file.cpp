@@ -33,7 +33,8 @@ class RobotDescription {
     const std::size_t line = lineOfManyAttributes(text);
     if (line > 0) {
       throw ConfigError(path_ + ":" + std::to_string(line) + ": an element has more than " +
-                        std::to_string(kMostAttributes) + " attributes.");
+                        std::to_string(kMostAttributes) +
+                        " attributes, where URDF knows a handful: take out what does not belong.");
     }
     require(xml_.Parse(text.c_str(), text.size()));
     understand(urdf::parseURDF(text));

@@ -277,7 +277,9 @@ TEST(UrdfFile, RefusesElementsWithTooManyAttributes) {
     return errorMessage<ConfigError>(
         [&] { renderCalibratedUrdf(text, "r", nominalActuator(), calibratedActuator()); });
   };
-  const std::string refusal = "r:2: an element has more than 100 attributes.";
+  const std::string refusal =
+      "r:2: an element has more than 100 attributes, where URDF knows a handful: take out what "
+      "does not belong.";
   EXPECT_EQ(said("<robot name=\"r\">\n<link name='l'", 20000), refusal);
   EXPECT_EQ(said("<robot name=\"r\">\n<link", 101), refusal);
   EXPECT_EQ(said("<robot><!-- don't > <a --><!x '>\n<?p \"?><![CDATA[ < ' ]]><link", 101), refusal);
