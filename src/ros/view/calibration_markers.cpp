@@ -6,6 +6,7 @@
 #include <map>
 
 #include "marker_shapes.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -47,6 +48,7 @@ constexpr MarkerColor kDark = {1.0F, 0.9F, 0.1F, 0.0F};
 constexpr MarkerColor kUncertain = {0.6F, 0.2F, 0.7F, 0.35F};
 constexpr MarkerColor kGood = {0.1F, 0.65F, 0.25F, 1.0F};
 constexpr MarkerColor kBad = {0.9F, 0.1F, 0.1F, 1.0F};
+constexpr MarkerColor kWanted = {0.1F, 0.75F, 0.35F, 1.0F};
 constexpr MarkerColor kRejected = {0.0F, 0.0F, 0.0F, 1.0F};
 constexpr float kGhostAlpha = 0.25F;
 
@@ -121,6 +123,7 @@ class Drawing {
     addPoles();
     addCoils();
     addGhost();
+    addWantedPose();
     addSamples();
     addLegend();
     return array_;
@@ -221,23 +224,43 @@ class Drawing {
   }
 
   void addGhost() {
+    addRotor("nominal rotor", scene_.frames.nominal_rotor, Eigen::Matrix3d::Identity(), kGrey);
+  }
+
+  void addWantedPose() {
+    const std::size_t first = array_.markers.size();
+    const Eigen::Vector3d q = scene_.wanted_joint_position.value_or(Eigen::Vector3d::Zero());
+    addRotor("wanted pose",
+             scene_.frames.stator,
+             rotorOrientation(jointGeometry(scene_.identified), q),
+             kWanted);
+    for (std::size_t k = first; !scene_.wanted_joint_position && k < array_.markers.size(); ++k) {
+      array_.markers[k].action = Marker::DELETE;
+    }
+  }
+
+  /// A rotor of glass, its body of one colour and its poles of theirs.
+  void addRotor(const std::string& group,
+                const std::string& frame,
+                const Eigen::Matrix3d& R_frame_rotor,
+                const MarkerColor& color_of_body) {
     const ActuatorDimensions& d = scene_.dimensions;
-    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up = R_frame_rotor.col(2);
     int id = 0;
     const auto add = [&](const MarkerColor& color,
                          const Eigen::Vector3d& axis,
                          double distance,
                          double radius,
                          double length) {
-      Marker body = emptyMarker(scene_.frames.nominal_rotor, "nominal rotor", id++, ghost(color));
+      Marker body = emptyMarker(frame, group, id++, ghost(color));
       drawCylinder(body, axis, distance, radius, length);
       array_.markers.push_back(body);
     };
-    add(kGrey, up, 0.0, d.rotor_radius, d.hoop_height);
-    add(kGrey, up, 0.5 * d.shaft_length, d.shaft_radius, d.shaft_length);
+    add(color_of_body, up, 0.0, d.rotor_radius, d.hoop_height);
+    add(color_of_body, up, 0.5 * d.shaft_length, d.shaft_radius, d.shaft_length);
     for (Eigen::Index i = 0; i < nominal_.poles_rotor.cols(); ++i) {
       add(colorOfPole(i),
-          nominal_.poles_rotor.col(i),
+          R_frame_rotor * nominal_.poles_rotor.col(i),
           d.poleDistance(),
           d.pole_radius,
           d.pole_height);
@@ -269,7 +292,8 @@ class Drawing {
     drawText(legend,
              (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
              "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
-             "faint rotor: as drawn\nthick arrow: identified axis, its error " +
+             "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
+             "its error " +
                  times + "; violet cone: 1 sigma " + times +
                  "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle",
              kLegendHeight);

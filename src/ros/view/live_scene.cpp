@@ -78,6 +78,18 @@ void LiveScene::receive(const msg::CalibrationStatus& message) {
   samples_.receive(message);
 }
 
+void LiveScene::receive(const sensor_msgs::JointState& message) {
+  std::optional<Eigen::Vector3d> wanted;
+  if (message.position.size() == kJoints) {
+    wanted = Eigen::Vector3d(message.position.data());
+  }
+  if (wanted && !wanted->allFinite()) {
+    return;
+  }
+  changed_ = changed_ || wanted != scene_.wanted_joint_position;
+  scene_.wanted_joint_position = wanted;
+}
+
 bool LiveScene::takeChange() {
   const bool have_samples_changed = samples_.takeChange();
   return std::exchange(changed_, false) || have_samples_changed;

@@ -92,6 +92,7 @@ VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
   feed<msg::CalibrationStatus>("status", 1);
   feed<msg::CoilCurrents>("coil_currents", 1);
   feed<msg::CalibrationSample>("samples", kQueueLength);
+  feed<sensor_msgs::JointState>("wanted_pose", 1);
   timer_ = node_.createWallTimer(ros::WallDuration(kMarkerPeriod),
                                  [this](const ros::WallTimerEvent& /*event*/) { show(); });
 }

@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -155,6 +157,27 @@ TEST(CalibrationMarkers, AGhostOfTheRotorStandsInItsNominalFrame) {
     }
   }
   EXPECT_EQ(poles, 8);
+}
+
+TEST(CalibrationMarkers, AGreenRotorStandsWhereItIsToGo) {
+  CalibrationScene scene = paperScene();
+  const auto part = [&](int id) { return markerOf(calibrationMarkers(scene), "wanted pose", id); };
+  EXPECT_EQ(part(1).action, Marker::DELETE);
+
+  scene.wanted_joint_position = Eigen::Vector3d(0.3, -0.2, 0.5);
+  const Eigen::Matrix3d R_stator_rotor =
+      rotorOrientation(jointGeometry(scene.identified), *scene.wanted_joint_position);
+  const auto place = [](const Marker& marker) {
+    const geometry_msgs::Point& at = marker.pose.position;
+    return Eigen::Vector3d(at.x, at.y, at.z).normalized();
+  };
+  const Marker shaft = part(1);
+  EXPECT_EQ(shaft.action, Marker::ADD);
+  EXPECT_EQ(shaft.header.frame_id, "stator");
+  EXPECT_LT((place(shaft) - R_stator_rotor.col(2)).norm(), 1e-12);
+  // Poles show a turn about the shaft, too.
+  const Eigen::Vector3d pole_rotor = torqueGeometry(scene.nominal).poles_rotor.col(3);
+  EXPECT_LT((place(part(5)) - R_stator_rotor * pole_rotor).norm(), 1e-12);
 }
 
 std_msgs::ColorRGBA colorOfOnly(const SampledDirection& sample) {

@@ -158,5 +158,24 @@ TEST(LiveScene, ChangesAreToldOnceAndSmallCurrentsNot) {
   EXPECT_TRUE(scene.takeChange());
 }
 
+TEST(LiveScene, TheWantedPoseComesAndGoes) {
+  LiveScene scene = paperScene();
+  scene.takeChange();
+  sensor_msgs::JointState message;
+  message.position = {0.1, 0.2, 0.3};
+  scene.receive(message);
+  EXPECT_TRUE(scene.takeChange());
+  EXPECT_EQ(scene.scene().wanted_joint_position, Eigen::Vector3d(0.1, 0.2, 0.3));
+  scene.receive(message);
+  EXPECT_FALSE(scene.takeChange());
+  message.position[1] = std::nan("");
+  scene.receive(message);
+  EXPECT_FALSE(scene.takeChange());
+  message.position.clear();
+  scene.receive(message);
+  EXPECT_TRUE(scene.takeChange());
+  EXPECT_FALSE(scene.scene().wanted_joint_position);
+}
+
 }  // namespace
 }  // namespace sac

@@ -37,6 +37,8 @@ struct CalibrationScene {
   std::vector<std::optional<double>> coil_stddevs;
   Eigen::VectorXd currents;  ///< of the coils [A]; empty: not known
   std::vector<SampledDirection> samples;
+  /// Raw joint angles [rad] of the pose that somebody is asked to go to.
+  std::optional<Eigen::Vector3d> wanted_joint_position;
   double magnification = 10.0;  ///< of errors and standard deviations of the axes, ≥ 1
   SceneFrames frames;
 };
@@ -51,6 +53,7 @@ struct CalibrationScene {
 /// the
 ///   magnified standard deviation;
 /// - "nominal rotor": a ghost of the rotor in its nominal frame;
+/// - "wanted pose": another, green, where the rotor is to go (stator frame);
 /// - "currents": coils that carry current glow;
 /// - "samples": dots around the shaft's tip, green where residuals are as expected, red from three
 ///   times that on, black where rejected, grey before any cycle. One dot for all samples of an

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include <sensor_msgs/JointState.h>
+
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
@@ -31,6 +33,8 @@ class LiveScene {
   void receive(const msg::CoilCurrents& message);
   void receive(const msg::CalibrationSample& message);
   void receive(const msg::CalibrationStatus& message);
+  /// The wanted pose: raw angles of all joints in their order, or none.
+  void receive(const sensor_msgs::JointState& message);
 
   /// The samples in use; it asks for them where topics do not tell.
   SampleMirror& samples() { return samples_; }
