@@ -1,8 +1,8 @@
 #include "calibration_panel.hpp"
 
-#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QMessageBox>
+#include <QScrollArea>
 #include <QTabWidget>
 #include <QTime>
 #include <QVBoxLayout>
@@ -13,6 +13,7 @@
 
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/Capture.h"
+#include "spherical_actuator_calibration/RemoveSample.h"
 #include "spherical_actuator_calibration/Restore.h"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -20,10 +21,9 @@
 namespace sac {
 namespace {
 
-constexpr int kPeriod = 100;       // [ms] between two looks at what has come
-constexpr int kTicksOfHealth = 5;  // looks between two pictures of the health
-constexpr int kNarrowest = 380;    // [px]
-constexpr std::size_t kStreams = 4;
+constexpr int kPeriod = 100;              // [ms] between two looks at what has come
+constexpr int kTicksOfHealth = 5;         // looks between two pictures of the health
+constexpr int kNarrowest = 380;           // [px]
 constexpr double kLongestCapture = 60.0;  // [s]
 constexpr qint64 kFreshAnswer = 60000;    // [ms] in which an answer is of now
 constexpr const char* kLegend =
@@ -39,25 +39,6 @@ constexpr int kMostRevisions = 1000000;
 constexpr const char* kPrimaryStyle =
     "QPushButton { background: #1b7f3b; color: white; font-weight: bold; padding: 4px 10px; }"
     "QPushButton:disabled { background: #b5c9bb; }";
-
-const char* colorOf(HealthLine::Level level) {
-  switch (level) {
-    case HealthLine::Level::kGood:
-      return "#1b9e4b";
-    case HealthLine::Level::kWarning:
-      return "#d98200";
-    case HealthLine::Level::kError:
-      return "#c62828";
-    case HealthLine::Level::kUnknown:
-      break;
-  }
-  return "#9a9fa6";
-}
-
-QString dotted(const HealthLine& line) {
-  return QString("<span style='color:%1'>●</span> %2")
-      .arg(colorOf(line.level), QString::fromStdString(line.name).toHtmlEscaped());
-}
 
 QLabel* wrappingLabel() {
   auto* label = new QLabel;
@@ -78,14 +59,23 @@ CalibrationPanel::CalibrationPanel(QWidget* parent)
 
 void CalibrationPanel::build() {
   setMinimumWidth(kNarrowest);
-  auto* layout = new QVBoxLayout(this);
-  layout->setSpacing(5);
+  // A small screen gets a scroll bar; without it, rows would lose their lower halves.
+  auto* content = new QWidget;
+  auto* area = new QScrollArea;
+  area->setWidgetResizable(true);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setWidget(content);
+  auto* outside = new QVBoxLayout(this);
+  outside->setContentsMargins(0, 0, 0, 0);
+  outside->addWidget(area);
+  auto* layout = new QVBoxLayout(content);
+  layout->setSpacing(4);
   next_step_ = wrappingLabel();
   next_step_->setStyleSheet("font-weight: bold;");
   layout->addWidget(next_step_);
-  layout->addLayout(makeStreams());
-  trouble_ = wrappingLabel();
-  layout->addWidget(trouble_);
+  health_ = new HealthView;
+  layout->addWidget(health_);
   bars_ = new CoverageBars;
   layout->addWidget(bars_);
   auto* legend = wrappingLabel();
@@ -101,21 +91,12 @@ void CalibrationPanel::build() {
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
   answer_ = wrappingLabel();
+  answer_->hide();
   layout->addWidget(answer_);
   grade_ = wrappingLabel();
   grade_->setStyleSheet("font-weight: bold;");
   layout->addWidget(grade_);
   layout->addWidget(makeResults(), 1);
-}
-
-QLayout* CalibrationPanel::makeStreams() {
-  auto* grid = new QGridLayout;
-  for (std::size_t n = 0; n < kStreams; ++n) {
-    auto* label = new QLabel;
-    grid->addWidget(label, static_cast<int>(n / 2), static_cast<int>(n % 2));
-    streams_.push_back(label);
-  }
-  return grid;
 }
 
 QPushButton* CalibrationPanel::addButton(QLayout* row,
@@ -204,10 +185,13 @@ QLayout* CalibrationPanel::makeFileRow() {
 QWidget* CalibrationPanel::makeResults() {
   parameters_ = new ParameterTable;
   estimates_ = new ParameterTable;
+  samples_ = new SampleTable([this](std::uint32_t id) { removeSample(id); });
+  buttons_.push_back(samples_->removeButton());
   chart_ = new ConvergenceChart;
   auto* tabs = new QTabWidget;
   tabs->addTab(parameters_, "In force");
   tabs->addTab(estimates_, "Last cycle");
+  tabs->addTab(samples_, "Samples");
   tabs->addTab(chart_, "Convergence");
   return tabs;
 }
@@ -246,26 +230,12 @@ void CalibrationPanel::refresh() {
   showAnswer();
   hand_guide_->refresh();
   if (ticks_++ % kTicksOfHealth == 0) {
-    showHealth();
+    const ros::WallTime now = ros::WallTime::now();
+    health_->fill(model_.streams(now), model_.troubles(now));
   }
   if (changed_) {
     changed_ = false;
     showCalibration();
-  }
-}
-
-void CalibrationPanel::showHealth() {
-  const ros::WallTime now = ros::WallTime::now();
-  const std::vector<HealthLine> lines = model_.streams(now);
-  for (std::size_t n = 0; n < streams_.size(); ++n) {
-    streams_[n]->setText(dotted(lines[n]));
-    streams_[n]->setToolTip(QString::fromStdString(lines[n].message));
-  }
-  const std::vector<HealthLine> troubles = model_.troubles(now);
-  trouble_->setVisible(!troubles.empty());
-  if (!troubles.empty()) {
-    trouble_->setText(dotted(troubles.front()) + ": " +
-                      QString::fromStdString(troubles.front().message).toHtmlEscaped());
   }
 }
 
@@ -276,6 +246,7 @@ void CalibrationPanel::showCalibration() {
   grade_->setText(QString::fromStdString(model_.grade() + " (" + model_.revision() + ")"));
   parameters_->fill(model_.parameters());
   estimates_->fill(model_.estimates());
+  samples_->fill(model_.samples());
   chart_->setHistory(QString::fromStdString(model_.historyTitle()), model_.errorHistory());
 }
 
@@ -287,7 +258,9 @@ void CalibrationPanel::showAnswer() {
   }
   answer_->setText(QTime::currentTime().toString("hh:mm:ss") + ", " + called_ + ": " +
                    QString::fromStdString(answer->message));
+  answer_->show();
   since_.start();
+  noteRemoval(answer->success);
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
   setCallsEnabled(true);
   if (auto_capture_asked_) {
@@ -298,8 +271,19 @@ void CalibrationPanel::showAnswer() {
   }
 }
 
+// The report of the last cycle still names what is out of use since.
+void CalibrationPanel::noteRemoval(bool success) {
+  if (success && called_ == "remove_sample") {
+    model_.noteRemoved(removal_);
+  } else if (success && called_ == "clear_samples") {
+    model_.noteCleared();
+  }
+  changed_ = true;
+}
+
 void CalibrationPanel::showAge() {
   if (caller_.isBusy()) {
+    answer_->show();
     answer_->setText(QString("%1 runs, %2 s …").arg(called_).arg(since_.elapsed() / 1000));
   } else if (since_.isValid() && since_.elapsed() > kFreshAnswer) {
     answer_->setStyleSheet("color: #80868d;");
@@ -350,6 +334,13 @@ void CalibrationPanel::forgetSamples() {
   if (choice == QMessageBox::Yes) {
     trigger("clear_samples");
   }
+}
+
+void CalibrationPanel::removeSample(std::uint32_t id) {
+  msg::RemoveSample::Request request;
+  request.id = id;
+  removal_ = caller_.isBusy() ? removal_ : id;
+  call<msg::RemoveSample>("remove_sample", request);
 }
 
 void CalibrationPanel::restore() {

@@ -18,8 +18,10 @@
 #include "convergence_chart.hpp"
 #include "coverage_bars.hpp"
 #include "hand_guide.hpp"
+#include "health_view.hpp"
 #include "panel_model.hpp"
 #include "parameter_table.hpp"
+#include "sample_table.hpp"
 #include "service_caller.hpp"
 
 namespace sac {
@@ -39,7 +41,6 @@ class CalibrationPanel : public rviz::Panel {
 
  private:
   void build();
-  QLayout* makeStreams();
   QLayout* makeCaptureRow();
   QLayout* makeCycleRow();
   QLayout* makeFileRow();
@@ -54,9 +55,9 @@ class CalibrationPanel : public rviz::Panel {
   void feed(const std::string& topic);
 
   void refresh();
-  void showHealth();
   void showCalibration();
   void showAnswer();
+  void noteRemoval(bool success);
   /// How long a call runs; an answer of long ago turns grey.
   void showAge();
 
@@ -65,6 +66,7 @@ class CalibrationPanel : public rviz::Panel {
   void calibrate(const std::string& service, std::uint32_t coil);
   void trigger(const std::string& service);
   void forgetSamples();
+  void removeSample(std::uint32_t id);
   void restore();
   void setAutoCapture(bool on);
   template <typename Service>
@@ -79,8 +81,7 @@ class CalibrationPanel : public rviz::Panel {
   QTimer timer_;
 
   QLabel* next_step_ = nullptr;
-  std::vector<QLabel*> streams_;
-  QLabel* trouble_ = nullptr;
+  HealthView* health_ = nullptr;
   CoverageBars* bars_ = nullptr;
   std::vector<QPushButton*> buttons_;
   QDoubleSpinBox* duration_ = nullptr;
@@ -96,6 +97,8 @@ class CalibrationPanel : public rviz::Panel {
   QLabel* grade_ = nullptr;
   ParameterTable* parameters_ = nullptr;
   ParameterTable* estimates_ = nullptr;
+  SampleTable* samples_ = nullptr;
+  std::uint32_t removal_ = 0;  ///< sample that the last call of remove_sample names
   ConvergenceChart* chart_ = nullptr;
 };
 

@@ -187,6 +187,34 @@ std::vector<ParameterLine> PanelModel::estimates() const {
   return lines;
 }
 
+void PanelModel::noteRemoved(std::uint32_t sample) {
+  std::vector<msg::SampleResidual>& residuals = report_.residuals;
+  residuals.erase(std::remove_if(residuals.begin(),
+                                 residuals.end(),
+                                 [sample](const auto& one) { return one.id == sample; }),
+                  residuals.end());
+}
+
+std::vector<SampleLine> PanelModel::samples() const {
+  std::vector<msg::SampleResidual> residuals = report_.residuals;
+  const auto worse = [](const msg::SampleResidual& one, const msg::SampleResidual& other) {
+    return one.standardized > other.standardized;
+  };
+  std::stable_sort(residuals.begin(), residuals.end(), worse);
+  std::vector<SampleLine> lines;
+  lines.reserve(residuals.size());
+  for (const msg::SampleResidual& one : residuals) {
+    lines.push_back({one.id,
+                     one.unit == "rad" ? "orientation" : "torque",
+                     number("%.3f m", 1e3 * one.residual) + one.unit,
+                     number("%.1f", one.standardized),
+                     one.rejected == 0    ? ""
+                     : one.reason.empty() ? "rejected"
+                                          : one.reason});
+  }
+  return lines;
+}
+
 std::vector<double> PanelModel::errorHistory() const {
   std::vector<double> errors = report_.error_history;
   if (!isPure(report_.error_unit)) {

@@ -41,6 +41,20 @@ struct ParameterLine {
   std::string uncertainty;  ///< ± standard deviation, or "not identified"
 };
 
+/// How one sample fits the last cycle, ready to be read.
+struct SampleLine {
+  std::uint32_t id = 0;
+  std::string quantity;      ///< orientation or torque
+  std::string residual;      ///< with its unit
+  std::string standardized;  ///< the same in units of its expected size
+  std::string verdict;       ///< why it was left out of the estimate; empty: it was not
+
+  bool operator==(const SampleLine& other) const {
+    return id == other.id && quantity == other.quantity && residual == other.residual &&
+           standardized == other.standardized && verdict == other.verdict;
+  }
+};
+
 /// What a panel shows of a calibration: the last message of each topic, in words. It judges and
 /// counts nothing by itself, and knows nothing of windows.
 class PanelModel {
@@ -50,6 +64,9 @@ class PanelModel {
 
   void receive(const msg::CalibrationStatus& message) { status_ = message; }
   void receive(const msg::CalibrationReport& message) { report_ = message; }
+  /// The service has taken this sample out of use, or all of them.
+  void noteRemoved(std::uint32_t sample);
+  void noteCleared() { report_.residuals.clear(); }
   void receive(const msg::ActuatorParameters& message) { parameters_ = message; }
   /// Keeps what the nodes in the namespace tell.
   void receive(const diagnostic_msgs::DiagnosticArray& message, const ros::WallTime& now);
@@ -77,6 +94,9 @@ class PanelModel {
   std::vector<ParameterLine> parameters() const;
   /// The parameters that the last cycle was free to change.
   std::vector<ParameterLine> estimates() const;
+  /// The samples of the last cycle that are in use still, worst first; one that has both an
+  /// orientation and a torque has two lines.
+  std::vector<SampleLine> samples() const;
   /// Error before the first and after each iteration of the last cycle, in the unit of the title.
   std::vector<double> errorHistory() const;
   /// Name of the last cycle, and of its error with unit.

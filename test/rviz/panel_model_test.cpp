@@ -193,5 +193,32 @@ TEST(PanelModel, TheHistoryHasTheUnitThatTheReportTells) {
   EXPECT_EQ(panel.historyTitle(), "Cycle refine: error [1]");
 }
 
+TEST(PanelModel, SamplesAreListedWorstFirstUntilTheyAreRemoved) {
+  msg::CalibrationReport message = report("rad");
+  message.residuals.resize(3);
+  const double standardized[] = {0.8, 9.5, 2.0};
+  for (std::size_t n = 0; n < 3; ++n) {
+    message.residuals[n].id = static_cast<std::uint32_t>(n + 1);
+    message.residuals[n].unit = n == 0 ? "rad" : "N·m";
+    message.residuals[n].residual = 0.0015;
+    message.residuals[n].standardized = standardized[n];
+  }
+  message.residuals[1].rejected = 1;
+  message.residuals[1].reason = "contradicts the others";
+  PanelModel panel("actuator");
+  panel.receive(message);
+  ASSERT_EQ(panel.samples().size(), 3U);
+  const SampleLine expected = {2, "torque", "1.500 mN·m", "9.5", "contradicts the others"};
+  EXPECT_EQ(panel.samples()[0], expected);
+  EXPECT_EQ(panel.samples()[2].quantity, "orientation");
+  EXPECT_EQ(panel.samples()[2].verdict, "");
+
+  panel.noteRemoved(2);
+  ASSERT_EQ(panel.samples().size(), 2U);
+  EXPECT_EQ(panel.samples()[0].id, 3U);
+  panel.noteCleared();
+  EXPECT_TRUE(panel.samples().empty());
+}
+
 }  // namespace
 }  // namespace sac
