@@ -1,66 +1,23 @@
 #!/usr/bin/python3
 """A guided session in the emulated laboratory: interrupted, with every fault, to the true parameters."""
 
-import os
 import re
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from emulated_lab import EmulatedLab
+from guided_program import GuidedProgram
 from true_parameters import expect_truth
 
 POSES = 8
 OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
 OPTIONS += ("--validation-poses", "1", "--settling", "0.15", "--patterns", "weighing")
-SESSION_TIMEOUT = 600.0  # [s]
-
-
-class GuidedProgram:
-    """The program guided_session; keeps the lines that it prints."""
-
-    def __init__(self):
-        self.lines = []
-        self._process = subprocess.Popen(
-            ["rosrun", PACKAGE, "guided_session", *OPTIONS],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            start_new_session=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def _read(self):
-        for line in self._process.stdout:
-            self.lines.append(line.rstrip("\n"))
-
-    def says(self, part):
-        return any(part in line for line in self.lines)
-
-    def wait_until_it_says(self, part):
-        wait_for(lambda: self.says(part) or self._has_failed(), f"the session to say: {part}")
-
-    def _has_failed(self):
-        if self._process.poll() is not None:
-            raise AssertionError("the session ended:\n" + "\n".join(self.lines))
-
-    def signal(self, number):
-        os.killpg(self._process.pid, number)
-        return self.wait()
-
-    def wait(self):
-        status = self._process.wait(timeout=SESSION_TIMEOUT)
-        self._reader.join()
-        return status
 
 
 class GuidedSession(unittest.TestCase):
@@ -94,7 +51,7 @@ class GuidedSession(unittest.TestCase):
         wait_for(lambda: self.samples() >= enough, f"{count} further samples")
 
     def test_a_whole_session(self):
-        session = GuidedProgram()
+        session = GuidedProgram(*OPTIONS)
         self.further_samples(3)
         self.fault_is_told_and_cured(session, "lose_tracker", "measured_orientation")
         self.fault_is_told_and_cured(session, "trip_amplifier", "check the amplifier")
@@ -102,12 +59,12 @@ class GuidedSession(unittest.TestCase):
         self.lab.inject_outlier()
         self.interrupted(session)
 
-        session = GuidedProgram()
+        session = GuidedProgram(*OPTIONS)
         session.wait_until_it_says("measured already")
         self.further_samples(2)
         self.killed(session)
 
-        session = GuidedProgram()
+        session = GuidedProgram(*OPTIONS)
         session.wait_until_it_says("measured already")
         self.further_samples(2)
         self.node_restarted(session)

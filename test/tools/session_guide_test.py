@@ -14,6 +14,9 @@ from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 
+TOLERANCE = 0.05  # [rad] of one pose
+
+
 class ExcitedCoils(unittest.TestCase):
     def test_are_those_that_carry_current_with_their_signs(self):
         self.assertEqual(progress.excited_coils([0.001, -0.002, 0.0], 0.05), ())
@@ -48,23 +51,42 @@ class Excitation(unittest.TestCase):
 class MissingPatterns(unittest.TestCase):
     POSE = Pose((0.1, -0.2, 1.5), ((3,), (1, -7)))
 
+    def missing(self, held):
+        return progress.missing_patterns(self.POSE, held, TOLERANCE)
+
     def at(self, pattern, joints=(0.1, -0.2, 1.5), validation=False):
         return Measured(joints, pattern, validation)
 
     def test_the_one_without_current_comes_first(self):
-        self.assertEqual(progress.missing_patterns(self.POSE, []), [(), (3,), (1, -7)])
+        self.assertEqual(self.missing([]), [(), (3,), (1, -7)])
 
     def test_what_is_held_is_left_out(self):
-        self.assertEqual(progress.missing_patterns(self.POSE, [self.at(()), self.at((1, -7))]), [(3,)])
+        self.assertEqual(self.missing([self.at(()), self.at((1, -7))]), [(3,)])
+        self.assertEqual(self.missing([self.at(()), self.at((-1, 7))]), [(3,)])
 
     def test_another_pose_or_purpose_does_not_count(self):
-        elsewhere = self.at((), joints=(0.1, -0.2, 1.53))
+        elsewhere = self.at((), joints=(0.1, -0.2, 1.56))
         held_out = self.at((3,), validation=True)
-        self.assertEqual(progress.missing_patterns(self.POSE, [elsewhere, held_out]), [(), (3,), (1, -7)])
+        self.assertEqual(self.missing([elsewhere, held_out]), [(), (3,), (1, -7)])
 
     def test_other_coils_or_signs_are_another_pattern(self):
         held = [self.at((1, 7)), self.at((1, -3, -7))]
-        self.assertEqual(progress.missing_patterns(self.POSE, held), [(), (3,), (1, -7)])
+        self.assertEqual(self.missing(held), [(), (3,), (1, -7)])
+
+    def test_a_new_visit_begins_without_current(self):
+        def to_capture(held):
+            return progress.patterns_to_capture(self.POSE, held, TOLERANCE)
+
+        self.assertEqual(to_capture([self.at(()), self.at((3,))]), [(), (1, -7)])
+        self.assertEqual(to_capture([self.at(()), self.at((3,)), self.at((1, -7))]), [])
+
+
+class WayToAPose(unittest.TestCase):
+    def test_names_the_joints_that_are_left_in_degrees(self):
+        pose = Pose((0.5, -0.2, 1.5), ())
+        way = progress.way_to(pose, ("a", "b", "c"), (0.0, -0.21, 2.0), TOLERANCE)
+        self.assertEqual(way, "a by +28.6\N{DEGREE SIGN}, c by -28.6\N{DEGREE SIGN}")
+        self.assertEqual(progress.way_to(pose, ("a", "b", "c"), (0.5, -0.16, 1.46), TOLERANCE), "")
 
 
 class PosesOf(unittest.TestCase):
@@ -75,7 +97,7 @@ class PosesOf(unittest.TestCase):
             Measured((0.3, 0.0, 0.0), (), False),
             Measured((0.3, 0.0, 0.0), (1, -2), True),
         ]
-        places = progress.poses_of(samples)
+        places = progress.poses_of(samples, TOLERANCE)
         self.assertEqual([p.validation for p in places], [False, False, True])
 
 
@@ -142,6 +164,7 @@ class ProgressOfASession(unittest.TestCase):
 class CommandLine(unittest.TestCase):
     def test_defaults_are_those_of_the_options(self):
         self.assertEqual(parse([]), Options())
+        self.assertEqual(parse(["--yes", "--plan", "p.yaml"]), Options(plan="p.yaml"))
 
     def test_names_the_option_that_cannot_be_used(self):
         for arguments, name in (
@@ -151,6 +174,8 @@ class CommandLine(unittest.TestCase):
             (["--patterns", "all"], "--patterns"),
             (["--total-current", "1.9"], "--total-current"),
             (["--ns", "actuator"], "--ns"),
+            (["--pose-timeout", "0"], "--pose-timeout"),
+            (["--plan", "a", "--repeat", "b"], "--repeat"),
         ):
             with self.assertRaisesRegex(OptionError, name):
                 parse(arguments)
@@ -189,6 +214,7 @@ class WaitingForCurrent(unittest.TestCase):
         screen = Screen(False)
         guided = session.Session.__new__(session.Session)
         guided._options = Options(current_timeout=timeout)
+        guided._current = guided._options.current
         guided._terminal = Terminal(screen)
         guided._laboratory = Coils(clock, cured_at, needs_zero)
         fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
@@ -222,6 +248,76 @@ class WaitingForCurrent(unittest.TestCase):
         self.assertIn("coil 3 carries 0.00 A. See to that", said)
 
 
+class Bench:
+    """A calibration node and its laboratory at one pose; `rests` says in which rest each capture falls."""
+
+    POSE = Pose((0.1, 0.0, 0.0), ((3,),))
+
+    def __init__(self, rests, places=()):
+        self._rests = iter(rests)
+        self._places = iter(places)
+        self.pattern = ()
+        self.held = {}
+        self.log = []
+
+    def excite(self, pattern, _current):
+        self.pattern = pattern
+
+    def capture(self, _duration, _validation):
+        number = len(self.log)
+        place = next(self._places, self.POSE.joints)
+        self.held[number] = SimpleNamespace(
+            id=number, has_orientation=True, has_torque=True, dwell=next(self._rests), joint_position=place, is_of=self.pattern
+        )
+        self.log.append(self.pattern)
+        return SimpleNamespace(success=True, sample=self.held[number])
+
+    def call(self, _service, **fields):
+        del self.held[fields["id"]]
+
+    @staticmethod
+    def pattern_of(sample):
+        return sample.is_of
+
+    @staticmethod
+    def pose_tolerance():
+        return TOLERANCE
+
+    @staticmethod
+    def is_excited():
+        return True
+
+
+class CapturingAPose(unittest.TestCase):
+    def captured(self, rests, places=()):
+        """The bench after a pose, and what was said."""
+        bench, screen = Bench(rests, places), Screen(False)
+        guided = session.Session.__new__(session.Session)
+        guided._options, guided._current, guided._rest = Options(), 2.0, None
+        guided._terminal, guided._laboratory, guided._calibration = Terminal(screen), bench, bench
+        guided._wait_for_rest = lambda pose: bench.log.append("rest")
+        with mock.patch.object(session, "rospy", SimpleNamespace(get_time=lambda: 0.0, sleep=lambda _: None)):
+            for pattern in progress.patterns_to_capture(Bench.POSE, [], TOLERANCE):
+                guided._capture(Bench.POSE, pattern)
+        return bench, screen.getvalue()
+
+    def test_in_one_rest(self):
+        bench, said = self.captured([1, 1])
+        self.assertEqual(bench.log, [(), (3,)])
+        self.assertEqual(said, "")
+
+    def test_a_torque_of_another_rest_than_the_one_without_current_goes(self):
+        bench, said = self.captured([1, 2, 2, 2])
+        self.assertEqual(bench.log, [(), (3,), (), (3,)])
+        self.assertEqual([(s.dwell, s.is_of) for s in bench.held.values()], [(1, ()), (2, ()), (2, (3,))])
+        self.assertIn("The rest was interrupted", said)
+
+    def test_a_rotor_that_has_left_is_waited_for(self):
+        bench, said = self.captured([1, 1, 1], [(0.1, 0.0, 0.0), (0.1, 0.2, 0.0)])
+        self.assertEqual(bench.log, [(), (3,), "rest", (3,)])
+        self.assertIn("has left the pose", said)
+
+
 class Screen(io.StringIO):
     def __init__(self, is_terminal):
         super().__init__()
@@ -232,14 +328,25 @@ class Screen(io.StringIO):
 
 
 class TerminalOutput(unittest.TestCase):
-    def test_a_file_gets_sentences_only(self):
+    def test_a_file_gets_sentences_and_milestones_only(self):
         screen = Screen(False)
-        terminal = Terminal(screen, assume_yes=True)
+        terminal = Terminal(screen)
         terminal.progress("[##..]")
         terminal.say("One.")
         terminal.say_once("One.")
-        terminal.ask("Turn the rotor.")
-        self.assertEqual(screen.getvalue(), "One.\nTurn the rotor.\n")
+        terminal.milestone("[##..] 2/4")
+        self.assertEqual(screen.getvalue(), "One.\n[##..] 2/4\n")
+
+    def test_what_goes_on_is_said_once_however_its_numbers_change(self):
+        screen = Screen(False)
+        terminal = Terminal(screen)
+        for seconds in ("0.417", "1.2", "-3"):
+            terminal.say_once(f"The stream is silent for {seconds} s.")
+            terminal.say_once("The rotor moves.")
+        self.assertEqual(screen.getvalue(), "The stream is silent for 0.417 s.\nThe rotor moves.\n")
+        terminal.say("It is back.")
+        terminal.say_once("The stream is silent for 9 s.")
+        self.assertEqual(screen.getvalue().count("silent"), 2)
 
     def test_a_sentence_takes_the_place_of_the_progress_line(self):
         screen = Screen(True)

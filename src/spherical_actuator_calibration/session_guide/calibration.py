@@ -101,7 +101,11 @@ class Calibration:
     def measured(self):
         """Samples that are held."""
         samples = self.call("list_samples").samples
-        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation) for s in samples]
+        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation, s.dwell) for s in samples]
+
+    def pose_tolerance(self):
+        """Joint angles that differ by no more than this from a pose are at it [rad]."""
+        return self._status.pose_tolerance
 
     def plan(self, poses, wanted_stddev, cycle="refine", **excitation):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan.

@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import typing
 
 
 class OptionError(Exception):
@@ -20,12 +21,14 @@ class Options:
     patterns: str = "single"  # several coils at once do not tell which of them is wired wrongly
     total_current: float = 8.0
     dwell: float = 0.5
-    settling: float = 0.3
+    settling: typing.Optional[float] = None  # None: as long as what turns the rotor needs
     current_timeout: float = 120.0
+    pose_timeout: float = 900.0
     wanted_stddev: float = 0.0
     drive_fixture: bool = False
-    assume_yes: bool = False
     seed: int = 1
+    plan: typing.Optional[str] = None
+    repeat: typing.Optional[str] = None
 
     def __post_init__(self):
         ranges = {
@@ -37,15 +40,18 @@ class Options:
             "dwell": (0.05, 600.0),
             "settling": (0.0, 600.0),
             "current_timeout": (1.0, 3600.0),
+            "pose_timeout": (10.0, 86400.0),
             "wanted_stddev": (0.0, 1.0),
         }
         for name, (least, most) in ranges.items():
             value = getattr(self, name)
-            if not least <= value <= most:
+            if value is not None and not least <= value <= most:
                 option = "--" + name.replace("_", "-")
                 raise OptionError(f"{option}: {value} is outside [{least}, {most}].")
         if self.patterns not in ("single", "weighing"):
             raise OptionError(f'--patterns: "{self.patterns}" is neither single nor weighing.')
+        if self.plan is not None and self.repeat is not None:
+            raise OptionError("--repeat: --plan says already which poses are measured.")
         if not self.ns.startswith("/") or self.ns.endswith("/"):
             raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
 
@@ -80,12 +86,18 @@ def parse(arguments):
         help="sum of all |currents| of a pattern, at most, as the amplifier's limit [A] (%(default)s)",
     )
     add("--dwell", type=float, default=default.dwell, help="of each capture [s] (%(default)s)")
-    add("--settling", type=float, default=default.settling, help="before it [s] (%(default)s)")
+    add("--settling", type=float, help="rest before it [s] (0.3 in a fixture, 3 by hand)")
     add(
         "--current-timeout",
         type=float,
         default=default.current_timeout,
         help="end when coils do not carry what is commanded for so long [s] (%(default)s)",
+    )
+    add(
+        "--pose-timeout",
+        type=float,
+        default=default.pose_timeout,
+        help="end when the rotor does not come to a pose for so long [s] (%(default)s)",
     )
     add(
         "--wanted-stddev",
@@ -98,6 +110,10 @@ def parse(arguments):
         action="store_true",
         help="publish fixture/target instead of asking the operator to turn the rotor",
     )
-    add("--yes", dest="assume_yes", action="store_true", help="ask nothing")
+    add("--yes", action="store_true", help="nothing is asked any more: for scripts that say so")
     add("--seed", type=int, default=default.seed, help="of the validation poses (%(default)s)")
-    return Options(**vars(parser.parse_args(arguments)))
+    add("--plan", metavar="FILE", help="the poses, coils and current of a plan by plan_session")
+    add("--repeat", metavar="FILE", help="those of an earlier session, from its session.db")
+    values = vars(parser.parse_args(arguments))
+    del values["yes"]
+    return Options(**values)

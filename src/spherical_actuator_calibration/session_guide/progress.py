@@ -1,9 +1,8 @@
 """How far a session has come, and what is left, from samples and plan. No ROS."""
 
 import dataclasses
+import math
 import random
-
-SAME_POSE = 0.02  # [rad] largest difference of joint angles
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,7 +17,8 @@ class Pose:
     excitations: tuple
     validation: bool = False
 
-    def is_at(self, joints, tolerance=SAME_POSE):
+    def is_at(self, joints, tolerance):
+        """Whether joint angles [rad] differ from the pose by no more than the tolerance."""
         return max(abs(a - b) for a, b in zip(self.joints, joints)) <= tolerance
 
     def patterns(self):
@@ -28,16 +28,22 @@ class Pose:
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here: where, which pattern, whether held out."""
+    """What counts of a sample here: where, which pattern, whether held out, in which rest (when that began)."""
 
     joints: tuple
     pattern: tuple
     validation: bool
+    rest: object = None
 
 
 def excited_coils(currents, threshold):
     """The pattern of the coils that count as excited."""
     return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
+
+
+def is_same_pattern(one, other):
+    """A pattern or its opposite, which tells the same."""
+    return one == other or one == tuple(-coil for coil in other)
 
 
 def in_words(pattern):
@@ -47,22 +53,39 @@ def in_words(pattern):
     return "Coils " + " ".join(f"{coil:+d}" for coil in pattern)
 
 
-def poses_of(measured):
+def in_degrees(angle):
+    """+4.8°: an angle [rad] with its sign."""
+    return f"{math.degrees(angle):+.1f}\N{DEGREE SIGN}"
+
+
+def way_to(pose, names, joints, tolerance):
+    """What is left to turn: "joint_1 by +4.8°, joint_3 by -30.0°"; empty at the pose."""
+    left = ((name, wanted - angle) for name, wanted, angle in zip(names, pose.joints, joints))
+    return ", ".join(f"{name} by {in_degrees(way)}" for name, way in left if abs(way) > tolerance)
+
+
+def poses_of(measured, tolerance):
     """Different places of samples, in the order of their first sample."""
     places = []
     for sample in measured:
         pose = Pose(sample.joints, (), sample.validation)
-        known = (p for p in places if p.is_at(sample.joints) and p.validation == sample.validation)
+        known = (p for p in places if p.is_at(sample.joints, tolerance) and p.validation == sample.validation)
         if next(known, None) is None:
             places.append(pose)
     return places
 
 
-def missing_patterns(pose, measured):
+def missing_patterns(pose, measured, tolerance):
     """Patterns of a pose that no sample holds yet."""
-    there = [s for s in measured if s.validation == pose.validation and pose.is_at(s.joints)]
-    held = {sample.pattern for sample in there}
-    return [pattern for pattern in pose.patterns() if pattern not in held]
+    there = [s for s in measured if s.validation == pose.validation and pose.is_at(s.joints, tolerance)]
+    return [pattern for pattern in pose.patterns() if not any(is_same_pattern(pattern, s.pattern) for s in there)]
+
+
+def patterns_to_capture(pose, measured, tolerance):
+    """Those that are missing; first, whether held or not, that without current: its torque is taken off the others of
+    the same rest, and a new visit is a new rest."""
+    missing = missing_patterns(pose, measured, tolerance)
+    return [(), *(pattern for pattern in missing if pattern)] if missing else []
 
 
 def validation_poses(count, coils_each, coils, tilt, seed):

@@ -1,10 +1,13 @@
 """The course of a guided session."""
 
+import math
+
 import rospy
 
 from . import progress
 from .calibration import Calibration
 from .laboratory import STILL, Laboratory
+from .plans import read_plan, read_session
 from .progress import Progress
 
 POLL = 0.05  # [s]
@@ -16,6 +19,9 @@ SLOW = 5.0  # [s] after which the operator is told what the session waits for
 # [s] without current before it is tried again: a driver whose currents deviated follows again after zero was commanded
 # and measured.
 PAUSE = 1.0
+FIXTURE_SETTLING = 0.3  # [s] at rest before a capture
+HAND_SETTLING = 3.0  # [s] a hand has to clamp the rotor
+FIXTURE_TOLERANCE = 0.02  # [rad] of a fixture that has arrived
 
 
 class Session:
@@ -24,20 +30,25 @@ class Session:
     def __init__(self, options, terminal, actuator):
         self._options = options
         self._terminal = terminal
+        self._actuator = actuator
         self._tilt = actuator["workspace"]["tilt_limit"]
         self._coils = len(actuator.get("coils", []))
-        names = [joint["name"] for joint in actuator["joints"]]
+        self._names = [joint["name"] for joint in actuator["joints"]]
+        self._current = options.current  # [A] of an excited coil
+        self._plan_file = read_plan(options.plan, actuator) if options.plan else None
         self._calibration = Calibration(options.ns, terminal)
-        self._laboratory = Laboratory(options.ns, self._coils, names)
+        self._laboratory = Laboratory(options.ns, self._coils, self._names)
         self._progress = None
+        self._rest = None  # begin of the rest whose torque without current is measured
         self._uncertainty = ""
 
     def run(self):
         """Returns whether all cycles succeeded and the result was saved."""
         try:
             self._calibration.wait_until_up()
-            self._require_current()
-            self._measure(self._planned_poses())
+            poses = self._wanted_poses()
+            self._require_current(poses)
+            self._measure(poses)
             is_complete = self._estimate()
             for _ in range(MOST_ROUNDS):
                 if is_complete:
@@ -49,97 +60,129 @@ class Session:
         finally:
             self._laboratory.release()
 
-    def _require_current(self):
+    def _require_current(self, poses):
         threshold = self._calibration.status().current_threshold
-        if self._coils and self._options.current < threshold:
-            raise RuntimeError(f"--current: below {threshold} A a coil counts as off.")
+        excited = [pattern for pose in poses for pattern in pose.excitations]
+        if excited and self._current < threshold:
+            raise RuntimeError(f"--current: {self._current} A is below {threshold} A, where a coil counts as off.")
+        total = max((len(pattern) for pattern in excited), default=0) * self._current
+        if total > self._options.total_current:
+            raise RuntimeError(f"--total-current: a pattern of the plan needs {total:.1f} A.")
 
     # -- measuring -----------------------------------------------------------------------------------
 
     def _measured(self):
         return self._calibration.measured()
 
-    def _planned_poses(self):
-        """Poses that are still to be measured, after those that the node holds."""
-        done = progress.poses_of(self._measured())
+    def _wanted_poses(self):
+        """Poses of this session, those that the node holds samples of left out or complete."""
+        done = progress.poses_of(self._measured(), self._calibration.pose_tolerance())
         training = sum(not pose.validation for pose in done)
-        planned = []
         if training:
             self._terminal.say(f"The session goes on: {training} poses are measured already.")
-        if training < self._options.poses:
-            left = self._options.poses - training
-            planned = self._plan(left)
-        validation = progress.validation_poses(
+        planned = list(self._poses_of_files())
+        if not planned and training < self._options.poses:
+            planned = self._plan(self._options.poses - training)
+        if any(pose.validation for pose in planned):
+            return planned
+        return planned + progress.validation_poses(
             self._options.validation_poses,
             self._options.coils_per_validation_pose,
             self._coils,
             0.8 * self._tilt,
             self._options.seed,
         )
-        return planned + validation
+
+    def _poses_of_files(self):
+        plan = self._plan_file
+        if self._options.repeat:
+            threshold = self._calibration.status().current_threshold
+            tolerance = self._calibration.pose_tolerance()
+            plan = read_session(self._options.repeat, self._actuator, threshold, tolerance)
+        if plan is None:
+            return ()
+        self._current = plan.current
+        source = self._options.plan or self._options.repeat
+        self._terminal.say(f"{len(plan.poses)} poses of {source}, coils at {plan.current:g} A.")
+        return plan.poses
 
     def _plan(self, count):
         poses, message = self._calibration.plan(
             count,
             self._options.wanted_stddev,
             patterns=self._options.patterns,
-            current=self._options.current,
+            current=self._current,
             total_current=self._options.total_current,
         )
         self._terminal.say("Plan: " + message)
         return poses
 
+    def _to_capture(self, pose, measured):
+        return progress.patterns_to_capture(pose, measured, self._calibration.pose_tolerance())
+
     def _measure(self, poses):
         measured = self._measured()
-        open_poses = [pose for pose in poses if progress.missing_patterns(pose, measured)]
-        captures = sum(len(progress.missing_patterns(pose, measured)) for pose in open_poses)
+        open_poses = [pose for pose in poses if self._to_capture(pose, measured)]
+        captures = sum(len(self._to_capture(pose, measured)) for pose in open_poses)
         self._progress = Progress(captures, rospy.get_time)
         for number, pose in enumerate(open_poses, 1):
-            self._measure_pose(pose, number, len(open_poses))
+            self._measure_pose(pose, f"{'held-out pose' if pose.validation else 'pose'} {number} of {len(open_poses)}")
             self._look_at_the_joint()
+            self._terminal.milestone(f"{self._progress.text()}  {self._uncertainty}".rstrip())
         self._laboratory.excite((), 0.0)
 
-    def _measure_pose(self, pose, number, count):
+    def _measure_pose(self, pose, which):
         self._laboratory.excite((), 0.0)
-        angles = ", ".join(f"{angle:.2f}" for angle in pose.joints)
-        kind = "held-out pose" if pose.validation else "pose"
         if self._options.drive_fixture:
             self._laboratory.drive_to(pose.joints)
         else:
-            self._terminal.ask(f"Turn the rotor to {kind} {number} of {count}: joints {angles} rad.")
-        self._wait_for_rest(pose, angles)
-        for pattern in progress.missing_patterns(pose, self._measured()):
+            angles = zip(self._names, pose.joints)
+            self._terminal.say(
+                f"Turn the rotor to {which}: {', '.join(f'{name} {progress.in_degrees(q)}' for name, q in angles)}, "
+                f"each within {math.degrees(self._calibration.pose_tolerance()):.1f}\N{DEGREE SIGN}, and clamp it. "
+                f"After {self._settling():g} s at rest coils are excited by itself: hands off then."
+            )
+        self._wait_for_rest(pose)
+        for pattern in self._to_capture(pose, self._measured()):
             self._capture(pose, pattern)
             self._progress.advance()
             self._show()
 
-    def _wait_for_rest(self, pose, angles):
-        """Until the joint sensors see the rotor at rest at the pose."""
+    def _settling(self):
+        """[s] of rest before a capture."""
+        if self._options.settling is not None:
+            return self._options.settling
+        return FIXTURE_SETTLING if self._options.drive_fixture else HAND_SETTLING
+
+    def _wait_for_rest(self, pose):
+        """Until the joint sensors see the rotor at rest at the pose. Raises RuntimeError when that takes too long."""
         begin = still_since = rospy.get_time()
         last = None
         while True:
             joints = self._laboratory.joints()
             now = rospy.get_time()
+            way = None if joints is None else progress.way_to(pose, self._names, joints, self._tolerance())
             if joints is None:
                 self._terminal.say_once("No joint angles arrive: check the joint sensor.")
                 still_since = now
             elif last is None or max(abs(a - b) for a, b in zip(joints, last)) > STILL:
                 last, still_since = joints, now
-            elif now - still_since >= self._options.settling and self._is_there(pose, joints):
+            elif now - still_since >= self._settling() and not way:
                 return
-            elif now - begin > SLOW:
-                seen = ", ".join(f"{angle:.2f}" for angle in joints)
-                self._terminal.say_once(
-                    f"The rotor is at joints {seen} rad, not at {angles}: check fixture and joint sensor."
+            elif way and now - begin > SLOW and self._options.drive_fixture:
+                self._terminal.say_once(f"The rotor is not at the pose ({way}): check fixture and joint sensor.")
+            if now - begin > self._options.pose_timeout:
+                raise RuntimeError(
+                    f"The rotor did not come to rest at the pose in {now - begin:.0f} s "
+                    f"({'no joint angles' if joints is None else way or 'it moves'}). "
+                    "See to that, and start guided_session again: it goes on."
                 )
-                begin = now
-            self._show()
+            self._show("" if way is None else f"turn {way}" if way else "there: clamp the rotor")
             rospy.sleep(POLL)
 
-    def _is_there(self, pose, joints):
-        # A hand does not meet the angles as a fixture does; any pose nearby tells as much.
-        tolerance = progress.SAME_POSE if self._options.drive_fixture else 0.1
-        return pose.is_at(joints, tolerance)
+    def _tolerance(self):
+        """[rad] of arrival. A hand does not meet the angles as a fixture does; any pose nearby tells as much."""
+        return FIXTURE_TOLERANCE if self._options.drive_fixture else self._calibration.pose_tolerance()
 
     def _wait_for_current(self, pattern):
         """Until the coils carry what is commanded. Raises RuntimeError when that takes too long."""
@@ -160,7 +203,7 @@ class Session:
             )
             self._laboratory.excite((), 0.0)
             rospy.sleep(PAUSE)
-            self._laboratory.excite(pattern, self._options.current)
+            self._laboratory.excite(pattern, self._current)
 
     def _has_current(self):
         """Whether the coils carry what is commanded, soon."""
@@ -172,37 +215,54 @@ class Session:
         return True
 
     def _capture(self, pose, pattern):
-        """Captures one pattern; repeats, and says why, until it is held."""
-        self._laboratory.excite(pattern, self._options.current)
+        """Captures one pattern; repeats, and says why, until a sample of it is held."""
         duration = self._options.dwell * (1.0 if pattern else ZERO_CAPTURE)
         while True:
+            self._laboratory.excite(pattern, self._current)
             self._wait_for_current(pattern)
-            rospy.sleep(min(self._options.settling, 0.1))
+            rospy.sleep(min(self._settling(), 0.1))
             answer = self._calibration.capture(duration, pose.validation)
             if answer is None:
-                if pattern not in progress.missing_patterns(pose, self._measured()):
+                if pattern and self._holds(pose, pattern):
                     return
-                continue
-            if not answer.success:
+            elif not answer.success:
                 self._terminal.say_once(answer.message)
                 rospy.sleep(POLL)
-                continue
-            if self._is_useful(answer.sample, pattern):
+            elif self._accept(answer.sample, pose, pattern):
                 return
-            self._calibration.call("remove_sample", id=answer.sample.id)
 
-    def _is_useful(self, sample, pattern):
-        """Whether a sample holds what it was made for; says what it lacks."""
+    def _holds(self, pose, pattern):
+        """Whether a sample of the present rest has the pattern, though its answer was lost."""
+        return any(s.rest == self._rest and s.pattern == pattern for s in self._measured())
+
+    def _accept(self, sample, pose, pattern):
+        """Whether a sample holds what it was made for. Else it goes, its flaw is told, and mended where that can be."""
+        sentence, mend = self._flaw(sample, pose, pattern)
+        if not sentence:
+            self._rest = self._rest if pattern else sample.dwell
+            return True
+        self._calibration.call("remove_sample", id=sample.id)
+        self._terminal.say_once(sentence)
+        if mend is not None:
+            self._laboratory.excite((), 0.0)
+            mend()
+        return False
+
+    def _flaw(self, sample, pose, pattern):
+        """What a sample lacks, and what is to be done about it beside another capture."""
         if not sample.has_orientation:
-            self._terminal.say_once("The sample has no orientation: check the tracker.")
-            return False
+            return "The sample has no orientation: check the tracker.", None
         if self._calibration.pattern_of(sample) != pattern:
-            self._terminal.say_once("The currents changed during the capture: check the amplifier.")
-            return False
+            return "The currents changed during the capture: check the amplifier.", None
         if pattern and not sample.has_torque:
-            self._terminal.say_once("The sample has no torque: check the force/torque sensor.")
-            return False
-        return True
+            return "The sample has no torque: check the force/torque sensor.", None
+        if not pose.is_at(sample.joint_position, self._calibration.pose_tolerance()):
+            return "The rotor has left the pose: bring it back.", lambda: self._wait_for_rest(pose)
+        if pattern and sample.dwell != self._rest:
+            # What acts without current is known of an earlier rest only, and still in this torque.
+            sentence = "The rest was interrupted: the torque without current is measured anew."
+            return sentence, lambda: self._capture(pose, ())
+        return "", None
 
     def _look_at_the_joint(self):
         """Tells how well the joint is known so far, as soon as enough poses are measured."""
@@ -213,8 +273,9 @@ class Session:
         if answer.success:
             self._uncertainty = f"orientation ± {1e3 * answer.report.orientation_uncertainty:.2f} mrad"
 
-    def _show(self):
-        self._terminal.progress(f"{self._progress.text()}  {self._uncertainty}")
+    def _show(self, doing=""):
+        parts = (self._progress.text(), doing, self._uncertainty)
+        self._terminal.progress("  ".join(part for part in parts if part))
 
     # -- estimating ----------------------------------------------------------------------------------
 
