@@ -212,8 +212,8 @@ TEST(PatternBound, IsTheLargestOfAllPatterns) {
   NoiseSource noise(4, RandomPurpose::kPoseCandidates);
   for (const Eigen::Index extra : {0, 1}) {
     Eigen::MatrixXd root(3, 6 + extra);
-    for (double& value : root.reshaped()) {
-      value = noise.uniform(1.0);
+    for (Eigen::Index k = 0; k < root.size(); ++k) {
+      root(k % root.rows(), k / root.rows()) = noise.uniform(1.0);
     }
     const Eigen::MatrixXd Q = root.transpose() * root;
     // Each coil of six off, or with either sign: at most three at once.
@@ -233,8 +233,8 @@ TEST(PatternBound, IsTheLargestOfAllPatterns) {
     // No current between does better.
     for (int n = 0; n < 2000; ++n) {
       Eigen::VectorXd s = Eigen::VectorXd::Ones(6 + extra);
-      for (double& share : s.head(6)) {
-        share = noise.uniform(1.0);
+      for (Eigen::Index coil = 0; coil < 6; ++coil) {
+        s[coil] = noise.uniform(1.0);
       }
       s.head(6) *= std::min(1.0, 3.0 / s.head(6).cwiseAbs().sum());
       EXPECT_LE(s.dot(Q * s), largest);
