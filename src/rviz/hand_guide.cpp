@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/RemoveSample.h"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 
 namespace sac {
@@ -97,11 +98,7 @@ void HandGuide::listen() {
 
 void HandGuide::refresh() {
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
-    if (is_planning_) {
-      takePlan(*answer);
-    } else {
-      measurement_.answered(answer->success, answer->message, ros::SteadyTime::now().toSec());
-    }
+    take(*answer);
   }
   if (measurement_.isRunning()) {
     goOn();
@@ -112,6 +109,22 @@ void HandGuide::refresh() {
   showAdvice();
 }
 
+void HandGuide::take(const ServiceAnswer& answer) {
+  const double now = ros::SteadyTime::now().toSec();
+  switch (asked_) {
+    case Asked::kPlan:
+      takePlan(answer);
+      break;
+    case Asked::kCapture:
+      measurement_.captured(
+          {answer.success, answer.message, answer.sample.id, answer.sample.dwell.toNSec()}, now);
+      break;
+    case Asked::kRemoval:
+      measurement_.removed(answer.success, answer.message, now);
+      break;
+  }
+}
+
 void HandGuide::plan() {
   if (caller_.isBusy()) {
     return;
@@ -119,13 +132,12 @@ void HandGuide::plan() {
   msg::PlanPoses::Request request;
   request.cycle = "refine";
   request.max_poses = static_cast<std::uint32_t>(poses_->value());
-  is_planning_ = true;
+  asked_ = Asked::kPlan;
   outcome_->setText("Planning …");
   caller_.call<msg::PlanPoses>(node_.resolveName("calibration/plan_poses"), request);
 }
 
 void HandGuide::takePlan(const ServiceAnswer& answer) {
-  is_planning_ = false;
   if (answer.success) {
     guide_.take(answer.poses);
   }
@@ -167,6 +179,9 @@ void HandGuide::goOn() {
     case PoseMeasurement::Action::kCapture:
       askForCapture();
       break;
+    case PoseMeasurement::Action::kRemove:
+      askForRemoval();
+      break;
     case PoseMeasurement::Action::kEnd:
       finish();
       break;
@@ -182,7 +197,16 @@ void HandGuide::askForCapture() {
   msg::Capture::Request request;
   request.duration = duration_();
   request.validation = static_cast<std::uint8_t>(hold_out_());
+  asked_ = Asked::kCapture;
   caller_.call<msg::Capture>(node_.resolveName("calibration/capture"), request);
+}
+
+void HandGuide::askForRemoval() {
+  msg::RemoveSample::Request request;
+  request.id = measurement_.flawedSample();
+  asked_ = Asked::kRemoval;
+  caller_.call<msg::RemoveSample>(node_.resolveName("calibration/remove_sample"), request);
+  outcome_->setText("The rest was interrupted: it is measured without current again …");
 }
 
 void HandGuide::finish() {

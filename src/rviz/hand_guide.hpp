@@ -37,14 +37,19 @@ class HandGuide : public QWidget {
   void refresh();
 
  private:
+  /// What the running call, or the last one, is for.
+  enum class Asked { kPlan, kCapture, kRemoval };
+
   void build();
   void listen();
   void plan();
+  void take(const ServiceAnswer& answer);
   void takePlan(const ServiceAnswer& answer);
   void measureOrStop();
   void measure();
   void goOn();
   void askForCapture();
+  void askForRemoval();
   void finish();
   void showAdvice();
   void tellTarget();
@@ -57,7 +62,7 @@ class HandGuide : public QWidget {
   PoseMeasurement measurement_;
   CoilExciter exciter_;
   ServiceCaller caller_;
-  bool is_planning_ = false;
+  Asked asked_ = Asked::kPlan;
   std::vector<double> currents_;  ///< measured [A]
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;

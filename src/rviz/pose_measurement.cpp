@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace sac {
@@ -19,7 +20,11 @@ constexpr double kToleranceShare = 0.1;
 
 void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current, double now) {
   patterns_ = std::move(patterns);
+  if (!patterns_.empty() && patterns_.front() != 0) {
+    patterns_.insert(patterns_.begin(), 0);
+  }
   place_ = 0;
+  samples_ = 0;
   current_ = current;
   outcome_.clear();
   beginPattern(now);
@@ -29,6 +34,7 @@ void PoseMeasurement::beginPattern(double now) {
   began_ = now;
   settled_ = -1.0;
   is_asked_ = false;
+  is_removing_ = false;
 }
 
 PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measured, double now) {
@@ -37,6 +43,10 @@ PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measure
   }
   if (is_asked_) {
     return Action::kNothing;
+  }
+  if (is_removing_) {
+    is_asked_ = true;
+    return Action::kRemove;
   }
   if (!carries(measured)) {
     settled_ = -1.0;
@@ -56,21 +66,46 @@ PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measure
   return Action::kCapture;
 }
 
-void PoseMeasurement::answered(bool success, const std::string& message, double now) {
-  if (!isRunning() || !is_asked_) {
+void PoseMeasurement::captured(const CaptureOutcome& outcome, double now) {
+  if (!isRunning() || !is_asked_ || is_removing_) {
+    return;
+  }
+  if (!outcome.success) {
+    end(outcome.message);
+    return;
+  }
+  if (coil() == 0) {
+    rest_ = outcome.rest;
+  } else if (outcome.rest != rest_) {
+    flawed_ = outcome.sample;
+    is_removing_ = true;
+    is_asked_ = false;
+    return;
+  }
+  ++samples_;
+  advance(now);
+}
+
+void PoseMeasurement::removed(bool success, const std::string& message, double now) {
+  if (!isRunning() || !is_asked_ || !is_removing_) {
     return;
   }
   if (!success) {
     end(message);
     return;
   }
+  patterns_.insert(patterns_.begin() + static_cast<std::ptrdiff_t>(place_), 0);
+  beginPattern(now);
+}
+
+void PoseMeasurement::advance(double now) {
   ++place_;
   if (isRunning()) {
     beginPattern(now);
     return;
   }
-  outcome_ = "The pose is measured: " + std::to_string(patterns_.size()) +
-             (patterns_.size() == 1 ? " sample." : " samples.");
+  outcome_ = "The pose is measured: " + std::to_string(samples_) +
+             (samples_ == 1 ? " sample." : " samples.");
 }
 
 void PoseMeasurement::end(const std::string& reason) {

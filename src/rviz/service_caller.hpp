@@ -11,6 +11,7 @@
 
 #include <ros/service.h>
 
+#include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
@@ -21,6 +22,7 @@ struct ServiceAnswer {
   bool success = false;
   std::string message;                  ///< one sentence
   std::vector<msg::PlannedPose> poses;  ///< of plan_poses
+  msg::CalibrationSample sample;        ///< of capture
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -36,14 +38,18 @@ class ServiceCaller {
       service.request = request;
       constexpr bool kTellAbsence = false;
       if (!ros::service::exists(name, kTellAbsence)) {
-        return {false, "The calibration node does not answer (" + name + "): is it running?", {}};
+        return {
+            false, "The calibration node does not answer (" + name + "): is it running?", {}, {}};
       }
       if (!ros::service::call(name, service)) {
-        return {false, "The connection to " + name + " was lost before its answer.", {}};
+        return {false, "The connection to " + name + " was lost before its answer.", {}, {}};
       }
-      ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
+      ServiceAnswer answer{service.response.success != 0, service.response.message, {}, {}};
       if constexpr (std::is_same_v<Service, msg::PlanPoses>) {
         answer.poses = service.response.poses;
+      }
+      if constexpr (std::is_same_v<Service, msg::Capture>) {
+        answer.sample = service.response.sample;
       }
       return answer;
     });

@@ -17,6 +17,20 @@ std::vector<double> second() {
   return {0.01, 1.98, 0.0};
 }
 
+CaptureOutcome sample(std::uint32_t id, std::uint64_t rest) {
+  return {true, "", id, rest};
+}
+
+/// One pattern, from its settling to its capture.
+void measure(PoseMeasurement& measurement,
+             const std::vector<double>& currents,
+             const CaptureOutcome& outcome,
+             double now) {
+  measurement.step(currents, now);
+  ASSERT_EQ(measurement.step(currents, now + 0.5), Action::kCapture);
+  measurement.captured(outcome, now + 1.0);
+}
+
 TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
   PoseMeasurement measurement;
   measurement.begin({0, 2}, 2.0, 0.0);
@@ -24,7 +38,7 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
   EXPECT_EQ(measurement.step(zero(), 0.0), Action::kNothing);
   EXPECT_EQ(measurement.step(zero(), 0.4), Action::kCapture);
   EXPECT_EQ(measurement.step(zero(), 0.5), Action::kNothing);
-  measurement.answered(true, "Sample 1.", 1.0);
+  measurement.captured(sample(1, 7), 1.0);
   EXPECT_EQ(measurement.coil(), 2U);
   EXPECT_EQ(measurement.current(), 2.0);
   EXPECT_EQ(measurement.step(zero(), 1.1), Action::kNothing);
@@ -33,7 +47,7 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
   EXPECT_EQ(measurement.step(zero(), 1.4), Action::kNothing);
   EXPECT_EQ(measurement.step(second(), 1.6), Action::kNothing);
   EXPECT_EQ(measurement.step(second(), 2.0), Action::kCapture);
-  measurement.answered(true, "Sample 2.", 3.0);
+  measurement.captured(sample(2, 7), 3.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.outcome(), "The pose is measured: 2 samples.");
@@ -41,9 +55,10 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
 
 TEST(PoseMeasurement, EndsWhereACoilDoesNotCarryItsCurrent) {
   PoseMeasurement measurement;
-  measurement.begin({2}, 2.0, 0.0);
+  measurement.begin({0, 2}, 2.0, 0.0);
   EXPECT_EQ(measurement.step({}, 1.0), Action::kNothing);
-  EXPECT_EQ(measurement.step(zero(), 10.1), Action::kEnd);
+  measure(measurement, zero(), sample(1, 7), 2.0);
+  EXPECT_EQ(measurement.step(zero(), 13.1), Action::kEnd);
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.outcome(), "Coil 2 does not carry its current: look at the coil driver.");
 }
@@ -53,7 +68,7 @@ TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
   measurement.begin({0, 2}, 2.0, 0.0);
   measurement.step(zero(), 0.0);
   ASSERT_EQ(measurement.step(zero(), 1.0), Action::kCapture);
-  measurement.answered(false, "The rotor moved.", 2.0);
+  measurement.captured({false, "The rotor moved.", 0, 0}, 2.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.outcome(), "The rotor moved.");
 }
@@ -61,11 +76,47 @@ TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
 TEST(PoseMeasurement, AnswersThatNobodyAskedForChangeNothing) {
   PoseMeasurement measurement;
   measurement.begin({0, 2}, 2.0, 0.0);
-  measurement.answered(true, "Sample of somebody else.", 0.1);
+  measurement.captured(sample(9, 7), 0.1);
   EXPECT_EQ(measurement.coil(), 0U);
   measurement.end("Stopped.");
-  measurement.answered(true, "Late.", 0.2);
+  measurement.captured(sample(9, 7), 0.2);
   EXPECT_EQ(measurement.outcome(), "Stopped.");
+}
+
+TEST(PoseMeasurement, BeginsWithoutCurrentInAnyCase) {
+  PoseMeasurement measurement;
+  measurement.begin({2}, 2.0, 0.0);
+  EXPECT_EQ(measurement.coil(), 0U);
+  measure(measurement, zero(), sample(1, 7), 1.0);
+  EXPECT_EQ(measurement.coil(), 2U);
+}
+
+TEST(PoseMeasurement, ATorqueOfAnotherRestGoesAndItsZeroIsMeasuredAnew) {
+  PoseMeasurement measurement;
+  measurement.begin({0, 2}, 2.0, 0.0);
+  measure(measurement, zero(), sample(1, 7), 1.0);
+  measure(measurement, second(), sample(2, 8), 2.0);
+  EXPECT_EQ(measurement.step(second(), 3.1), Action::kRemove);
+  EXPECT_EQ(measurement.flawedSample(), 2U);
+  EXPECT_EQ(measurement.step(second(), 3.2), Action::kNothing);
+  measurement.removed(true, "", 3.3);
+  EXPECT_EQ(measurement.coil(), 0U);
+  measure(measurement, zero(), sample(3, 8), 4.0);
+  EXPECT_EQ(measurement.coil(), 2U);
+  measure(measurement, second(), sample(4, 8), 5.0);
+  EXPECT_FALSE(measurement.isRunning());
+  EXPECT_EQ(measurement.outcome(), "The pose is measured: 3 samples.");
+}
+
+TEST(PoseMeasurement, EndsWhereASampleCannotBeRemoved) {
+  PoseMeasurement measurement;
+  measurement.begin({0, 2}, 2.0, 0.0);
+  measure(measurement, zero(), sample(1, 7), 1.0);
+  measure(measurement, second(), sample(2, 8), 2.0);
+  measurement.step(second(), 3.1);
+  measurement.removed(false, "Sample 2 is not in use.", 3.3);
+  EXPECT_FALSE(measurement.isRunning());
+  EXPECT_EQ(measurement.outcome(), "Sample 2 is not in use.");
 }
 
 }  // namespace
