@@ -57,7 +57,13 @@ void CoilDriver::connect() {
   setZero();
 }
 
-CoilDriver::Beat CoilDriver::exchange(double now) {
+CoilDriver::Beat CoilDriver::exchange(double begin) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  // An answer may take as long as a command is in force.
+  const auto now = [&] {
+    return begin + std::chrono::duration<double>(Clock::now() - began).count();
+  };
   Beat result;
   if (amplifier_.isTripped()) {
     forget();
@@ -65,13 +71,12 @@ CoilDriver::Beat CoilDriver::exchange(double now) {
     result.zero_reason = "the amplifier has tripped";
     result.fault = true;
   } else {
-    follow(now, result);
+    follow(now(), result);
   }
-  last_beat_ = now;
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  result.measured = measure(now);
-  result.reading_time = std::chrono::duration<double>(Clock::now() - begin).count();
+  last_beat_ = begin;
+  const double reading_began = now();
+  result.measured = measure(reading_began);
+  result.reading_time = now() - reading_began;
   return result;
 }
 
@@ -80,15 +85,17 @@ void CoilDriver::follow(double now, Beat& result) {
   const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
   if (command && is_measured_) {
     supervisor_.setting(limiter_.follow(*command, elapsed));
-    amplifier_.write(limiter_.setpoints(), OutputStages::kOn);
+    amplifier_.write(limiter_.setpoints(), OutputStages::kOn, heartbeat());
     return;
   }
   result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
   result.fault = !supervisor_.fault().empty();
   supervisor_.setting(limiter_.stop());
-  const bool is_well = is_measured_ && !result.fault;
-  amplifier_.write(
-      limiter_.setpoints(), OutputStages::kOff, is_well ? Heartbeat::kGiven : Heartbeat::kWithheld);
+  amplifier_.write(limiter_.setpoints(), OutputStages::kOff, heartbeat());
+}
+
+Heartbeat CoilDriver::heartbeat() const {
+  return is_measured_ && supervisor_.mayBeat() ? Heartbeat::kGiven : Heartbeat::kWithheld;
 }
 
 Eigen::VectorXd CoilDriver::measure(double now) {

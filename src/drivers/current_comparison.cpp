@@ -27,8 +27,11 @@ constexpr double kShareOfChange = 0.03;
 /// What a beat that agrees takes back, of one that deviates.
 constexpr double kForgiven = 0.125;
 
-/// However long a beat took: a single measurement must not decide.
-constexpr double kLargestShare = 0.2;
+/// However long a beat took: a single measurement must not decide, nor two.
+constexpr double kLargestShare = 0.34;
+
+/// Of the beats that are an error: from here on it is likely that there will be one.
+constexpr double kSuspicious = 0.5;
 
 /// Counts go on above their limit, so that all lags can be above it at the same time.
 constexpr double kHighestCount = 1.5;
@@ -57,8 +60,8 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
   advance(steady);
   count(measured.array(), steady, weight);
   Eigen::Index coil = 0;
-  const double most = deviating_.rowwise().minCoeff().maxCoeff(&coil);
-  if (most < beats_) {
+  most_ = deviating_.rowwise().minCoeff().maxCoeff(&coil);
+  if (most_ < beats_) {
     return std::nullopt;
   }
   return static_cast<std::size_t>(coil);
@@ -69,8 +72,13 @@ double CurrentComparison::weightOf(double steady) const {
   return std::max(1.0, std::min(beats, kLargestShare * beats_));
 }
 
+bool CurrentComparison::isSuspicious() const {
+  return most_ >= kSuspicious * beats_;
+}
+
 void CurrentComparison::forgive() {
   deviating_.setZero();
+  most_ = 0.0;
 }
 
 // A late beat, or a current that needs a moment: what was set before may still flow. So what was in

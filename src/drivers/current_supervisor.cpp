@@ -53,7 +53,8 @@ void validate(const SupervisorLimits& limits) {
 CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t coils)
     : limits_(limits),
       coils_(coils),
-      comparison_(coils, limits.deviation, limits.deviating_beats, limits.beat_period) {
+      comparison_(coils, limits.deviation, limits.deviating_beats, limits.beat_period),
+      zero_set_since_(coils) {
   validate(limits);
 }
 
@@ -92,6 +93,10 @@ void CurrentSupervisor::noticeClockJump(const Instant& now) {
 std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant& now) const {
   if (closed_) {
     return "The driver ends.";
+  }
+  if (command.caller.empty()) {
+    return "A command without the name of its sender does not count: two of them could not be told "
+           "apart.";
   }
   const std::string who = "The command of " + command.caller + " ";
   std::string defect = commandDefect(command.currents, coils_);
@@ -169,7 +174,12 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   if (!setpoints.isZero(0.0)) {
     zeros_ = 0;
     zero_confirmed_ = false;
-    zero_set_since_.reset();
+    was_set_ = true;
+  }
+  for (std::size_t coil = 0; coil < coils_; ++coil) {
+    if (setpoints[static_cast<Eigen::Index>(coil)] != 0.0) {
+      zero_set_since_[coil].reset();
+    }
   }
 }
 
@@ -177,12 +187,10 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) 
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
   countZeros(measured, steady);
-  countStrays(measured, steady);
+  const std::optional<std::size_t> stray = countStrays(measured, steady);
   std::optional<std::size_t> deviating = comparison_.observe(measured, steady);
   if (!deviating && strays_ >= kMostStrays) {
-    Eigen::Index coil = 0;
-    measured.cwiseAbs().maxCoeff(&coil);
-    deviating = static_cast<std::size_t>(coil);
+    deviating = stray;
   }
   if (!fault_.empty()) {
     watchZero(steady);
@@ -206,17 +214,33 @@ void CurrentSupervisor::countZeros(const Eigen::VectorXd& measured, double stead
   zero_confirmed_ = zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime;
 }
 
-// Current that comes for a moment now and then is never there for long.
-void CurrentSupervisor::countStrays(const Eigen::VectorXd& measured, double steady) {
+// Current that comes for a moment now and then is never there for long. Returns a coil that has one
+// now.
+std::optional<std::size_t> CurrentSupervisor::countStrays(const Eigen::VectorXd& measured,
+                                                          double steady) {
   const double elapsed = std::min(steady - last_observed_.value_or(steady), kLongestBeat);
   last_observed_ = steady;
-  if (!comparison_.setpoints().isZero(0.0)) {
-    return;
+  std::optional<std::size_t> stray;
+  for (std::size_t coil = 0; coil < coils_; ++coil) {
+    const auto place = static_cast<Eigen::Index>(coil);
+    if (comparison_.setpoints()[place] != 0.0) {
+      continue;
+    }
+    std::optional<double>& since = zero_set_since_[coil];
+    since = since.value_or(steady);
+    if (steady - *since > kLongestFlow && std::abs(measured[place]) > limits_.deviation) {
+      stray = coil;
+    }
   }
-  zero_set_since_ = zero_set_since_.value_or(steady);
-  const bool is_stray = steady - *zero_set_since_ > kLongestFlow &&
-                        measured.cwiseAbs().maxCoeff() > limits_.deviation;
-  strays_ = std::max(strays_ + (is_stray ? elapsed : -kForgivenStrays * elapsed), 0.0);
+  strays_ = std::max(strays_ + (stray ? elapsed : -kForgivenStrays * elapsed), 0.0);
+  return stray;
+}
+
+bool CurrentSupervisor::mayBeat() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool is_quiet =
+      was_set_ || (measured_ && measured_->cwiseAbs().maxCoeff() <= limits_.deviation);
+  return fault_.empty() && !comparison_.isSuspicious() && is_quiet;
 }
 
 void CurrentSupervisor::fail(std::size_t coil, double measured) {

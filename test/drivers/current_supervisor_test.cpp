@@ -65,6 +65,8 @@ std::vector<Case> cases() {
       {"before the last", given("/owner", 9.95), at(10.05), "not newer"},
       {"of three coils", {"/owner", kWall + 10.05, Eigen::Vector3d::Zero()}, at(10.05), "2 coils"},
       {"of no coils", {"/owner", kWall + 10.05, {}}, at(10.05), "0 currents"},
+      {"of nobody", given("", 10.05), at(10.05), "without the name of its sender"},
+      {"of nobody after a silence", given("", 60.0), at(60.0), "without the name of its sender"},
       {"NaN", given("/owner", 10.05, kNan), at(10.05), "coil 1 is not finite"},
       {"infinite", given("/owner", 10.05, -inf), at(10.05), "not finite. It came from /owner"},
   };
@@ -212,6 +214,55 @@ TEST(CurrentSupervisor, CurrentThatComesRarelyIsAnErrorToo) {
     flows.insert(flows.end(), {{2.0, 0.0, 20}, {0.0, 0.0, 13}, {0.0, 2.0, 20}, {0.0, 0.0, 100}});
   }
   EXPECT_EQ(faultAfter(flows, shipped), "");
+}
+
+// In 2 s 0.16 s of 2 A, in a coil that nobody commands, while another one has its current.
+TEST(CurrentSupervisor, CurrentThatComesRarelyBesideACommandedCoilIsAnErrorToo) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  CurrentSupervisor supervisor(shipped, 2);
+  double told = 0.0;
+  for (int beat = 0; beat < 1000 && told == 0.0; ++beat) {
+    supervisor.setting(amperes(1.0));
+    supervisor.observe(amperes(1.0, beat % 50 < 4 ? 2.0 : 0.0), 0.005 * beat);
+    told = supervisor.fault().empty() ? 0.0 : 0.005 * beat;
+  }
+  EXPECT_GT(told, 1.0);
+  EXPECT_LT(told, 4.0);
+  EXPECT_NE(supervisor.fault().find("coil 2 carries 2.00 A where 0.00 A are set"),
+            std::string::npos)
+      << supervisor.fault();
+}
+
+TEST(CurrentSupervisor, TheHeartbeatIsWithheldBeforeADeviationIsSure) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  CurrentSupervisor supervisor(shipped, 2);
+  double time = 0.0;
+  const auto beats = [&](int count, double measured) {
+    for (int beat = 0; beat < count; ++beat, time += 0.005) {
+      supervisor.setting(amperes(1.0));
+      supervisor.observe(amperes(measured), time);
+    }
+  };
+  beats(100, 1.0);
+  EXPECT_TRUE(supervisor.mayBeat());
+  // Half of what is an error; no lag explains it, as nothing else was set before.
+  beats(21, 3.0);
+  EXPECT_FALSE(supervisor.mayBeat());
+  EXPECT_EQ(supervisor.fault(), "");
+  beats(200, 1.0);
+  EXPECT_TRUE(supervisor.mayBeat());
+}
+
+TEST(CurrentSupervisor, ADriverThatStartsGivesNoHeartbeatWhileCurrentFlows) {
+  CurrentSupervisor supervisor(limits(), 2);
+  EXPECT_FALSE(supervisor.mayBeat());
+  supervisor.setting(amperes(0.0));
+  supervisor.observe(amperes(0.0, 1.0), 0.0);
+  EXPECT_FALSE(supervisor.mayBeat());
+  supervisor.observe(amperes(0.0, 0.1), 0.005);
+  EXPECT_TRUE(supervisor.mayBeat());
 }
 
 // Of a loop that is held up: each beat finds that the command has run out, or one again.

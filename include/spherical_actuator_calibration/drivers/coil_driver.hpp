@@ -56,8 +56,9 @@ class CoilDriver {
 
  private:
   void connect();
-  Beat exchange(double now);
+  Beat exchange(double begin);
   void follow(double now, Beat& result);
+  Heartbeat heartbeat() const;
   Eigen::VectorXd measure(double now);
   void forget();
   void fail();

@@ -32,6 +32,8 @@ class CurrentComparison {
   /// These currents [A] were measured now, after the last setpoints were written. Returns the first
   /// coil that deviates, from 0.
   std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double steady);
+  /// Half the way to a coil that deviates: an honest amplifier does not come so far.
+  bool isSuspicious() const;
   /// Counts anew.
   void forgive();
 
@@ -63,6 +65,7 @@ class CurrentComparison {
   std::optional<double> last_;  ///< measurement [s]
   std::deque<Span> spans_;      ///< without gaps, as far back as the longest delay
   Eigen::ArrayXXd deviating_;   ///< beats, for each coil and each lag
+  double most_ = 0.0;  ///< of the coil that deviates most, by the lag that explains it best
 };
 
 }  // namespace sac

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -81,6 +82,10 @@ class CurrentSupervisor {
   /// zero: then it was the amplifier that obeyed, and not its watchdog that acted, after which it
   /// would have current again with the next heartbeat. The third one stays.
   std::string fault() const;
+  /// Whether the amplifier may have its heartbeat: nothing is wrong, nor likely to be; and before
+  /// anything was commanded nothing flows, so that a driver that starts revives no current which
+  /// the amplifier's watchdog has ended.
+  bool mayBeat() const;
   /// How often there was one.
   int faults() const;
   /// Whether zero was measured in all coils, five times in a row and for 0.3 s at least, since
@@ -96,7 +101,7 @@ class CurrentSupervisor {
   void noticeClockJump(const Instant& now);
   bool isOwnedByAnother(const CoilCommand& command, double steady) const;
   void countZeros(const Eigen::VectorXd& measured, double steady);
-  void countStrays(const Eigen::VectorXd& measured, double steady);
+  std::optional<std::size_t> countStrays(const Eigen::VectorXd& measured, double steady);
   bool isZeroNow() const { return zeros_ > 0; }
   void fail(std::size_t coil, double measured);
   void watchZero(double steady);
@@ -119,9 +124,12 @@ class CurrentSupervisor {
   int zeros_ = 0;            ///< measurements in a row of nothing but zero, while zero is set
   double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
-  std::optional<double> zero_set_since_;  ///< by the steady clock [s]
-  std::optional<double> last_observed_;   ///< likewise
-  double strays_ = 0.0;  ///< current long after zero was set, less what was forgiven [s]
+  bool was_set_ = false;  ///< anything but zero
+  /// Per coil, by the steady clock [s]; nothing: not zero is set, or nothing was measured since.
+  std::vector<std::optional<double>> zero_set_since_;
+  std::optional<double> last_observed_;  ///< likewise
+  double strays_ =
+      0.0;  ///< current in coils long after zero was set there, less what was forgiven [s]
   std::string fault_;
   int faults_ = 0;
   double fault_at_ = 0.0;  ///< by the steady clock [s]
