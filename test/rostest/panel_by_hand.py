@@ -98,11 +98,12 @@ class PanelByHand(unittest.TestCase):
         self.assertTrue(self.samples[-1].validation)
         self.press(VALIDATE, lambda: self.latest["status"].grade == CalibrationReport.GOOD, "a good grade")
         self.press(SAVE, self.saved, "the saved description")
-        expect_truth(self, self.saved()[0], self.lab.truth)
+        expect_truth(self, self.saved()[-1], self.lab.truth)
         wait_for(self.lab.is_without_current, "zero currents")
 
     def saved(self):
-        return sorted(pathlib.Path(self.lab.directory).rglob("*revision_1.yaml"))
+        """Where a key was pressed again because its service was slow, there is more than one refinement."""
+        return sorted(pathlib.Path(self.lab.directory).rglob("*_revision_*.yaml"))
 
     def measure_poses(self, most):
         """The number of poses that the panel asked for, up to `most`."""
