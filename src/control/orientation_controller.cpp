@@ -9,7 +9,6 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
 namespace {
@@ -18,6 +17,8 @@ namespace {
 constexpr double kLongestDifference = 0.1;
 /// A cycle that came late integrates no further than this [s].
 constexpr double kLongestStep = 0.02;
+/// The observer learns from no reading that is older [s]: its delay would shake the rotor.
+constexpr double kLatestLesson = 0.02;
 /// Over which the velocity of the model is taken from that of the joints [s].
 constexpr double kVelocityStep = 1e-4;
 
@@ -27,15 +28,6 @@ const Actuator& withTorqueModel(const Actuator& actuator) {
     throw ConfigError("An actuator without poles, coils and torque curve cannot be controlled.");
   }
   return actuator;
-}
-
-void requireRotation(const Eigen::Matrix3d& R) {
-  constexpr double kTolerance = 1e-6;
-  const bool is_orthogonal =
-      R.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < kTolerance;
-  if (!is_orthogonal || R.determinant() < 0.0) {
-    throw DataError("The target is no rotation.");
-  }
 }
 
 /// The plan with limits that are the controller's as well.
@@ -49,23 +41,6 @@ MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptio
 
 }  // namespace
 
-void validate(const OrientationControllerOptions& options) {
-  validate(options.rotor);
-  validate(options.gains);
-  validate(options.motion_gains);
-  validate(options.reference);
-  requireInRange("current_limit", options.allocation.current_limit, ValueRange::positive("A"));
-  requireInRange("least_singular_value",
-                 options.allocation.least_singular_value,
-                 ValueRange::positive("N m/A"));
-  requireInRange("largest_age", options.largest_age, ValueRange::positive("s"));
-  requireInRange("velocity_cutoff", options.velocity_cutoff, ValueRange::positive("rad/s"));
-  requireInRange("workspace_margin", options.workspace_margin, ValueRange::nonNegative("rad"));
-  requireInRange(
-      "largest_tracking_error", options.largest_tracking_error, ValueRange::positive("rad"));
-  requireInRange("total_current_limit", options.total_current_limit, ValueRange::positive("A"));
-}
-
 OrientationController::OrientationController(const Actuator& design,
                                              const OrientationControllerOptions& options)
     : parameters_(withTorqueModel(design)),
@@ -75,6 +50,7 @@ OrientationController::OrientationController(const Actuator& design,
       joints_(jointGeometry(design)),
       torques_(torqueGeometry(design)),
       reference_(options.reference),
+      disturbance_(options.disturbance, options.velocity_cutoff),
       currents_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(design.coils.size()))) {
   validate(options);
 }
@@ -113,7 +89,8 @@ void OrientationController::keepTorque() {
       torquePerAmpere(curve_, torques_, rotor.R_stator_rotor) * currents_;
   const DesiredMotion& desired = reference_.motion();
   const Eigen::Matrix3d R_desired =
-      orientationForTorque(options_.rotor, rotor, desired, torque, gains());
+      orientationForTorque(options_.rotor, rotor, desired, torque + disturbance_.torque(), gains());
+  disturbance_.interrupt();
   reference_.turnReference(R_desired * desired.R_stator_rotor.transpose());
 }
 
@@ -203,6 +180,7 @@ void OrientationController::disable() {
   state_ = ControlState::kIdle;
   stop_reason_.clear();
   currents_.setZero();
+  disturbance_.reset();
   takeParametersToCome();
 }
 
@@ -231,6 +209,7 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
     stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_));
     return currents_;
   }
+  observe(now, rotor);
   allocate(rotor, desired);
   if (was_in_motion && motion_->phase() == MotionPhase::kDone) {
     disable();
@@ -263,6 +242,30 @@ void OrientationController::approachMotion(double step) {
   }
 }
 
+// A reading that was seen already tells of no further change.
+void OrientationController::observe(Stamp now, const RotorState& rotor) {
+  const double elapsed = secondsBetween(observed_, measured_->stamp);
+  if (elapsed == 0.0) {
+    return;
+  }
+  if (elapsed < 0.0 || elapsed > kLongestDifference) {
+    disturbance_.interrupt();
+  }
+  disturbance_.update(elapsed, options_.rotor, rotor, coil_torque_, learning(now));
+  observed_ = measured_->stamp;
+}
+
+// What currents at their limit cannot do must not add up. The excitation of a motion plan moves the
+// rotor by the errors of the model, which is what it is for: to make up for that would take from
+// the motion what was planned to be seen.
+Learning OrientationController::learning(Stamp now) const {
+  const bool is_on_its_way = isInMotion() && motion_->phase() != MotionPhase::kApproach;
+  if (is_on_its_way || secondsBetween(measured_->stamp, now) > kLatestLesson) {
+    return Learning::kNone;
+  }
+  return share_ < 1.0 ? Learning::kNoGrowth : Learning::kFree;
+}
+
 void OrientationController::allocate(const RotorState& rotor, const DesiredMotion& desired) {
   if (state_ != ControlState::kActive) {
     return;
@@ -274,8 +277,9 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
   }
   const Eigen::Matrix3Xd torque_per_ampere =
       torquePerAmpere(curve_, torques_, rotor.R_stator_rotor);
-  const AllocatedCurrents allocated = allocateCurrents(
-      torque_per_ampere, computedTorque(options_.rotor, rotor, desired, gains()), allocation);
+  const Eigen::Vector3d torque =
+      computedTorque(options_.rotor, rotor, desired, gains()) - disturbance_.torque();
+  const AllocatedCurrents allocated = allocateCurrents(torque_per_ampere, torque, allocation);
   if (allocated.outcome == Allocation::kSingular) {
     stop(format("the coils make no torque in some direction here (%.2g N.m/A)",
                 allocated.smallest_singular_value));
@@ -290,6 +294,7 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
       currents_ += motion_->excitation(torque_per_ampere, currents_, rotor, desired);
     }
   }
+  coil_torque_ = torque_per_ampere * currents_;
 }
 
 void OrientationController::follow(const MotionPlan& plan) {
@@ -382,6 +387,7 @@ void OrientationController::stop(const std::string& reason) {
   state_ = ControlState::kStopped;
   stop_reason_ = reason;
   currents_.setZero();
+  disturbance_.reset();
   takeParametersToCome();
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
@@ -31,6 +32,15 @@ Eigen::Matrix3d normalized(const Eigen::Matrix3d& R) {
 }
 
 }  // namespace
+
+void requireRotation(const Eigen::Matrix3d& R) {
+  constexpr double kTolerance = 1e-6;
+  const bool is_orthogonal =
+      R.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < kTolerance;
+  if (!is_orthogonal || R.determinant() < 0.0) {
+    throw DataError("The target is no rotation.");
+  }
+}
 
 void validate(const OrientationReferenceOptions& options) {
   requireInRange("natural_frequency", options.natural_frequency, ValueRange::positive("rad/s"));

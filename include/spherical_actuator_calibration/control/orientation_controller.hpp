@@ -11,31 +11,13 @@
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/control/computed_torque_control.hpp"
-#include "spherical_actuator_calibration/control/current_allocation.hpp"
+#include "spherical_actuator_calibration/control/disturbance_observer.hpp"
 #include "spherical_actuator_calibration/control/motion_run.hpp"
+#include "spherical_actuator_calibration/control/orientation_controller_options.hpp"
 #include "spherical_actuator_calibration/control/orientation_reference.hpp"
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
 
 namespace sac {
-
-struct OrientationControllerOptions {
-  RigidRotor rotor;
-  ControlGains gains;
-  /// During a motion plan, whose excitation disturbs the more the less the parameters are known.
-  ControlGains motion_gains = {/*proportional=*/225.0, /*derivative=*/30.0};
-  AllocationOptions allocation;
-  OrientationReferenceOptions reference;
-  double largest_age = 0.1;        ///< of the joint angles [s]; older ones stop the control
-  double velocity_cutoff = 150.0;  ///< of the first-order filter of joint velocities [rad/s]
-  double workspace_margin = 0.05;  ///< [rad] joints 1 and 2 may leave the tilt limit so far
-  /// Between reference and rotor [rad]; beyond it something holds or pushes the rotor, or a sensor
-  /// stands still.
-  double largest_tracking_error = 0.4;
-  double total_current_limit = 8.0;  ///< of the sum over all coils, as the driver's [A]
-};
-
-/// Throws ConfigError that names the option and its range.
-void validate(const OrientationControllerOptions& options);
 
 enum class ControlState {
   kIdle,     ///< not enabled: no current
@@ -47,7 +29,8 @@ enum class ControlState {
 /// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
 /// currents zero, when joint angles are too old, outside the workspace, where the coils make no
 /// torque in some direction, or when the rotor does not follow. A motion plan is followed in the
-/// place of targets, under the same guards and its own limits. Not thread-safe.
+/// place of targets, under the same guards and its own limits. A load that nobody told of is found
+/// and held; while a motion plan is followed, what was found before stays. Not thread-safe.
 class OrientationController {
  public:
   /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
@@ -91,6 +74,8 @@ class OrientationController {
   double torqueShare() const { return share_; }
   /// Angle between the orientation that the model sees and the reference [rad].
   double trackingError() const { return tracking_error_; }
+  /// Torque on the rotor that was found and is made up for, rotor frame [N·m].
+  const Eigen::Vector3d& disturbance() const { return disturbance_.torque(); }
 
  private:
   /// What the model makes of the joint angles.
@@ -104,6 +89,8 @@ class OrientationController {
   bool isInMotion() const { return motion_ && motion_->isRunning(); }
   const DesiredMotion& desiredMotion(Stamp now, double step);
   void approachMotion(double step);
+  void observe(Stamp now, const RotorState& rotor);
+  Learning learning(Stamp now) const;
   void allocate(const RotorState& rotor, const DesiredMotion& desired);
   void limitTotal();
   void takeParametersToCome();
@@ -118,6 +105,9 @@ class OrientationController {
   JointGeometry joints_;
   TorqueGeometry torques_;
   OrientationReference reference_;
+  DisturbanceObserver disturbance_;
+  Stamp observed_ = 0;  ///< the reading that the observer saw last
+  Eigen::Vector3d coil_torque_ = Eigen::Vector3d::Zero();  ///< of the last cycle, rotor frame [N·m]
   std::optional<JointMeasurement> measured_;
   Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
   Eigen::Vector3d q_ = Eigen::Vector3d::Zero();  ///< joint angles of the last cycle [rad]

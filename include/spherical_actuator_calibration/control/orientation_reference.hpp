@@ -22,6 +22,9 @@ struct OrientationReferenceOptions {
 /// Throws ConfigError that names the option and its range.
 void validate(const OrientationReferenceOptions& options);
 
+/// Throws DataError unless a target is a rotation.
+void requireRotation(const Eigen::Matrix3d& R);
+
 /// Makes a smooth desired motion out of targets: orientations that come one by one, or a stream
 /// of them. A critically damped second-order filter on SO(3), limited in rate and acceleration.
 class OrientationReference {
