@@ -10,7 +10,7 @@
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;  // of control and integration [s]
+constexpr double kStep = 1e-3;  // of integration [s]
 constexpr Stamp kCycle = 1'000'000;
 constexpr double kStopTilt = 1.2;  // [rad] far beyond what is allowed
 
@@ -37,8 +37,9 @@ class Stage {
         rotor_(truth, options.rotor, kStopTilt, options.friction),
         controller_(model, options.controller),
         noise_(options.seed, RandomPurpose::kMotionRehearsal),
-        setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(truth.coils.size()))),
-        currents_(setpoints_) {
+        command_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(truth.coils.size()))),
+        setpoints_(command_),
+        currents_(command_) {
     rotor_.release(jointsAt(plan, 0.0));
     controller_.setParameters(model);
     sense();
@@ -82,11 +83,11 @@ class Stage {
     ++cycles_;
     if (cycles_ % cyclesOf(options_.joint_rate) == 0) {
       sense();
+      command_ = controller_.update(now_);
+      noteCommand();
     }
-    const Eigen::VectorXd& command = controller_.update(now_);
-    noteCommand(command);
     if (cycles_ % cyclesOf(options_.current_rate) == 0) {
-      setpoints_ = command;
+      setpoints_ = command_;
     }
     // Half of the lag before, half after: the currents of the middle of the cycle.
     const double share =
@@ -98,13 +99,13 @@ class Stage {
         std::max(result_.largest_tilt, rotor_.position().head<2>().cwiseAbs().maxCoeff());
   }
 
-  void noteCommand(const Eigen::VectorXd& command) {
+  void noteCommand() {
     result_.largest_coil_current =
-        std::max(result_.largest_coil_current, command.cwiseAbs().maxCoeff());
+        std::max(result_.largest_coil_current, command_.cwiseAbs().maxCoeff());
     result_.largest_total_current =
-        std::max(result_.largest_total_current, command.cwiseAbs().sum());
+        std::max(result_.largest_total_current, command_.cwiseAbs().sum());
     result_.largest_square_current =
-        std::max(result_.largest_square_current, command.squaredNorm());
+        std::max(result_.largest_square_current, command_.squaredNorm());
   }
 
   const RehearsalOptions& options_;
@@ -113,6 +114,7 @@ class Stage {
   NoiseSource noise_;
   Stamp now_ = 1000 * kCycle;
   int cycles_ = 0;
+  Eigen::VectorXd command_;
   Eigen::VectorXd setpoints_;
   Eigen::VectorXd currents_;
   Rehearsal result_;

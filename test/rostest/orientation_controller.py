@@ -25,6 +25,7 @@ class Joints:
     def __init__(self):
         self.position = [0.0, 0.0, 0.0]
         self.silent = False
+        self.stamp = None  # of all further readings, where it stands still
         self.count = 0
         self._publisher = rospy.Publisher(f"{NAMESPACE}/joint_states", JointState, queue_size=10)
         self._timer = rospy.Timer(rospy.Duration(1.0 / RATE), self._publish)
@@ -32,7 +33,7 @@ class Joints:
     def _publish(self, _event):
         if not self.silent:
             message = JointState(name=["joint_1", "joint_2", "joint_3"], position=self.position)
-            message.header.stamp = rospy.Time.now()
+            message.header.stamp = self.stamp or rospy.Time.now()
             self._publisher.publish(message)
             self.count += 1
 
@@ -111,6 +112,45 @@ class OrientationController(unittest.TestCase):
         self.joints.wait_for_further(50)
         self.assertTrue(self.commands.ended_with_zero())
         wait_for(lambda: controller.enable().success and controller.level("control") == OK, "the control to go on")
+
+    def test_each_reading_makes_one_command_and_no_reading_none(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        wait_for(lambda: self.commands.count > 0, "commands")
+        readings, commands = self.joints.count, self.commands.count
+        self.joints.wait_for_further(200)
+        # One may be on its way at either end; a busy computer leaves readings out.
+        self.assertLessEqual(self.commands.count - commands, self.joints.count - readings + 2)
+        self.assertGreater(self.commands.count - commands, 20)
+        self.joints.silent = True
+        wait_for(self.is_silent, "no further command")
+        self.assertEqual(controller.level("control"), OK)
+        self.joints.silent = False
+        commands = self.commands.count
+        wait_for(lambda: self.commands.count > commands, "commands on further readings")
+
+    def is_silent(self):
+        count = self.commands.count
+        rospy.sleep(0.1)
+        return self.commands.count == count
+
+    def test_tells_the_age_of_readings_and_the_jitter_of_the_period(self):
+        controller = self.start()
+        controller.wait_until_enabled()
+        self.joints.wait_for_further(50)
+        wait_for(lambda: float(controller.value("control", "mean age of the reading [us]")) > 0.0, "the age")
+        wait_for(lambda: float(controller.value("control", "jitter of the period [us]")) > 0.0, "the jitter")
+        wait_for(lambda: float(controller.value("control", "rate [Hz]")) < 2.0 * RATE, "the rate")
+        self.assertGreaterEqual(int(controller.value("control", "commands since start")), 20)
+        self.assertGreaterEqual(int(controller.value("control", "of them on an old reading")), 0)
+
+    def test_stops_when_the_stamps_of_joint_angles_stand_still(self):
+        controller = self.start(largest_age=LARGEST_AGE)
+        wait_for(lambda: self.pulls(controller), "currents")
+        self.joints.stamp = rospy.Time.now()
+        controller.wait_for_level("control", ERROR)
+        self.assertIn("no joint angles arrive", controller.message("control"))
+        wait_for(self.commands.ended_with_zero, "zero")
 
     def pulls(self, controller):
         """Whether there is current, so that a zero is that of a stop; where angles came late, it is enabled again."""

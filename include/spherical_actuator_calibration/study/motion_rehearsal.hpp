@@ -38,8 +38,8 @@ struct Rehearsal {
 };
 
 /// Carries out a plan by the controller of this package, which knows `model`, on a rotor that is
-/// `truth`: at 1 kHz, with joint angles and currents at their rates. The rotor begins where the
-/// plan does. Throws ConfigError when plan, actuators or options are not valid.
+/// `truth`: a command for each reading of the joint angles, currents at their own rate. The rotor
+/// begins where the plan does. Throws ConfigError when plan, actuators or options are not valid.
 Rehearsal rehearse(const MotionPlan& plan,
                    const Actuator& model,
                    const Actuator& truth,

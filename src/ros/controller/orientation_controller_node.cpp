@@ -1,7 +1,5 @@
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_node.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 
 #include <ros/console.h>
@@ -24,6 +22,10 @@ constexpr double kWarningPeriod = 2.0;  // [s]
 constexpr std::uint32_t kQueueLength = 100;
 constexpr double kMicro = 1e6;
 constexpr double kStatusPeriod = 0.1;  // [s]
+/// Of looks whether readings still come: few milliseconds beside the age that is allowed [Hz].
+constexpr double kWatchRate = 200.0;
+/// Between two commands [s].
+constexpr double kLeastPeriod = 2e-4;
 
 const char* inWords(MotionPhase phase) {
   switch (phase) {
@@ -46,34 +48,6 @@ const char* inWords(MotionPhase phase) {
 
 }  // namespace
 
-void CycleStatistics::add(double begin, double end) {
-  constexpr double kMissedPeriods = 1.5;
-  ++cycles_;
-  total_ += end - begin;
-  longest_ = std::max(longest_, end - begin);
-  if (last_begin_ > 0.0) {
-    const double interval = begin - last_begin_;
-    largest_jitter_ = std::max(largest_jitter_, std::abs(interval - period_));
-    if (interval > kMissedPeriods * period_) {
-      missed_ += static_cast<std::size_t>(std::lround(interval / period_)) - 1;
-    }
-  }
-  last_begin_ = begin;
-}
-
-void CycleStatistics::report(DiagnosticStatus& status) {
-  const double mean = cycles_ == 0 ? 0.0 : total_ / static_cast<double>(cycles_);
-  status.add("cycles", cycles_);
-  status.add("mean computation [us]", kMicro * mean);
-  status.add("longest computation [us]", kMicro * longest_);
-  status.add("largest jitter [us]", kMicro * largest_jitter_);
-  status.add("missed cycles since start", missed_);
-  cycles_ = 0;
-  total_ = 0.0;
-  longest_ = 0.0;
-  largest_jitter_ = 0.0;
-}
-
 OrientationControllerNode::OrientationControllerNode(
     const ros::NodeHandle& node,
     const ros::NodeHandle& private_node,
@@ -83,8 +57,8 @@ OrientationControllerNode::OrientationControllerNode(
       options_(options),
       joint_reader_(jointNames(design)),
       controller_(design, options.controller),
-      statistics_(1.0 / options.rate),
-      diagnostics_(node, private_node, design) {
+      diagnostics_(node, private_node, design),
+      control_(1, &joint_queue_) {
   ros::NodeHandle handle = node;
   ros::NodeHandle private_handle = private_node;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
@@ -95,13 +69,6 @@ OrientationControllerNode::OrientationControllerNode(
       1,
       [this](const msg::ActuatorParameters::ConstPtr& message) { receiveParameters(*message); },
       tellRefusal("parameters")));
-  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
-      handle,
-      "joint_states",
-      kQueueLength,
-      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
-      tellRefusal("joint_states"),
-      at_once));
   subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
       handle,
       "orientation_target",
@@ -121,15 +88,24 @@ OrientationControllerNode::OrientationControllerNode(
       ros::WallDuration(kStatusPeriod),
       [this](const ros::WallTimerEvent& /*event*/) { tellMotion(); });
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
-  thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
+  // Of readings that wait, the newest alone is of use.
+  handle.setCallbackQueue(&joint_queue_);
+  joint_subscriber_ = subscribeChecked<sensor_msgs::JointState>(
+      handle,
+      "joint_states",
+      1,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
+      tellRefusal("joint_states"),
+      at_once);
+  control_.start();
+  watch_ = std::make_unique<PeriodicThread>(kWatchRate, [this] { watch(); });
 }
 
 OrientationControllerNode::~OrientationControllerNode() {
-  thread_->stop();
-  if (was_active_) {
-    controller_.disable();
-    publish(controller_.update(0));
-  }
+  watch_->stop();
+  control_.stop();
+  controller_.disable();
+  commandEnd();
 }
 
 void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters& message) {
@@ -152,18 +128,27 @@ void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters&
 }
 
 void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& message) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const std::optional<JointMeasurement> joints = joint_reader_.read(message);
+  const std::lock_guard<std::mutex> lock(mutex_);
   try {
     if (!joints) {
       throw DataError("a joint is missing.");
     }
-    if (controller_.receive(*joints)) {
-      last_reading_ = steadySeconds();
+    if (!controller_.receive(*joints)) {
+      return;
     }
   } catch (const Error& error) {
     last_refusal_ = "joint_states: " + printable(error.what());
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
+    return;
+  }
+  const double interval = last_stamp_ == 0 ? 0.0 : secondsBetween(last_stamp_, joints->stamp);
+  last_stamp_ = joints->stamp;
+  last_reading_ = steadySeconds();
+  try {
+    command(interval);
+  } catch (const std::exception& error) {
+    fail(error.what());
   }
 }
 
@@ -197,6 +182,7 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
       response.message = "The coils hold the rotor, and turn it to orientation_target.";
     } else {
       controller_.disable();
+      commandEnd();
       response.message = "The coils have no current.";
     }
     response.success = 1;
@@ -235,6 +221,7 @@ bool OrientationControllerNode::endMotion(std_srvs::Trigger::Request& /*request*
                                           std_srvs::Trigger::Response& response) {
   const std::lock_guard<std::mutex> lock(mutex_);
   controller_.endMotion();
+  commandEnd();
   response.success = 1;
   response.message = "No motion goes on, or it slows down to its end.";
   return true;
@@ -266,40 +253,60 @@ void OrientationControllerNode::tellMotion() {
   motion_publisher_.publish(message);
 }
 
-void OrientationControllerNode::beat() {
+void OrientationControllerNode::command(double reading_interval) {
+  if (controller_.state() != ControlState::kActive) {
+    return;
+  }
+  CommandTime time;
+  time.begin = steadySeconds();
+  // A flood of readings must not become one of commands.
+  if (time.begin - last_command_ < kLeastPeriod) {
+    return;
+  }
+  last_command_ = time.begin;
+  const Stamp now = stampFromRos(ros::Time::now());
+  const Eigen::VectorXd& currents = controller_.update(now);
+  if (controller_.state() == ControlState::kActive) {
+    publish(currents);
+    time.end = steadySeconds();
+    time.reading_age = secondsBetween(last_stamp_, now);
+    time.reading_interval = reading_interval;
+    timing_.add(time);
+  }
+  commandEnd();
+}
+
+// The clock of ROS may stand still: a paused replay must not keep the currents on.
+void OrientationControllerNode::watch() {
   const std::lock_guard<std::mutex> lock(mutex_);
   try {
-    cycle();
+    if (steadySeconds() - last_reading_ > options_.controller.largest_age) {
+      controller_.stop("no joint angles arrive");
+    }
+    commandEnd();
   } catch (const std::exception& error) {
-    ROS_FATAL_STREAM("The control failed; the node ends: " << error.what());
-    controller_.disable();
-    publish(controller_.update(0));
-    was_active_ = false;
-    ros::requestShutdown();
+    fail(error.what());
   }
 }
 
-void OrientationControllerNode::cycle() {
-  const double begin = steadySeconds();
-  const ros::Time now = ros::Time::now();
-  // The clock of ROS may stand still: a paused replay must not keep the currents on.
-  if (begin - last_reading_ > options_.controller.largest_age) {
-    controller_.stop("no joint angles arrive");
+void OrientationControllerNode::commandEnd() {
+  if (!was_active_ || controller_.state() == ControlState::kActive) {
+    return;
   }
-  const Eigen::VectorXd& currents = controller_.update(stampFromRos(now));
-  const bool is_active = controller_.state() == ControlState::kActive;
-  // The end of control is a command as well: zero, once.
-  if (is_active || was_active_) {
-    statistics_.add(begin, steadySeconds());
-    publish(currents);
-  } else {
-    statistics_.interrupt();
-  }
-  if (was_active_ && controller_.state() == ControlState::kStopped) {
+  was_active_ = false;
+  timing_.interrupt();
+  publish(controller_.update(0));
+  if (controller_.state() == ControlState::kStopped) {
     ROS_ERROR_STREAM("The control has stopped, the currents are zero: "
                      << controller_.stopReason() << ". Call enable to go on.");
   }
-  was_active_ = is_active;
+}
+
+void OrientationControllerNode::fail(const std::string& reason) {
+  ROS_FATAL_STREAM("The control failed; the node ends: " << reason);
+  controller_.disable();
+  commandEnd();
+  ros::requestShutdown();
 }
 
 // The coil driver judges commands by the wall clock alone.
@@ -325,10 +332,25 @@ void OrientationControllerNode::diagnose(DiagnosticStatus& status) {
       status.summary(DiagnosticStatus::ERROR, "stopped: " + controller_.stopReason());
       break;
   }
-  statistics_.report(status);
+  diagnoseTiming(status);
   status.add("motion", motionPhaseName(told_phase_));
   status.add("tracking error [mrad]", 1e3 * controller_.trackingError());
+  status.add("load made up for [mN m]", 1e3 * controller_.disturbance().norm());
   addTextOrNone(status, "last refusal", last_refusal_);
+}
+
+void OrientationControllerNode::diagnoseTiming(DiagnosticStatus& status) {
+  const TimingReport report = timing_.take();
+  status.add("commands", report.commands);
+  status.add("rate [Hz]", report.rate);
+  status.add("jitter of the period [us]", kMicro * report.jitter);
+  status.add("longest period [us]", kMicro * report.longest_period);
+  status.add("mean age of the reading [us]", kMicro * report.mean_age);
+  status.add("largest age of the reading [us]", kMicro * report.largest_age);
+  status.add("mean computation [us]", kMicro * report.mean_computation);
+  status.add("longest computation [us]", kMicro * report.longest_computation);
+  status.add("commands since start", timing_.commands());
+  status.add("of them on an old reading", timing_.oldReadings());
 }
 
 }  // namespace sac

@@ -21,6 +21,13 @@ void readRotor(const YamlMap& map, RigidRotor& rotor) {
   }
 }
 
+void readDisturbance(const YamlMap& map, DisturbanceObserverOptions& disturbance) {
+  disturbance.bandwidth =
+      map.number("bandwidth", disturbanceBandwidthRange(), disturbance.bandwidth);
+  disturbance.largest_torque =
+      map.number("largest_torque", ValueRange::positive("N m"), disturbance.largest_torque);
+}
+
 void readReference(const YamlMap& map, OrientationReferenceOptions& reference) {
   const auto positive = [&](const char* key, const char* unit, double& value) {
     value = map.number(key, ValueRange::positive(unit), value);
@@ -42,7 +49,6 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
   const auto positive = [](const YamlMap& from, const char* key, const char* unit, double& value) {
     value = from.number(key, ValueRange::positive(unit), value);
   };
-  options.rate = map.number("rate", ValueRange::closed(10.0, 4000.0, "Hz"), options.rate);
   if (map.has("frames")) {
     options.stator_frame = map.map("frames").nonEmptyText("stator");
   }
@@ -59,6 +65,9 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
     const YamlMap gains = map.map("motion_gains");
     positive(gains, "proportional", "1/s2", controller.motion_gains.proportional);
     positive(gains, "derivative", "1/s", controller.motion_gains.derivative);
+  }
+  if (map.has("disturbance")) {
+    readDisturbance(map.map("disturbance"), controller.disturbance);
   }
   positive(map, "current_limit", "A", controller.allocation.current_limit);
   positive(map, "least_singular_value", "N m/A", controller.allocation.least_singular_value);

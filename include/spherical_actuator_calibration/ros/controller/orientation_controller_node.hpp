@@ -1,14 +1,16 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <geometry_msgs/QuaternionStamped.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
+#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
@@ -18,6 +20,7 @@
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/FollowMotion.h"
 #include "spherical_actuator_calibration/MotionStatus.h"
+#include "spherical_actuator_calibration/control/control_timing.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -27,33 +30,13 @@
 
 namespace sac {
 
-/// How long the cycles of a control loop take and how steadily they come, since the last report.
-class CycleStatistics {
- public:
-  /// `period` [s] that the cycles should have.
-  explicit CycleStatistics(double period) : period_(period) {}
-
-  /// A cycle that began and ended then, by a clock that never jumps [s].
-  void add(double begin, double end);
-  /// Writes what was gathered into a diagnostic status, and begins anew. Missed cycles add up.
-  void report(DiagnosticStatus& status);
-  /// The next cycle does not follow the last one.
-  void interrupt() { last_begin_ = 0.0; }
-
- private:
-  double period_;
-  double last_begin_ = 0.0;  ///< 0: none
-  std::size_t cycles_ = 0;
-  std::size_t missed_ = 0;
-  double total_ = 0.0;           ///< of computation [s]
-  double longest_ = 0.0;         ///< computation [s]
-  double largest_jitter_ = 0.0;  ///< deviation of an interval from the period [s]
-};
-
 /// Turns the rotor to the orientations of the topic `orientation_target`: `joint_states` and the
 /// latched `parameters` in, `coil_command` out. No command goes out before the private service
 /// `enable` is called with true, nor after a safe stop (OrientationController tells when) until it
 /// is called again; the coil driver's watchdog guards against the death of this node.
+///
+/// Every joint reading that arrives makes one command, in a thread that serves nothing else. Where
+/// none comes for the largest age that is allowed, by a clock that nobody can stop, it stops.
 ///
 /// Enabled, it follows a motion plan instead: the private service `follow_motion` begins it,
 /// `end_motion` slows it down to its end before its time, and the private topic `motion_status`
@@ -77,25 +60,34 @@ class OrientationControllerNode {
   bool followMotion(msg::FollowMotion::Request& request, msg::FollowMotion::Response& response);
   bool endMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void tellMotion();
-  void beat();
-  /// One cycle of control. Precondition: mutex_ is held.
-  void cycle();
+  /// One cycle of control on the reading that has come. Precondition: mutex_ is held.
+  void command(double reading_interval);
+  /// Whether readings still come.
+  void watch();
+  /// The end of control is a command as well: zero, once. Precondition: mutex_ is held.
+  void commandEnd();
   void publish(const Eigen::VectorXd& currents);
+  /// The thread of the control must not end the program with currents on. Precondition: mutex_ is
+  /// held.
+  void fail(const std::string& reason);
   void diagnose(DiagnosticStatus& status);
+  /// Precondition: mutex_ is held.
+  void diagnoseTiming(DiagnosticStatus& status);
 
   const Actuator design_;
   const OrientationControllerNodeOptions options_;
-  JointStateReader joint_reader_;
-  msg::CoilCurrents message_;  ///< of the thread of the cycles
+  JointStateReader joint_reader_;  ///< of the thread of the joint readings
 
   std::mutex mutex_;  ///< of all below, up to the publisher
+  msg::CoilCurrents message_;
   OrientationController controller_;
-  CycleStatistics statistics_;
+  ControlTiming timing_;
   std::string last_refusal_;
   bool was_active_ = false;
   MotionPhase told_phase_ = MotionPhase::kNone;
-  double last_reading_ =
-      0.0;  ///< when joint angles were last accepted, by a clock that never jumps
+  Stamp last_stamp_ = 0;       ///< of the newest joint angles; 0: none
+  double last_reading_ = 0.0;  ///< when they came, by a clock that never jumps [s]
+  double last_command_ = 0.0;  ///< likewise [s]
 
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
@@ -103,7 +95,11 @@ class OrientationControllerNode {
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer motion_timer_;
   NodeDiagnostics diagnostics_;
-  std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
+  ros::CallbackQueue joint_queue_;  ///< of joint readings alone: they wait for no service
+  ros::Subscriber joint_subscriber_;
+  // Last, so that they end first.
+  ros::AsyncSpinner control_;
+  std::unique_ptr<PeriodicThread> watch_;
 };
 
 }  // namespace sac

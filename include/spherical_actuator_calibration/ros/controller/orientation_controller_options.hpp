@@ -11,7 +11,6 @@ namespace sac {
 /// Everything about the controller node that is a matter of choice.
 struct OrientationControllerNodeOptions {
   OrientationControllerOptions controller;
-  double rate = 1000.0;                 ///< of the control cycles [Hz]
   std::string stator_frame = "stator";  ///< that targets must be in
 };
 
