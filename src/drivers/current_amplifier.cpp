@@ -175,8 +175,15 @@ void CurrentAmplifier::write(const Eigen::VectorXd& currents,
     const std::vector<std::uint16_t> number = field.encode(current);
     words.insert(words.end(), number.begin(), number.end());
   }
+  const bool is_given = options_.heartbeat_address && heartbeat == Heartbeat::kGiven;
+  const int next = field.address + static_cast<int>(words.size());
+  // A heartbeat that follows the setpoints goes with them: each request is a round trip.
+  const bool is_next = is_given && *options_.heartbeat_address == next;
+  if (is_next) {
+    words.push_back(++heartbeat_);
+  }
   writeSetpoints(words);
-  if (options_.heartbeat_address && heartbeat == Heartbeat::kGiven) {
+  if (is_given && !is_next) {
     transport_.write(field.unit, *options_.heartbeat_address, {++heartbeat_});
   }
   if (options_.enable_address && stages_ != stages) {

@@ -45,6 +45,40 @@ TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
   EXPECT_EQ(amplifier.read(), currents);
 }
 
+TEST(CurrentAmplifier, WritesAHeartbeatThatFollowsTheSetpointsWithThem) {
+  CurrentAmplifierOptions options = shippedOptions();
+  options.enable_address.reset();
+  ScriptedTransport bus;
+  bus.open();
+  const auto requests = [&](int heartbeat_address, Heartbeat heartbeat) {
+    options.heartbeat_address = heartbeat_address;
+    CurrentAmplifier amplifier(options, 24, bus);
+    const std::size_t before = bus.writes().size();
+    amplifier.write(Eigen::VectorXd::Constant(24, 0.5), OutputStages::kOn, heartbeat);
+    EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 23), 500);
+    return bus.writes().size() - before;
+  };
+  EXPECT_EQ(requests(101, Heartbeat::kGiven), 2U);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 24), 0);
+  EXPECT_EQ(requests(24, Heartbeat::kWithheld), 1U);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 24), 0);
+  EXPECT_EQ(requests(24, Heartbeat::kGiven), 1U);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 24), 1);
+}
+
+TEST(CurrentAmplifier, WritesAHeartbeatThatNoRequestHoldsBesideTheSetpoints) {
+  CurrentAmplifierOptions options = shippedOptions();
+  options.enable_address.reset();
+  options.tripped.reset();
+  options.heartbeat_address = 123;
+  ScriptedTransport bus;
+  bus.open();
+  CurrentAmplifier amplifier(options, 123, bus);
+  amplifier.write(Eigen::VectorXd::Zero(123), OutputStages::kOn);
+  EXPECT_EQ(bus.writes().size(), 2U);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 123), 1);
+}
+
 TEST(CurrentAmplifier, WritesNothingOfACommandThatDoesNotFit) {
   CurrentAmplifierOptions options = shippedOptions();
   ScriptedTransport bus;
