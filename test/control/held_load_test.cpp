@@ -179,6 +179,23 @@ TEST_F(HeldLoadTest, FindsNoLoadWhereTheCurrentsAreAtTheirLimit) {
   EXPECT_LT(controller_->disturbance().norm(), 1e-3);
 }
 
+// To the observer the fixture is a load as large as it looks for.
+TEST_F(HeldLoadTest, ComesBackWhenAFixtureLetsGoThatHeldItAwayFromItsTarget) {
+  start(scenarios::paperNominal(), scenarios::paperNominal());
+  controller_->setTarget(now_, rotationExp({0.0, 0.0, 0.38}));
+  const Eigen::Vector3d held = rotor_->position();
+  for (int n = 0; n < 3000; ++n) {
+    step();
+    rotor_->release(held);
+  }
+  ASSERT_EQ(controller_->state(), ControlState::kActive) << controller_->stopReason();
+  EXPECT_NEAR(controller_->disturbance().norm(), options_.disturbance.largest_torque, 1e-9);
+  const double away = controller_->trackingError();
+  EXPECT_GT(away, 0.1);
+  EXPECT_LT(largestErrorOver(2.0), away + 1e-3);
+  EXPECT_LT(largestErrorOver(1.0), kWanted);
+}
+
 TEST_F(HeldLoadTest, BeginsAnewAfterEveryEnd) {
   for (const bool is_stop : {false, true}) {
     start(scenarios::paperNominal(), scenarios::paperNominal());
