@@ -292,8 +292,8 @@ TorqueCurve::Safe TorqueCurve::safe(double kappa, double sin_psi) const {
     return {k1_ + p2 * (order_2 + p2 * order_4),
             -2.0 * order_2 - p2 * (order_2 / 3.0 + 4.0 * order_4)};
   }
-  const double f = value(psi);
-  const double df = derivative(psi);
+  const bool is_described = psi >= blend_start_ && psi <= support_begin_;
+  const auto [f, df] = is_described ? described(psi) : Point{value(psi), derivative(psi)};
   const double inverse_sine = 1.0 / sin_psi;
   return {f * inverse_sine,
           -(df * sin_psi - f * kappa) * inverse_sine * inverse_sine * inverse_sine};

@@ -37,29 +37,40 @@ void count(const ObservationResidual& residual, Group& group) {
   }
 }
 
-/// Per pole: whether the drawing lets it pull noticeably in a sample.
-std::vector<bool> pullingPoles(const CalibrationModel& model,
-                               const Sample& sample,
-                               const std::vector<Excitation>& excitations,
-                               double noticeable) {
-  const Actuator& nominal = model.space().nominal();
-  const TorqueGeometry geometry = torqueGeometry(nominal);
-  const Eigen::Matrix3d R_rotor_stator =
-      rotorOrientation(jointGeometry(nominal), sample.joint_position).transpose();
-  std::vector<bool> pulling(nominal.poles.size(), false);
-  for (const Excitation& excitation : excitations) {
-    const Eigen::Vector3d coil =
-        R_rotor_stator * geometry.coils_stator.col(static_cast<Eigen::Index>(excitation.coil));
-    for (std::size_t i = 0; i < pulling.size(); ++i) {
-      const Eigen::Vector3d pole = geometry.poles_rotor.col(static_cast<Eigen::Index>(i));
-      pulling[i] = pulling[i] ||
-                   (interacts(model.curve(), pole, coil) &&
-                    std::abs(excitation.current) * pairTorque(model.curve(), pole, coil).norm() >
-                        noticeable);
+/// The drawing, by which poles are told to pull.
+class Drawing {
+ public:
+  explicit Drawing(const CalibrationModel& model)
+      : curve_(model.hasTorqueModel() ? &model.curve() : nullptr),
+        joints_(jointGeometry(model.space().nominal())),
+        geometry_(torqueGeometry(model.space().nominal())) {}
+
+  /// Per pole: whether the drawing lets it pull noticeably in a sample. `noticeable`: [N·m].
+  std::vector<bool> pullingPoles(const Sample& sample,
+                                 const std::vector<Excitation>& excitations,
+                                 double noticeable) const {
+    const Eigen::Matrix3d R_rotor_stator =
+        rotorOrientation(joints_, sample.joint_position).transpose();
+    std::vector<bool> pulling(static_cast<std::size_t>(geometry_.poles_rotor.cols()), false);
+    for (const Excitation& excitation : excitations) {
+      const Eigen::Vector3d coil =
+          R_rotor_stator * geometry_.coils_stator.col(static_cast<Eigen::Index>(excitation.coil));
+      for (std::size_t i = 0; i < pulling.size(); ++i) {
+        const Eigen::Vector3d pole = geometry_.poles_rotor.col(static_cast<Eigen::Index>(i));
+        pulling[i] =
+            pulling[i] ||
+            (interacts(*curve_, pole, coil) &&
+             std::abs(excitation.current) * pairTorque(*curve_, pole, coil).norm() > noticeable);
+      }
     }
+    return pulling;
   }
-  return pulling;
-}
+
+ private:
+  const TorqueCurve* curve_;  ///< null: no torque model, and no torques
+  JointGeometry joints_;
+  TorqueGeometry geometry_;
+};
 
 /// All observations first, then streams, coils and poles.
 std::vector<Group> groupsOf(const EstimationProblem& problem,
@@ -74,6 +85,7 @@ std::vector<Group> groupsOf(const EstimationProblem& problem,
   for (std::size_t i = 0; i < space.poles(); ++i) {
     groups.push_back({"the torques on pole " + std::to_string(numberOf(i))});
   }
+  const Drawing drawing(*problem.model);
   const std::size_t first_coil = 3;
   const std::size_t first_pole = first_coil + space.coils();
   for (const ObservationResidual& residual : estimate.residuals) {
@@ -91,7 +103,7 @@ std::vector<Group> groupsOf(const EstimationProblem& problem,
     const double stddev =
         sample.torque_stddev > 0.0 ? sample.torque_stddev : options.default_torque_stddev;
     const std::vector<bool> pulling =
-        pullingPoles(*problem.model, sample, excitations, kNoticeable * stddev);
+        drawing.pullingPoles(sample, excitations, kNoticeable * stddev);
     for (std::size_t i = 0; i < pulling.size(); ++i) {
       if (pulling[i]) {
         count(residual, groups[first_pole + i]);

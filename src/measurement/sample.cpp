@@ -12,31 +12,48 @@ namespace {
 
 constexpr double kRotationTolerance = 1e-6;
 
-/// Checks the fields of one sample; messages name it.
+/// Checks the fields of one sample; messages name it. Words are made of what is wrong alone: most
+/// samples are right, and there are many.
 class SampleCheck {
  public:
-  explicit SampleCheck(const Sample& sample)
-      : name_("Sample " + std::to_string(sample.id) + ": ") {}
+  explicit SampleCheck(const Sample& sample) : id_(sample.id) {}
 
-  void require(bool condition, const std::string& sentence) const {
+  void require(bool condition, const char* sentence) const {
     if (!condition) {
-      throw DataError(name_ + sentence);
+      fail(sentence);
     }
   }
 
   /// Where no uncertainty is stated, another one is assumed for the whole.
-  void requirePart(double value, double whole, const std::string& field) const {
+  void requirePart(double value, double whole, const char* field) const {
     requireUncertainty(value, field);
-    require(value <= whole || whole == 0.0, field + " exceeds the whole uncertainty.");
+    if (!(value <= whole || whole == 0.0)) {
+      fail(std::string(field) + " exceeds the whole uncertainty.");
+    }
   }
 
-  void requireUncertainty(double value, const std::string& field) const {
-    require(std::isfinite(value), field + " is not finite.");
-    require(value >= 0.0, field + " is negative.");
+  void requireUncertainty(double value, const char* field) const {
+    if (!std::isfinite(value)) {
+      fail(std::string(field) + " is not finite.");
+    }
+    if (value < 0.0) {
+      fail(std::string(field) + " is negative.");
+    }
+  }
+
+  void requireCurrents(const Eigen::VectorXd& current, std::size_t coils) const {
+    if (static_cast<std::size_t>(current.size()) != coils) {
+      fail("current has " + std::to_string(current.size()) + " entries, but the actuator has " +
+           std::to_string(coils) + " coils.");
+    }
   }
 
  private:
-  std::string name_;
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw DataError("Sample " + std::to_string(id_) + ": " + sentence);
+  }
+
+  std::uint32_t id_;
 };
 
 bool isRotation(const Eigen::Matrix3d& R) {
@@ -64,9 +81,7 @@ void validate(const Sample& sample, std::size_t coils) {
     check.require(sample.torque.allFinite(), "torque is not finite.");
     check.requireUncertainty(sample.torque_stddev, "torque_stddev");
     check.requirePart(sample.torque_shared_stddev, sample.torque_stddev, "torque_shared_stddev");
-    check.require(static_cast<std::size_t>(sample.current.size()) == coils,
-                  "current has " + std::to_string(sample.current.size()) +
-                      " entries, but the actuator has " + std::to_string(coils) + " coils.");
+    check.requireCurrents(sample.current, coils);
   }
 }
 
