@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -19,30 +20,28 @@
 namespace sac {
 namespace {
 
-/// All torques at x, as they depend on single axes.
+/// All torques at x, as they depend on single axes. Of each axis it lists those that the axis can
+/// change while it stays `within` an angle of the nominal one [rad]: the others say nothing of
+/// where it is. What such a torque is, is worked out for the few that are scanned alone.
 class ScannedModel {
  public:
+  /// Keeps references. `within`: by the first coordinate of an axis.
+  template <typename Within>
   ScannedModel(const EstimationProblem& problem,
                const WeightedObservations& observations,
-               const Eigen::VectorXd& x);
+               const Eigen::VectorXd& x,
+               const Within& within);
 
   const TorqueCurve& curve() const { return curve_; }
-  /// Those that the axis can change while it stays within an angle of the nominal one [rad]: the
-  /// others say nothing of where it is.
-  ScannedTorques torquesOfPole(std::size_t pole, double within) const;
-  ScannedTorques torquesOfCoil(std::size_t coil, double within) const;
+  ScannedTorques torquesOfPole(std::size_t pole) const;
+  ScannedTorques torquesOfCoil(std::size_t coil) const;
 
  private:
-  struct Torque {
-    Eigen::Vector3d residual;
-    Eigen::Matrix3d R_rotor_stator;
-    Eigen::Matrix3d whitening;
-    const std::vector<Excitation>* excitations;
-  };
-  /// One coil of one torque.
-  struct Exerted {
-    std::size_t torque;
-    double current;  ///< [A]
+  /// A pole or coil where it is drawn, and the torques that it can change.
+  struct Scanned {
+    Eigen::Vector3d nominal;  ///< rotor frame for poles, stator frame for coils
+    double cos_reach;         ///< of the angle to a partner beyond which it changes nothing
+    std::vector<std::uint32_t> torques;  ///< indices of observations
   };
 
   double weight(std::size_t pole, std::size_t coil, double current) const {
@@ -50,22 +49,30 @@ class ScannedModel {
     return current * nominal.coils[coil].gain * nominal.poles[pole].polarity *
            nominal.poles[pole].gain * effects_.strength(pole, coil);
   }
-  /// Cosine of the angle between two axes beyond which they do not interact, wherever one of them
-  /// is within an angle [rad].
-  double cosReach(double within) const {
-    return std::cos(std::min(kPi, curve_.supportEnd() + within));
+  Scanned scanned(const Eigen::Vector3d& nominal, double within) const {
+    return {nominal, std::cos(std::min(kPi, curve_.supportEnd() + within)), {}};
+  }
+  void list(std::size_t observation);
+  Eigen::Matrix3d rotorStator(std::size_t observation) const;
+  ScannedTorque torque(std::size_t observation, const Eigen::Matrix3d& to_rotor) const;
+  const std::vector<Excitation>& excitations(std::size_t observation) const {
+    return observations_.evaluator().excitations(observation);
   }
   Eigen::Vector3d torqueOf(const ScannedPartner& partner, const Eigen::Vector3d& pole_rotor) const {
     return partner.weight * pairTorque(curve_, pole_rotor, partner.axis_rotor);
   }
 
+  const EstimationProblem& problem_;
+  const WeightedObservations& observations_;
   const ParameterSpace& space_;
   EffectsAt effects_;
   TorqueCurve curve_;
+  JointGeometry joints_;
+  std::vector<Eigen::Vector3d> residuals_;  ///< whitened
   std::vector<Eigen::Vector3d> poles_rotor_;
   std::vector<Eigen::Vector3d> coils_stator_;
-  std::vector<Torque> torques_;
-  std::vector<std::vector<Exerted>> by_coil_;
+  std::vector<Scanned> scanned_poles_;
+  std::vector<Scanned> scanned_coils_;
 };
 
 /// So many of them, spread over all.
@@ -99,63 +106,81 @@ TorqueCurve curveAt(const CalibrationModel& model, const EffectsAt& effects) {
   return changed ? *changed : model.curve();
 }
 
+template <typename Within>
 ScannedModel::ScannedModel(const EstimationProblem& problem,
                            const WeightedObservations& observations,
-                           const Eigen::VectorXd& x)
-    : space_(problem.model->space()),
+                           const Eigen::VectorXd& x,
+                           const Within& within)
+    : problem_(problem),
+      observations_(observations),
+      space_(problem.model->space()),
       effects_(space_, x),
       curve_(curveAt(*problem.model, effects_)),
-      by_coil_(space_.coils()) {
+      joints_(jointGeometry(space_.actuatorAt(x))),
+      residuals_(observations.residuals(x)) {
   for (std::size_t i = 0; i < space_.poles(); ++i) {
     const Eigen::Index at = space_.pole(i);
     poles_rotor_.emplace_back(space_.poleChart(i).axis(x[at], x[at + 1]));
+    scanned_poles_.push_back(scanned(space_.poleChart(i).axis(0.0, 0.0), within(at)));
   }
   for (std::size_t j = 0; j < space_.coils(); ++j) {
     const Eigen::Index at = space_.coil(j);
     coils_stator_.emplace_back(space_.coilChart(j).axis(x[at], x[at + 1]));
+    scanned_coils_.push_back(scanned(space_.coilChart(j).axis(0.0, 0.0), within(at)));
   }
-  const JointGeometry joints = jointGeometry(space_.actuatorAt(x));
-  const std::vector<Eigen::Vector3d> residuals = observations.residuals(x);
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    if (problem.observations[n].quantity != Quantity::kTorque) {
-      continue;
+    if (problem.observations[n].quantity == Quantity::kTorque) {
+      list(n);
     }
-    const Eigen::Vector3d& reading =
-        (*problem.samples)[problem.observations[n].sample].joint_position;
-    const Eigen::Vector3d q = reading + effects_.readingColumns(reading) * effects_.values();
-    const Eigen::Matrix3d& W = observations.whitening()[n];
-    for (const Excitation& excitation : observations.evaluator().excitations(n)) {
-      by_coil_[excitation.coil].push_back({torques_.size(), excitation.current});
-    }
-    torques_.push_back({W.partialPivLu().solve(residuals[n]),
-                        rotorOrientation(joints, q).transpose(),
-                        W,
-                        &observations.evaluator().excitations(n)});
   }
 }
 
-ScannedTorques ScannedModel::torquesOfPole(std::size_t pole, double within) const {
-  const double cos_reach = cosReach(within);
-  const Eigen::Vector3d nominal = space_.poleChart(pole).axis(0.0, 0.0);
-  const auto is_near = [&](const Torque& torque, const Excitation& excitation) {
-    return nominal.dot(torque.R_rotor_stator * coils_stator_[excitation.coil]) > cos_reach;
-  };
-  std::vector<const Torque*> near;
-  for (const Torque& torque : torques_) {
-    if (std::any_of(torque.excitations->begin(), torque.excitations->end(), [&](const auto& coil) {
-          return is_near(torque, coil);
+Eigen::Matrix3d ScannedModel::rotorStator(std::size_t observation) const {
+  const Sample& sample = (*problem_.samples)[problem_.observations[observation].sample];
+  const Eigen::Vector3d& reading = sample.joint_position;
+  const Eigen::Vector3d q = reading + effects_.readingColumns(reading) * effects_.values();
+  return rotorOrientation(joints_, q).transpose();
+}
+
+/// Lists a torque with the axes that can change it.
+void ScannedModel::list(std::size_t observation) {
+  const auto index = static_cast<std::uint32_t>(observation);
+  const Eigen::Matrix3d R_rotor_stator = rotorStator(observation);
+  for (const Excitation& excitation : excitations(observation)) {
+    Scanned& own = scanned_coils_[excitation.coil];
+    const Eigen::Vector3d nominal = R_rotor_stator * own.nominal;
+    if (std::any_of(poles_rotor_.begin(), poles_rotor_.end(), [&](const Eigen::Vector3d& pole) {
+          return nominal.dot(pole) > own.cos_reach;
         })) {
-      near.push_back(&torque);
+      own.torques.push_back(index);
+    }
+    const Eigen::Vector3d coil = R_rotor_stator * coils_stator_[excitation.coil];
+    for (Scanned& pole : scanned_poles_) {
+      const bool is_listed = !pole.torques.empty() && pole.torques.back() == index;
+      if (!is_listed && pole.nominal.dot(coil) > pole.cos_reach) {
+        pole.torques.push_back(index);
+      }
     }
   }
-  const std::vector<const Torque*> chosen = spread(near, kMostTorques);
-  ScannedTorques result{{}, standsFor(near.size(), chosen.size())};
-  for (const Torque* torque : chosen) {
-    ScannedTorque scanned{torque->residual, Eigen::Matrix3d::Identity(), torque->whitening, {}};
-    for (const Excitation& excitation : *torque->excitations) {
-      if (is_near(*torque, excitation)) {
-        const ScannedPartner partner{torque->R_rotor_stator * coils_stator_[excitation.coil],
-                                     weight(pole, excitation.coil, excitation.current)};
+}
+
+/// As far as it does not depend on which axis is scanned.
+ScannedTorque ScannedModel::torque(std::size_t observation, const Eigen::Matrix3d& to_rotor) const {
+  const Eigen::Matrix3d& W = observations_.whitening()[observation];
+  return {W.partialPivLu().solve(residuals_[observation]), to_rotor, W, {}};
+}
+
+ScannedTorques ScannedModel::torquesOfPole(std::size_t pole) const {
+  const Scanned& own = scanned_poles_[pole];
+  const std::vector<std::uint32_t> chosen = spread(own.torques, kMostTorques);
+  ScannedTorques result{{}, standsFor(own.torques.size(), chosen.size())};
+  for (const std::size_t n : chosen) {
+    const Eigen::Matrix3d R_rotor_stator = rotorStator(n);
+    ScannedTorque scanned = torque(n, Eigen::Matrix3d::Identity());
+    for (const Excitation& excitation : excitations(n)) {
+      const ScannedPartner partner{R_rotor_stator * coils_stator_[excitation.coil],
+                                   weight(pole, excitation.coil, excitation.current)};
+      if (own.nominal.dot(partner.axis_rotor) > own.cos_reach) {
         scanned.rest += torqueOf(partner, poles_rotor_[pole]);
         scanned.partners.push_back(partner);
       }
@@ -165,30 +190,22 @@ ScannedTorques ScannedModel::torquesOfPole(std::size_t pole, double within) cons
   return result;
 }
 
-ScannedTorques ScannedModel::torquesOfCoil(std::size_t coil, double within) const {
-  const double cos_reach = cosReach(within);
-  const Eigen::Vector3d nominal = space_.coilChart(coil).axis(0.0, 0.0);
-  const auto is_near = [&](const Exerted& exerted, std::size_t pole) {
-    return (torques_[exerted.torque].R_rotor_stator * nominal).dot(poles_rotor_[pole]) > cos_reach;
-  };
-  std::vector<Exerted> near;
-  for (const Exerted& exerted : by_coil_[coil]) {
+ScannedTorques ScannedModel::torquesOfCoil(std::size_t coil) const {
+  const Scanned& own = scanned_coils_[coil];
+  const std::vector<std::uint32_t> chosen = spread(own.torques, kMostTorques);
+  ScannedTorques result{{}, standsFor(own.torques.size(), chosen.size())};
+  for (const std::size_t n : chosen) {
+    const Eigen::Matrix3d R_rotor_stator = rotorStator(n);
+    ScannedTorque scanned = torque(n, R_rotor_stator);
+    const ScannedPartner self{R_rotor_stator * coils_stator_[coil], 1.0};
+    const Eigen::Vector3d nominal = R_rotor_stator * own.nominal;
+    const auto excitation =
+        std::find_if(excitations(n).begin(), excitations(n).end(), [coil](const Excitation& each) {
+          return each.coil == coil;
+        });
     for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {
-      if (is_near(exerted, i)) {
-        near.push_back(exerted);
-        break;
-      }
-    }
-  }
-  const std::vector<Exerted> chosen = spread(near, kMostTorques);
-  ScannedTorques result{{}, standsFor(near.size(), chosen.size())};
-  for (const Exerted& exerted : chosen) {
-    const Torque& torque = torques_[exerted.torque];
-    ScannedTorque scanned{torque.residual, torque.R_rotor_stator, torque.whitening, {}};
-    const ScannedPartner self{torque.R_rotor_stator * coils_stator_[coil], 1.0};
-    for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {
-      if (is_near(exerted, i)) {
-        scanned.partners.push_back({poles_rotor_[i], weight(i, coil, exerted.current)});
+      if (nominal.dot(poles_rotor_[i]) > own.cos_reach) {
+        scanned.partners.push_back({poles_rotor_[i], weight(i, coil, excitation->current)});
         scanned.rest += scanned.partners.back().weight * torqueOf(self, poles_rotor_[i]);
       }
     }
@@ -251,12 +268,12 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
   if (!problem.model->hasTorqueModel()) {
     return modes;
   }
-  const ScannedModel model(problem, observations, x);
-  const CoarseCurve coarse_curve(model.curve());
   // The present place may be farther off than the scan looks.
   const auto within = [&](Eigen::Index first) {
     return std::max(AxisScan::reach(search.range), 1.1 * x.segment<2>(first).norm());
   };
+  const ScannedModel model(problem, observations, x, within);
+  const CoarseCurve coarse_curve(model.curve());
   // Few torques may fit elsewhere as well by chance. The prior is no judge: an earlier cycle may
   // have left it in the wrong place.
   const DrawingDistance distance(space, x, search.tolerance);
@@ -279,13 +296,13 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
   for (std::size_t i = 0; i < space.poles(); ++i) {
     if (is_estimated(space.pole(i))) {
       const Eigen::Index first = space.pole(i);
-      scan(first, space.poleChart(i), true, model.torquesOfPole(i, within(first)));
+      scan(first, space.poleChart(i), true, model.torquesOfPole(i));
     }
   }
   for (std::size_t j = 0; j < space.coils(); ++j) {
     if (is_estimated(space.coil(j))) {
       const Eigen::Index first = space.coil(j);
-      scan(first, space.coilChart(j), false, model.torquesOfCoil(j, within(first)));
+      scan(first, space.coilChart(j), false, model.torquesOfCoil(j));
     }
   }
   return modes;

@@ -65,7 +65,9 @@ class Conclusion {
   double chi_square_ = 0.0;         ///< of the active observations at the solution
   Eigen::MatrixXd inverse_;         ///< F×F: inverse information of the estimated coordinates
   Eigen::MatrixXd own_covariance_;  ///< F×F: theirs, from stated noise and held coordinates
-  Eigen::MatrixXd with_held_;       ///< F×P: between them and held coordinates
+  /// F×F: own_covariance_ less inverse_ and its transpose, for residuals that took part.
+  Eigen::MatrixXd less_than_own_;
+  Eigen::MatrixXd with_held_;                       ///< F×P: between them and held coordinates
   std::map<std::size_t, Eigen::MatrixXd> weighed_;  ///< see ObservedInformation
   LinearizedObservation linear_;                    ///< of the observation at hand
   WhitenedObservation whitened_;
@@ -115,19 +117,21 @@ double Conclusion::statedMisfit() const {
   return count == 0 ? 0.0 : std::sqrt(sum / count);
 }
 
-/// Σ over a and b of J_a M(a, b) J_bᵀ, where the places of the columns a and b of J are given.
+/// Σ over a and b of J_a M(a, b) J_bᵀ for a symmetric M, where the places of the columns a and b of
+/// J are given.
 Eigen::Matrix3d between(const Eigen::Matrix3Xd& J,
                         const std::vector<Eigen::Index>& places,
                         const Eigen::MatrixXd& M) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t b = 0; b < places.size(); ++b) {
-    Eigen::Vector3d product = Eigen::Vector3d::Zero();
-    for (std::size_t a = 0; a < places.size(); ++a) {
-      product += J.col(static_cast<Eigen::Index>(a)) * M(places[a], places[b]);
+    const double* const column = M.col(places[b]).data();
+    Eigen::Vector3d product = 0.5 * column[places[b]] * J.col(static_cast<Eigen::Index>(b));
+    for (std::size_t a = 0; a < b; ++a) {
+      product += column[places[a]] * J.col(static_cast<Eigen::Index>(a));
     }
     sum += product * J.col(static_cast<Eigen::Index>(b)).transpose();
   }
-  return sum;
+  return sum + sum.transpose();
 }
 
 /// F×F: what the prior of held directions tells of the estimated coordinates.
@@ -161,6 +165,8 @@ void Conclusion::findCovariance() {
   own_covariance_ = noise_covariance + prior_covariance;
   addHeld(information.others, covariance);
   const double scale = result_.covariance_scale * result_.covariance_scale;
+  own_covariance_ = 0.5 * (own_covariance_ + own_covariance_.transpose()).eval();
+  less_than_own_ = own_covariance_ - (inverse_ + inverse_.transpose());
   fillBelief(own_covariance_ + (scale - 1.0) * noise_covariance, std::move(covariance));
 }
 
@@ -203,8 +209,7 @@ Eigen::Matrix3d Conclusion::residualCovariance(std::size_t observation,
   const Eigen::Matrix3d of_held = evaluator.heldCovariance(linear, held_);
   whiten(linear, Eigen::Matrix3d::Identity(), chosen_, whitened_);
   const WhitenedObservation& own = whitened_;
-  Eigen::Matrix3d covariance =
-      noise + of_held + between(own.jacobian, own.columns, own_covariance_);
+  Eigen::Matrix3d covariance = noise + of_held;
   if (!of_held.isZero(0.0)) {
     Eigen::Matrix3d crossed = Eigen::Matrix3d::Zero();
     for (const Eigen::Index b : linear.columns) {
@@ -215,11 +220,15 @@ Eigen::Matrix3d Conclusion::residualCovariance(std::size_t observation,
     }
     covariance += crossed + crossed.transpose();
   }
-  if (observations_.active()[observation]) {
-    const bool is_weighed = !of_held.isZero(0.0) || weighed_.count(observation) > 0;
-    const Eigen::Matrix3d shared = is_weighed ? sharedWithHeld(observation, linear, noise)
-                                              : between(own.jacobian, own.columns, inverse_);
-    covariance -= shared + shared.transpose();
+  const bool is_active = observations_.active()[observation];
+  const bool is_weighed = !of_held.isZero(0.0) || weighed_.count(observation) > 0;
+  covariance += between(
+      own.jacobian, own.columns, is_active && !is_weighed ? less_than_own_ : own_covariance_);
+  if (is_active) {
+    if (is_weighed) {
+      const Eigen::Matrix3d shared = sharedWithHeld(observation, linear, noise);
+      covariance -= shared + shared.transpose();
+    }
     // A residual that its own parameters absorb wholly has no variance left: keep a floor.
     constexpr double kFloor = 1e-6;
     covariance += kFloor * noise;

@@ -127,8 +127,7 @@ UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x, Which which
   Eigen::MatrixXd information = observations_.information(x, problem_.free, which);
   for (std::size_t k = 0; k < problem_.free.size(); ++k) {
     const double variance = statedVariance(problem_.free[k]);
-    const auto place = static_cast<Eigen::Index>(k);
-    information(place, place) += variance > 0.0 ? 1.0 / variance : 0.0;
+    information.diagonal()[static_cast<Eigen::Index>(k)] += variance > 0.0 ? 1.0 / variance : 0.0;
   }
   return unidentifiedPart(
       information, problem_.free, problem_.model->space(), options_.unobservable_stddev);
@@ -158,6 +157,7 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   input.active = observations_.active();
   input.free = solution_.estimated;
   input.start = start;
+  input.at_start = loss == Loss::kSquared ? &observations_.sum(start) : nullptr;
   input.prior = solution_.prior;
   input.loss = loss;
   input.loss_transition = transition;
@@ -202,7 +202,7 @@ bool Estimator::rejectOutliers() {
   // Where the stated noise is too small for most observations, outliers stand out of the actual
   // scatter; the misfit itself is told by the reduced χ².
   const double limit = outlierLimit() * std::max(1.0, median / kMedianOfThree);
-  const std::vector<double> squares = observations_.squares(solution_.x(), limit);
+  const auto squares = observations_.squares(solution_.x(), limit);
   bool changed = false;
   for (std::size_t n = 0; n < squares.size(); ++n) {
     changed = observations_.setActive(n, squares[n] <= limit) || changed;
@@ -387,7 +387,7 @@ Estimate Estimator::run() {
   result_.rejected_away = std::move(lost);
   conclude(solution_, result_);
   widenAmbiguous();
-  return result_;
+  return std::move(result_);
 }
 
 }  // namespace

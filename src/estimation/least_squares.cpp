@@ -71,20 +71,14 @@ class Objective {
     }
   }
 
-  double cost(const Eigen::VectorXd& x) const {
-    const ModelPoint point = input_.evaluator->at(x);
-    double cost = priorResidual(x).squaredNorm();
-    for (std::size_t n = 0; n < input_.active.size(); ++n) {
-      if (input_.active[n] && !shares(n)) {
-        cost += loss(whitenedResidual(n, point).squaredNorm()).value;
-      }
-    }
-    std::vector<DwellMember> members;
-    for (std::size_t d = 0; d < dwells(); ++d) {
-      collect(d, members, [&](std::size_t n) { return whitenedResidual(n, point); });
-      cost += weigh(members);
-    }
-    return cost;
+  /// Where the sum over the observations is known already.
+  NormalEquations atStart() const {
+    NormalEquations result;
+    result.cost = input_.at_start->squaredMisfit();
+    result.gradient = input_.at_start->gradient()(input_.free);
+    result.information = input_.at_start->information()(input_.free, input_.free);
+    addPrior(input_.start, result);
+    return result;
   }
 
   NormalEquations normalEquations(const Eigen::VectorXd& x) const {
@@ -105,13 +99,7 @@ class Objective {
     addDwells(point, sum, result.cost);
     result.information = sum.information();
     result.gradient = sum.gradient();
-    if (prior_.rows() > 0) {
-      const Eigen::MatrixXd jacobian = prior_(Eigen::all, input_.free);
-      const Eigen::VectorXd residual = priorResidual(x);
-      result.information += jacobian.transpose() * jacobian;
-      result.gradient += jacobian.transpose() * residual;
-      result.cost += residual.squaredNorm();
-    }
+    addPrior(x, result);
     return result;
   }
 
@@ -132,21 +120,6 @@ class Objective {
   std::size_t dwells() const { return input_.shared == nullptr ? 0 : input_.shared->dwells.size(); }
   bool shares(std::size_t n) const { return input_.shared != nullptr && input_.shared->shares[n]; }
   LossValue loss(double s) const { return lossAt(input_.loss, input_.loss_transition, s); }
-  Eigen::Vector3d whitenedResidual(std::size_t n, const ModelPoint& point) const {
-    return (*input_.whitening)[n] * input_.evaluator->residual(n, point);
-  }
-
-  template <typename Residual>
-  void collect(std::size_t dwell,
-               std::vector<DwellMember>& members,
-               const Residual& residual) const {
-    members.clear();
-    for (const std::size_t n : input_.shared->dwells[dwell]) {
-      if (input_.active[n]) {
-        members.push_back({n, residual(n), 1.0});
-      }
-    }
-  }
 
   /// Weights of the members at the errors u of least cost, by reweighting from u = 0, where a gross
   /// error does not hide behind them. Returns the cost, that of u included.
@@ -182,13 +155,16 @@ class Objective {
     std::vector<WhitenedObservation> whitened;
     DwellSum dwell(free_.size());
     for (std::size_t d = 0; d < dwells(); ++d) {
+      members.clear();
       whitened.clear();
-      collect(d, members, [&](std::size_t n) {
-        input_.evaluator->linearize(n, point, linear);
-        whitened.emplace_back();
-        whiten(linear, (*input_.whitening)[n], free_, whitened.back());
-        return whitened.back().residual;
-      });
+      for (const std::size_t n : input_.shared->dwells[d]) {
+        if (input_.active[n]) {
+          input_.evaluator->linearize(n, point, linear);
+          whitened.emplace_back();
+          whiten(linear, (*input_.whitening)[n], free_, whitened.back());
+          members.push_back({n, whitened.back().residual, 1.0});
+        }
+      }
       cost += weigh(members);
       dwell.begin();
       for (std::size_t m = 0; m < members.size(); ++m) {
@@ -198,8 +174,14 @@ class Objective {
     }
   }
 
-  Eigen::VectorXd priorResidual(const Eigen::VectorXd& x) const {
-    return prior_.rows() > 0 ? (prior_ * x - prior_mean_).eval() : Eigen::VectorXd();
+  void addPrior(const Eigen::VectorXd& x, NormalEquations& result) const {
+    if (prior_.rows() > 0) {
+      const Eigen::MatrixXd jacobian = prior_(Eigen::all, input_.free);
+      const Eigen::VectorXd residual = prior_ * x - prior_mean_;
+      result.information += jacobian.transpose() * jacobian;
+      result.gradient += jacobian.transpose() * residual;
+      result.cost += residual.squaredNorm();
+    }
   }
 
   const LeastSquaresInput& input_;
@@ -215,14 +197,18 @@ class Descent {
       : input_(input), result_(result), objective_(input) {}
 
   Termination run() {
+    const bool is_known = input_.at_start != nullptr && input_.loss == Loss::kSquared;
+    NormalEquations normal =
+        is_known ? objective_.atStart() : objective_.normalEquations(input_.start);
     for (int iteration = 0; iteration < input_.max_iterations; ++iteration) {
-      const NormalEquations normal = objective_.normalEquations(result_.path.back());
       if (!normal.isFinite() || !advance(normal)) {
         return Termination::kNumericalFailure;
       }
       if (is_converged_) {
         return Termination::kConverged;
       }
+      normal = next_ ? *std::exchange(next_, std::nullopt)
+                     : objective_.normalEquations(result_.path.back());
     }
     return Termination::kIterationLimit;
   }
@@ -239,6 +225,7 @@ class Descent {
       const Eigen::VectorXd moved = objective_.moved(x, *step);
       const bool is_fine = isFine(normal, x, *step);
       is_converged_ = isLast(x, *step, is_fine);
+      next_.reset();
       const double gain = is_fine || is_converged_ ? 1.0 : gainOf(normal, moved, *step);
       if (gain > kLeastGain) {
         previous_step_ = step->norm();
@@ -250,12 +237,17 @@ class Descent {
     return false;
   }
 
-  /// Decrease of the cost over the one that the linear model promises.
+  /// Decrease of the cost over the one that the linear model promises. The cost comes with its
+  /// derivatives: most steps are taken, and the next one needs them.
   double gainOf(const NormalEquations& normal,
                 const Eigen::VectorXd& moved,
-                const Eigen::VectorXd& step) const {
+                const Eigen::VectorXd& step) {
     const double promised = -step.dot(2.0 * normal.gradient + normal.information * step);
-    return promised > 0.0 ? (normal.cost - objective_.cost(moved)) / promised : 0.0;
+    if (!(promised > 0.0)) {
+      return 0.0;
+    }
+    next_ = objective_.normalEquations(moved);
+    return (normal.cost - next_->cost) / promised;
   }
 
   /// Nielsen's rule, as Madsen, Nielsen and Tingleff give it: the better the linear model, the less
@@ -312,6 +304,7 @@ class Descent {
   const LeastSquaresInput& input_;
   LeastSquaresResult& result_;
   Objective objective_;
+  std::optional<NormalEquations> next_;  ///< where the step taken led, if they are known
   double damping_ = kFirstDamping;
   double growth_ = 2.0;         ///< of the damping, at the next refusal
   double previous_step_ = 0.0;  ///< 0: there was none

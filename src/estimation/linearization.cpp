@@ -45,18 +45,23 @@ void ObservationEvaluator::linearize(std::size_t observation,
                                      LinearizedObservation& out) const {
   const ParameterSpace& space = problem_.model->space();
   const bool is_torque = problem_.observations[observation].quantity == Quantity::kTorque;
+  out.residual = evaluate(observation, point, &out.jacobian);
+  out.columns.clear();
   const auto take = [&out](Eigen::Index first, Eigen::Index last) {
+    const Eigen::Index all = out.jacobian.cols();
+    const double* const J = out.jacobian.data();
     for (Eigen::Index p = first; p < last; ++p) {
-      out.columns.push_back(p);
+      // Most poles are out of reach of a coil, and most effects act on some observations alone.
+      if (J[p] != 0.0 || J[all + p] != 0.0 || J[2 * all + p] != 0.0) {
+        out.columns.push_back(p);
+      }
     }
   };
-  out.columns.clear();
   take(0, is_torque ? space.coil(0) : space.pole(0));
   for (const Excitation& excitation : excitations_[observation]) {
     take(space.coil(excitation.coil), space.coil(excitation.coil) + ParameterSpace::kPerAxis);
   }
   take(space.effect(), space.size());
-  out.residual = evaluate(observation, point, &out.jacobian);
 }
 
 double ObservationEvaluator::stddev(std::size_t observation) const {
@@ -139,11 +144,10 @@ Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(
 
 Eigen::Matrix3d ObservationEvaluator::heldCovariance(const LinearizedObservation& linear,
                                                      const std::vector<bool>& held) const {
-  // Most poles are out of reach of a coil: their columns are zero.
   boost::container::small_vector<Eigen::Index, 32> columns;
   for (const Eigen::Index a : linear.columns) {
     const auto place = static_cast<std::size_t>(a);
-    if (held[place] && uncertain_[place] && !linear.jacobian.col(a).isZero(0.0)) {
+    if (held[place] && uncertain_[place]) {
       columns.push_back(a);
     }
   }

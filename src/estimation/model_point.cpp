@@ -1,38 +1,18 @@
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
 
-#include <array>
 #include <optional>
 
 #include <boost/container/small_vector.hpp>
 
 #include "axis_point.hpp"
 #include "effects_at.hpp"
+#include "joint_point.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
-
-/// Joint axes and offsets at the coordinates, with ∂axis/∂(u, v) of each. Corrections of readings
-/// and the orientation map act apart from them, on what the sensors read.
-struct JointPoint {
-  JointGeometry geometry;
-  std::array<Eigen::Matrix<double, 3, 2>, kJoints> d_axis;
-};
-
-JointPoint jointPoint(const ParameterSpace& space, const Eigen::VectorXd& x) {
-  JointPoint point;
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const Eigen::Index at = space.joint(k);
-    const auto column = static_cast<Eigen::Index>(k);
-    Eigen::Vector3d axis;
-    space.jointChart(k).evaluate(x[at + 1], x[at + 2], axis, point.d_axis[k]);
-    point.geometry.axes.col(column) = axis;
-    point.geometry.offsets[column] = space.nominal().joints[k].offset + x[at];
-  }
-  return point;
-}
 
 /// A rotation by the effects, e^{v̂}, and ∂v/∂their values.
 struct EffectRotation {
@@ -44,23 +24,11 @@ struct EffectRotation {
   Eigen::Matrix3d rotation;
 };
 
-/// left · ∂ξ/∂(offset, u, v of each joint) into the columns of the joints.
-void writeJointJacobian(const JointPoint& point,
-                        const JointLinearization& linear,
-                        const Eigen::Matrix3d& left,
-                        ResidualJacobian& jacobian) {
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const auto first = ParameterSpace::kPerJoint * static_cast<Eigen::Index>(k);
-    jacobian.col(first) = left * linear.d_offset.col(static_cast<Eigen::Index>(k));
-    jacobian.middleCols<2>(first + 1) = left * (linear.d_axis[k] * point.d_axis[k]);
-  }
-}
-
 /// left · ∂ξ/∂offset of each joint. An error of a reading acts as an offset of that joint does.
-Eigen::Matrix3d offsetColumns(const JointLinearization& linear, const Eigen::Matrix3d& left) {
+Eigen::Matrix3d offsetColumns(const JointPoint::Linearized& linear, const Eigen::Matrix3d& left) {
   Eigen::Matrix3d columns;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    columns.col(k) = left * linear.d_offset.col(k);
+    columns.col(k) = left * linear.d_coordinates.col(ParameterSpace::kPerJoint * k);
   }
   return columns;
 }
@@ -113,7 +81,7 @@ struct ModelPoint::Parts {
 ModelPoint::Parts::Parts(const CalibrationModel& model, const Eigen::VectorXd& x)
     : space(model.space()),
       nominal_joints(jointGeometry(space.nominal())),
-      joints(jointPoint(space, x)),
+      joints(space, x),
       effects(space, x),
       tracker(effects.trackerColumns(), effects.values()),
       marker(effects.markerColumns(), effects.values()),
@@ -220,18 +188,17 @@ Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
   const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
   const Eigen::Matrix3d R_left = at.tracker.rotation * at.nominalTurn(sample.joint_position);
   if (jacobian == nullptr) {
-    const Eigen::Matrix3d R_predicted =
-        R_left * rotorOrientation(at.joints.geometry, q) * at.marker.rotation;
+    const Eigen::Matrix3d R_predicted = R_left * at.joints.orientation(q) * at.marker.rotation;
     return rotationLog(sample.R_stator_rotor * R_predicted.transpose());
   }
-  const JointLinearization linear = linearizeRotorOrientation(at.joints.geometry, q);
+  const JointPoint::Linearized linear = at.joints.linearized(q);
   const Eigen::Matrix3d R_predicted = R_left * linear.R_stator_rotor * at.marker.rotation;
   Eigen::Vector3d y = rotationLog(sample.R_stator_rotor * R_predicted.transpose());
   // R → e^{ξ̂}R turns e^{ŷ} into e^{ŷ}e^{−ξ̂}, and J_r(y) = J_l(−y).
   const Eigen::Matrix3d d_stator = -leftJacobianInverse(-y);
   const Eigen::Matrix3d d_rotation = d_stator * R_left;
   jacobian->setZero(3, at.space.size());
-  writeJointJacobian(at.joints, linear, d_rotation, *jacobian);
+  jacobian->leftCols<JointPoint::kCoordinates>() = d_rotation * linear.d_coordinates;
   if (!at.effects.empty()) {
     const Eigen::Matrix3d d_rotor =
         d_rotation * linear.R_stator_rotor * leftJacobian(at.marker.vector);
@@ -251,13 +218,14 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
   const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
   const Eigen::Matrix3d R_turn = at.nominalTurn(sample.joint_position);
   if (jacobian == nullptr) {
-    const Eigen::Matrix3d R_rotor_stator =
-        (R_turn * rotorOrientation(at.joints.geometry, q)).transpose();
-    return at.torqueInRotor(sample.torque, nullptr) -
-           at.pairTorques(at.coilTerms(excitations, R_rotor_stator)) -
-           at.effects.loadColumns(R_rotor_stator) * at.effects.values();
+    const Eigen::Matrix3d R_rotor_stator = (R_turn * at.joints.orientation(q)).transpose();
+    const Eigen::Vector3d residual = at.torqueInRotor(sample.torque, nullptr) -
+                                     at.pairTorques(at.coilTerms(excitations, R_rotor_stator));
+    return at.effects.empty() ? residual
+                              : Eigen::Vector3d(residual - at.effects.loadColumns(R_rotor_stator) *
+                                                               at.effects.values());
   }
-  const JointLinearization linear = linearizeRotorOrientation(at.joints.geometry, q);
+  const JointPoint::Linearized linear = at.joints.linearized(q);
   const Eigen::Matrix3d R_rotor_stator = (R_turn * linear.R_stator_rotor).transpose();
   CoilTerms terms = at.coilTerms(excitations, R_rotor_stator);
   const Eigen::Matrix3Xd d_load = at.effects.loadColumns(R_rotor_stator);
@@ -274,7 +242,7 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
     jacobian->middleCols<2>(at.space.coil(term.coil)) = d_stator * term.axis->d_axis;
   }
   d_rotation = (d_rotation * R_turn).eval();
-  writeJointJacobian(at.joints, linear, d_rotation, *jacobian);
+  jacobian->leftCols<JointPoint::kCoordinates>() = d_rotation * linear.d_coordinates;
   if (!at.effects.empty()) {
     at.effects.write(d_effects + offsetColumns(linear, d_rotation) * d_reading, *jacobian);
   }

@@ -1,5 +1,6 @@
 #include "observed_information.hpp"
 
+#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -146,9 +147,31 @@ Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, con
   return information;
 }
 
+/// Where no held coordinate is uncertain, the sum that the estimation knows already; nothing
+/// elsewhere.
+std::optional<ObservedInformation> byNoiseAlone(const Solution& solution) {
+  const Eigen::MatrixXd& prior = solution.problem->prior.covariance;
+  const std::vector<bool> held =
+      ChosenCoordinates(solution.x().size(), solution.estimated).others();
+  for (Eigen::Index p = 0; p < prior.rows(); ++p) {
+    if (held[static_cast<std::size_t>(p)] && prior(p, p) > 0.0) {
+      return std::nullopt;
+    }
+  }
+  const Eigen::MatrixXd information = solution.observations->sum(solution.x()).information();
+  ObservedInformation result;
+  result.data = information(solution.estimated, solution.estimated);
+  result.others = information(solution.estimated, Eigen::all);
+  result.others(Eigen::all, solution.estimated).setZero();
+  return result;
+}
+
 }  // namespace
 
 ObservedInformation observedInformation(const Solution& solution) {
+  if (const std::optional<ObservedInformation> result = byNoiseAlone(solution)) {
+    return *result;
+  }
   return Collector(solution).run();
 }
 

@@ -33,7 +33,6 @@ SharedErrorModel groupByDwell(const EstimationProblem& problem, const Estimation
   SharedErrorModel model;
   const std::size_t count = problem.observations.size();
   model.shares.assign(count, false);
-  model.loading.assign(count, SharedLoading::Zero());
   if (!options.shared_errors) {
     return model;
   }
@@ -61,6 +60,9 @@ SharedErrorModel groupByDwell(const EstimationProblem& problem, const Estimation
     }
   }
   close();
+  if (!model.dwells.empty()) {
+    model.loading.assign(count, SharedLoading::Zero());
+  }
   return model;
 }
 

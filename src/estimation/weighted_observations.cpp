@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
-
 namespace sac {
 
 WeightedObservations::WeightedObservations(const EstimationProblem& problem,
@@ -13,30 +11,85 @@ WeightedObservations::WeightedObservations(const EstimationProblem& problem,
       whitening_(problem.observations.size(), Eigen::Matrix3d::Zero()),
       active_(problem.observations.size(), true) {}
 
-bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::vector<bool>& held) {
+template <typename Prepare>
+InformationSum WeightedObservations::pass(const Eigen::VectorXd& x,
+                                          Which which,
+                                          const Prepare& prepare) const {
+  const ModelPoint point = evaluator_.at(x);
+  const ChosenCoordinates every = ChosenCoordinates::all(x.size());
+  InformationSum sum(x.size());
+  LinearizedObservation linear;
+  WhitenedObservation whitened;
+  last_.at = x;
+  last_.sum.reset();
+  last_.residuals.resize(whitening_.size());
+  /// Returns whether it serves.
+  const auto take = [&](std::size_t n) {
+    evaluator_.linearize(n, point, linear);
+    last_.residuals[n] = linear.residual;
+    prepare(n, linear);
+    const bool serves = which == Which::kAll || active_[n];
+    if (serves) {
+      whiten(linear, whitening_[n], every, whitened);
+    }
+    return serves;
+  };
+  for (std::size_t n = 0; n < whitening_.size(); ++n) {
+    if (!shared_.shares[n] && take(n)) {
+      sum.add(whitened);
+    }
+  }
+  DwellSum dwell_sum(x.size());
+  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+    dwell_sum.begin();
+    for (const std::size_t n : dwell) {
+      if (take(n)) {
+        dwell_sum.add(whitened, shared_.loading[n]);
+      }
+    }
+    dwell_sum.addTo(sum);
+  }
+  return sum;
+}
+
+/// Returns whether the weight changed noticeably.
+bool WeightedObservations::weigh(std::size_t observation,
+                                 const LinearizedObservation& linear,
+                                 const std::vector<bool>& held) {
   constexpr double kNoticeable = 1e-6;
+  const bool shares = shared_.shares[observation];
+  const Eigen::Matrix3d noise =
+      shares ? evaluator_.ownNoise(observation, linear) : evaluator_.noise(observation, linear);
+  const Eigen::Matrix3d before = std::exchange(
+      whitening_[observation], whiteningOf(noise + evaluator_.heldCovariance(linear, held)));
+  bool changed = !whitening_[observation].isApprox(before, kNoticeable);
+  if (shares) {
+    const SharedLoading loading =
+        whitening_[observation] * evaluator_.sharedErrors(observation, linear);
+    changed = changed || !loading.isApprox(shared_.loading[observation], kNoticeable);
+    shared_.loading[observation] = loading;
+  }
+  return changed;
+}
+
+bool WeightedObservations::updateWeights(const Eigen::VectorXd& x, const std::vector<bool>& held) {
   if (weighed_at_.size() > 0 && weighed_at_ == x && weighed_with_ == held) {
     return false;
   }
-  const ModelPoint point = evaluator_.at(x);
   weighed_at_ = x;
   weighed_with_ = held;
   bool changed = false;
-  LinearizedObservation linear;
-  for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    evaluator_.linearize(n, point, linear);
-    const Eigen::Matrix3d noise =
-        shared_.shares[n] ? evaluator_.ownNoise(n, linear) : evaluator_.noise(n, linear);
-    const Eigen::Matrix3d whitening = whiteningOf(noise + evaluator_.heldCovariance(linear, held));
-    if (shared_.shares[n]) {
-      const SharedLoading loading = whitening * evaluator_.sharedErrors(n, linear);
-      changed = changed || !loading.isApprox(shared_.loading[n], kNoticeable);
-      shared_.loading[n] = loading;
-    }
-    changed = changed || !whitening.isApprox(whitening_[n], kNoticeable);
-    whitening_[n] = whitening;
-  }
+  last_.sum = pass(x, Which::kActive, [&](std::size_t n, const LinearizedObservation& linear) {
+    changed = weigh(n, linear, held) || changed;
+  });
   return changed;
+}
+
+const InformationSum& WeightedObservations::sum(const Eigen::VectorXd& x) const {
+  if (!last_.sum || last_.at != x) {
+    last_.sum = pass(x, Which::kActive, [](std::size_t, const LinearizedObservation&) {});
+  }
+  return *last_.sum;
 }
 
 std::size_t WeightedObservations::activeCount() const {
@@ -44,35 +97,56 @@ std::size_t WeightedObservations::activeCount() const {
 }
 
 void WeightedObservations::activateAll() {
-  std::fill(active_.begin(), active_.end(), true);
+  if (activeCount() < active_.size()) {
+    last_.sum.reset();
+    std::fill(active_.begin(), active_.end(), true);
+  }
 }
 
 bool WeightedObservations::setActive(std::size_t observation, bool active) {
   const bool changes = active_[observation] != active;
-  active_[observation] = active;
+  if (changes) {
+    last_.sum.reset();
+    active_[observation] = active;
+  }
   return changes;
 }
 
+WeightedObservations::Residuals::Residuals(const WeightedObservations& observations,
+                                           const Eigen::VectorXd& x)
+    : observations_(observations) {
+  const Eigen::VectorXd& last = observations.last_.at;
+  if (last.size() == 0 || last != x) {
+    point_.emplace(observations.evaluator_.at(x));
+  }
+}
+
+Eigen::Vector3d WeightedObservations::Residuals::operator()(std::size_t observation) const {
+  const WeightedObservations& all = observations_;
+  return all.whitening_[observation] * (point_ ? all.evaluator_.residual(observation, *point_)
+                                               : all.last_.residuals[observation]);
+}
+
 std::vector<double> WeightedObservations::squares(const Eigen::VectorXd& x, double limit) const {
-  const ModelPoint point = evaluator_.at(x);
+  const Residuals whitened(*this, x);
   std::vector<double> squares(whitening_.size());
   for (std::size_t n = 0; n < squares.size(); ++n) {
-    squares[n] = shared_.shares[n] ? 0.0 : whitenedResidual(n, point).squaredNorm();
+    squares[n] = shared_.shares[n] ? 0.0 : whitened(n).squaredNorm();
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    squaresOfDwell(dwell, point, limit, squares);
+    squaresOfDwell(dwell, whitened, limit, squares);
   }
   return squares;
 }
 
 void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
-                                          const ModelPoint& point,
+                                          const Residuals& whitened,
                                           double limit,
                                           std::vector<double>& squares) const {
   DwellElimination elimination;
   std::vector<Eigen::Vector3d> residuals;
   for (const std::size_t n : dwell) {
-    residuals.push_back(whitenedResidual(n, point));
+    residuals.push_back(whitened(n));
     elimination.add(shared_.loading[n], residuals.back());
   }
   std::vector<bool> kept(dwell.size(), true);
@@ -101,36 +175,36 @@ void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
 }
 
 DwellElimination WeightedObservations::eliminated(const std::vector<std::size_t>& dwell,
-                                                  const ModelPoint& point) const {
+                                                  const Residuals& whitened) const {
   DwellElimination elimination;
   for (const std::size_t n : dwell) {
     if (active_[n]) {
-      elimination.add(shared_.loading[n], whitenedResidual(n, point));
+      elimination.add(shared_.loading[n], whitened(n));
     }
   }
   return elimination;
 }
 
 double WeightedObservations::chiSquare(const Eigen::VectorXd& x) const {
-  const ModelPoint point = evaluator_.at(x);
+  const Residuals whitened(*this, x);
   double sum = 0.0;
   for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    sum += active_[n] && !shared_.shares[n] ? whitenedResidual(n, point).squaredNorm() : 0.0;
+    sum += active_[n] && !shared_.shares[n] ? whitened(n).squaredNorm() : 0.0;
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    sum += eliminated(dwell, point).squaredMisfit();
+    sum += eliminated(dwell, whitened).squaredMisfit();
   }
   return sum;
 }
 
 std::vector<Eigen::Vector3d> WeightedObservations::residuals(const Eigen::VectorXd& x) const {
-  const ModelPoint point = evaluator_.at(x);
+  const Residuals whitened(*this, x);
   std::vector<Eigen::Vector3d> residuals(whitening_.size());
   for (std::size_t n = 0; n < residuals.size(); ++n) {
-    residuals[n] = whitenedResidual(n, point);
+    residuals[n] = whitened(n);
   }
   for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    const SharedErrors errors = eliminated(dwell, point).errors();
+    const SharedErrors errors = eliminated(dwell, whitened).errors();
     for (const std::size_t n : dwell) {
       residuals[n] -= shared_.loading[n] * errors;
     }
@@ -141,32 +215,11 @@ std::vector<Eigen::Vector3d> WeightedObservations::residuals(const Eigen::Vector
 Eigen::MatrixXd WeightedObservations::information(const Eigen::VectorXd& x,
                                                   const std::vector<Eigen::Index>& coordinates,
                                                   Which which) const {
-  const ModelPoint point = evaluator_.at(x);
-  const ChosenCoordinates chosen(x.size(), coordinates);
-  InformationSum sum(chosen.size());
-  LinearizedObservation linear;
-  WhitenedObservation whitened;
-  const auto serves = [&](std::size_t n) { return which == Which::kAll || active_[n]; };
-  for (std::size_t n = 0; n < whitening_.size(); ++n) {
-    if (serves(n) && !shared_.shares[n]) {
-      evaluator_.linearize(n, point, linear);
-      whiten(linear, whitening_[n], chosen, whitened);
-      sum.add(whitened);
-    }
-  }
-  DwellSum dwell_sum(chosen.size());
-  for (const std::vector<std::size_t>& dwell : shared_.dwells) {
-    dwell_sum.begin();
-    for (const std::size_t n : dwell) {
-      if (serves(n)) {
-        evaluator_.linearize(n, point, linear);
-        whiten(linear, whitening_[n], chosen, whitened);
-        dwell_sum.add(whitened, shared_.loading[n]);
-      }
-    }
-    dwell_sum.addTo(sum);
-  }
-  return sum.information();
+  const bool is_active = which == Which::kActive || activeCount() == active_.size();
+  const Eigen::MatrixXd all =
+      is_active ? sum(x).information()
+                : pass(x, which, [](std::size_t, const LinearizedObservation&) {}).information();
+  return all(coordinates, coordinates);
 }
 
 }  // namespace sac

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,10 +11,13 @@
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
-/// The observations of one problem: how much each weighs, and which of them serve.
+/// The observations of one problem: how much each weighs, and which of them serve. What they are at
+/// the last point is kept: weights, information and tests ask for the same one, one after the
+/// other.
 class WeightedObservations {
  public:
   /// All serve; weights come with the first updateWeights(). Keeps references.
@@ -44,6 +48,7 @@ class WeightedObservations {
   Setting setting() const { return {whitening_, shared_.loading, active_}; }
   void restore(Setting setting) {
     weighed_at_.resize(0);
+    last_.sum.reset();
     whitening_ = std::move(setting.whitening);
     shared_.loading = std::move(setting.loading);
     active_ = std::move(setting.active);
@@ -66,15 +71,39 @@ class WeightedObservations {
                               const std::vector<Eigen::Index>& coordinates,
                               Which which = Which::kActive) const;
 
+  /// Sum over the active observations at x, in all coordinates. Valid until anything changes.
+  const InformationSum& sum(const Eigen::VectorXd& x) const;
+
  private:
+  /// Of one pass over all observations at one point.
+  struct Pass {
+    Eigen::VectorXd at;                      ///< empty: there was none
+    std::vector<Eigen::Vector3d> residuals;  ///< of all observations, not whitened
+    std::optional<InformationSum> sum;       ///< of the active ones, unless they changed since
+  };
+  /// Whitened residuals at one point, those of the last pass where it is the same.
+  class Residuals {
+   public:
+    Residuals(const WeightedObservations& observations, const Eigen::VectorXd& x);
+    Eigen::Vector3d operator()(std::size_t observation) const;
+
+   private:
+    const WeightedObservations& observations_;
+    std::optional<ModelPoint> point_;  ///< nothing: the last pass was here
+  };
+
+  /// One pass at x. `prepare`(observation, linear) comes before the weights are used.
+  template <typename Prepare>
+  InformationSum pass(const Eigen::VectorXd& x, Which which, const Prepare& prepare) const;
+  bool weigh(std::size_t observation,
+             const LinearizedObservation& linear,
+             const std::vector<bool>& held);
   void squaresOfDwell(const std::vector<std::size_t>& dwell,
-                      const ModelPoint& point,
+                      const Residuals& whitened,
                       double limit,
                       std::vector<double>& squares) const;
-  DwellElimination eliminated(const std::vector<std::size_t>& dwell, const ModelPoint& point) const;
-  Eigen::Vector3d whitenedResidual(std::size_t observation, const ModelPoint& point) const {
-    return whitening_[observation] * evaluator_.residual(observation, point);
-  }
+  DwellElimination eliminated(const std::vector<std::size_t>& dwell,
+                              const Residuals& whitened) const;
 
   ObservationEvaluator evaluator_;
   SharedErrorModel shared_;
@@ -82,6 +111,7 @@ class WeightedObservations {
   std::vector<bool> active_;
   Eigen::VectorXd weighed_at_;      ///< the coordinates that the weights belong to, or none
   std::vector<bool> weighed_with_;  ///< the same of the held ones
+  mutable Pass last_;
 };
 
 }  // namespace sac

@@ -64,8 +64,7 @@ void whiten(const LinearizedObservation& linear,
   }
   for (const Eigen::Index p : linear.columns) {
     const Eigen::Index place = chosen.place(p);
-    // Most poles are out of reach of a coil: their columns are zero.
-    if (place >= 0 && !linear.jacobian.col(p).isZero(0.0)) {
+    if (place >= 0) {
       out.jacobian.col(static_cast<Eigen::Index>(out.columns.size())) =
           whitening * linear.jacobian.col(p);
       out.columns.push_back(place);
@@ -82,12 +81,14 @@ InformationSum::InformationSum(Eigen::MatrixXd known)
 void InformationSum::add(const WhitenedObservation& observation, double weight) {
   const std::vector<Eigen::Index>& columns = observation.columns;
   squared_misfit_ += weight * observation.residual.squaredNorm();
+  const double* const J = observation.jacobian.data();
   for (std::size_t b = 0; b < columns.size(); ++b) {
     const Eigen::Vector3d column = weight * observation.jacobian.col(static_cast<Eigen::Index>(b));
     gradient_[columns[b]] += column.dot(observation.residual);
+    double* const sums = upper_.col(columns[b]).data();
     for (std::size_t a = 0; a <= b; ++a) {
-      upper_(columns[a], columns[b]) +=
-          observation.jacobian.col(static_cast<Eigen::Index>(a)).dot(column);
+      const double* const other = J + 3 * a;
+      sums[columns[a]] += other[0] * column[0] + other[1] * column[1] + other[2] * column[2];
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
@@ -40,7 +41,10 @@ struct LeastSquaresInput {
   std::vector<bool> active;                                 ///< per observation
   std::vector<Eigen::Index> free;                           ///< coordinates to find, ascending
   Eigen::VectorXd start;                                    ///< all coordinates
-  LinearPrior prior;                                        ///< counts beside the observations
+  /// Of the active observations at the start, in all coordinates, where it is known already and the
+  /// loss is squared; nothing: it is summed up.
+  const InformationSum* at_start = nullptr;
+  LinearPrior prior;  ///< counts beside the observations
   Loss loss = Loss::kSquared;
   double loss_transition = 1.0;  ///< whitened norm at which a robust loss takes over
   int max_iterations = 50;

@@ -13,7 +13,7 @@ namespace sac {
 struct LinearizedObservation {
   Eigen::Vector3d residual;
   ResidualJacobian jacobian;          ///< 3×P, zero where unused
-  std::vector<Eigen::Index> columns;  ///< coordinates that can be nonzero, ascending
+  std::vector<Eigen::Index> columns;  ///< those that are not zero, ascending
 };
 
 /// Evaluates the observations of one problem: residuals, Jacobians and covariances.

@@ -22,7 +22,7 @@ struct SharedErrorModel {
   /// Of each dwell its observations, ascending; those in none have errors of their own.
   std::vector<std::vector<std::size_t>> dwells;
   std::vector<bool> shares;            ///< per observation: it is in a dwell
-  std::vector<SharedLoading> loading;  ///< G per observation; zero in none
+  std::vector<SharedLoading> loading;  ///< G per observation, zero in none; empty without dwells
 };
 
 /// Observations of one problem that share errors: those of consecutive samples of one dwell. Where
