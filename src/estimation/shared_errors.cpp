@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "same_dwell.hpp"
+
 namespace sac {
 namespace {
 
@@ -11,6 +13,8 @@ namespace {
 /// twenty times; those that share their error always do.
 constexpr double kAgreement = 0.7;
 constexpr double kRounding = 1e-9;  // [rad]
+
+}  // namespace
 
 bool isSameDwell(const Sample& one, const Sample& other) {
   if (one.dwell != 0 && other.dwell != 0) {
@@ -26,8 +30,6 @@ bool hasSharedErrors(const Sample& sample) {
   return !sharedJointStddev(sample).isZero(0.0) ||
          (sample.has_torque && sample.torque_shared_stddev > 0);
 }
-
-}  // namespace
 
 SharedErrorModel groupByDwell(const EstimationProblem& problem, const EstimationOptions& options) {
   SharedErrorModel model;

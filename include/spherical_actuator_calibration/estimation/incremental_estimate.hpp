@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+
+namespace sac {
+
+/// What samples tell, one after the other: the estimate of all coordinates and their covariance
+/// after each, for a small part of the time of an estimation over all of them. Both are those of
+/// one Gauss–Newton step over all samples and the prior from the point of linearisation, with the
+/// weights of that point, errors that a dwell shares included (Kalman's filter in coordinates and
+/// these errors, which are forgotten when the dwell ends).
+///
+/// It judges nothing: no sample is an outlier, no coordinate is held, a stated uncertainty that is
+/// too small stays so. What comes into force is what a cycle finds.
+class IncrementalEstimate {
+ public:
+  /// Linearises at the prior. Every coordinate has its prior uncertainty; one without any is known.
+  /// Keeps a reference to the model. Throws DataError when the prior is not of the model's
+  /// coordinates.
+  IncrementalEstimate(const CalibrationModel& model,
+                      ParameterBelief prior,
+                      const EstimationOptions& options);
+
+  /// Takes a sample in; one that is held out tells nothing. Samples of one dwell follow each other.
+  /// Throws DataError when the sample is not valid, or has a torque that the model has not.
+  void add(const Sample& sample);
+
+  /// After all samples so far.
+  ParameterBelief belief() const;
+
+  /// Whether the estimate has left the neighbourhood of the point of linearisation [rad], where the
+  /// linear model holds within the noise of usual samples. Then relinearize().
+  bool hasMovedFar() const;
+  /// Starts again from the present estimate as the point of linearisation; `samples`: all so far.
+  void relinearize(const std::vector<Sample>& samples);
+
+ private:
+  void restart(const Eigen::VectorXd& at);
+  void forgetDwell();
+  void observe(const SharedLoading& loading);
+  Eigen::Index size() const { return prior_.x.size(); }
+
+  const CalibrationModel& model_;
+  EstimationOptions options_;
+  ParameterBelief prior_;
+  std::vector<bool> nothing_held_;
+  ChosenCoordinates every_;
+  Eigen::VectorXd at_;               ///< the point of linearisation
+  std::optional<ModelPoint> point_;  ///< the model there
+  /// Of the P coordinates, less at_, and of the kSharedErrors errors of the present dwell.
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd covariance_;
+  std::optional<Sample> dwell_;   ///< the first sample of the dwell, where it shares errors
+  LinearizedObservation linear_;  ///< of the observation at hand
+  WhitenedObservation whitened_;
+};
+
+}  // namespace sac
