@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "description_parts.hpp"
+#include "spherical_actuator_calibration/actuator/cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -153,7 +154,7 @@ std::string readDate(const YamlMap& map) {
 
 CycleRecord readCycle(const YamlMap& map) {
   CycleRecord record;
-  record.cycle = map.choice("cycle", {"joint", "poles", "coil", "refine", "motion"});
+  record.cycle = map.choice("cycle", cycleNames());
   record.coil = indexOf(readCount(map, "coil"));
   record.samples_used = readCount(map, "samples_used");
   record.samples_rejected = readCount(map, "samples_rejected");

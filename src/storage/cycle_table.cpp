@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "row_access.hpp"
+#include "spherical_actuator_calibration/actuator/cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
@@ -21,9 +23,6 @@ constexpr std::array<std::pair<Quantity, const char*>, 2> kQuantities = {{
     {Quantity::kOrientation, "orientation"},
     {Quantity::kTorque, "torque"},
 }};
-
-constexpr std::array<Cycle, 5> kCycles = {
-    Cycle::kJoint, Cycle::kPoles, Cycle::kCoil, Cycle::kRefine, Cycle::kMotion};
 
 [[noreturn]] void throwUnknown(const std::string& word) {
   throw DataError("The session database holds the unknown word \"" + word + "\".");
@@ -50,12 +49,11 @@ auto valueOf(const Table& table, const std::string& word) {
 }
 
 Cycle cycleOf(const std::string& word) {
-  for (const Cycle cycle : kCycles) {
-    if (cycleName(cycle) == word) {
-      return cycle;
-    }
+  const std::optional<Cycle> cycle = cycleNamed(word);
+  if (!cycle) {
+    throwUnknown(word);
   }
-  throwUnknown(word);
+  return *cycle;
 }
 
 void insertErrors(const SQLite::Database& database, std::int64_t id, const CycleReport& report) {

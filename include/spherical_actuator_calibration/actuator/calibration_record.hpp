@@ -43,7 +43,7 @@ struct RecordingSource {
 
 /// One cycle of a calibration, in short (message CalibrationReport).
 struct CycleRecord {
-  std::string cycle;                               ///< joint, poles, coil or refine
+  std::string cycle;                               ///< see cycleName()
   std::optional<std::size_t> coil = std::nullopt;  ///< excited coil; none where the cycle has none
   std::uint32_t samples_used = 0;
   std::uint32_t samples_rejected = 0;

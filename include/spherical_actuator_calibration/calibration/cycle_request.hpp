@@ -2,16 +2,10 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
+
+#include "spherical_actuator_calibration/actuator/cycle.hpp"
 
 namespace sac {
-
-/// The cycles of a calibration: level 1, level 2 situations 1 and 2, all parameters at once from
-/// dwells, and all at once from motion.
-enum class Cycle { kJoint, kPoles, kCoil, kRefine, kMotion };
-
-/// joint, poles, coil, refine, motion: as in CalibrationReport messages.
-std::string cycleName(Cycle cycle);
 
 /// A cycle as an operator asks for it.
 struct CycleRequest {
