@@ -156,6 +156,17 @@ bool isContradiction(const EstimationProblem& problem, const Estimate& estimate)
   return estimate.termination != Termination::kNothingObservable && !are_few;
 }
 
+/// The one place where a cycle is refused after its estimate: who names causes starts here.
+void refuse(const EstimationProblem& problem,
+            const Estimate& estimate,
+            const std::vector<std::string>& advice,
+            CycleReport& report) {
+  report.contradicted = isContradiction(problem, estimate);
+  for (const std::string& sentence : advice) {
+    report.message += " " + sentence;
+  }
+}
+
 }  // namespace
 
 CycleOutcome runCycle(const CalibrationModel& model,
@@ -200,11 +211,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 options.current_threshold,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
-    // The one place where a cycle is refused after its estimate: who names causes starts here.
-    report.contradicted = isContradiction(problem, estimate);
-    for (const std::string& sentence : advice) {
-      report.message += " " + sentence;
-    }
+    refuse(problem, estimate, advice, report);
     return outcome;
   }
   fillReport(samples, problem.observations, estimate, report);

@@ -84,8 +84,11 @@ class CheckRooms(unittest.TestCase):
         self.expect_one("src/actuator/coil.cpp: includes test/support/example.hpp, which is for tests")
 
     def test_names_endings_that_no_rule_would_see(self):
-        self.write("src/base/angle.cc", "int angle();\n")
-        self.expect_one("src/base/angle.cc: headers end in .hpp here, sources in .cpp")
+        for name in ("src/base/angle.cc", f"{INCLUDE}/base/angle.inl"):
+            with self.subTest(name):
+                self.write(name, "int angle();\n")
+                self.expect_one(f"{name}: headers end in .hpp here, sources in .cpp")
+                (self.root / name).unlink()
 
     def test_names_a_room_that_has_grown_by_folders_of_its_own(self):
         for part in ("one", "two"):
@@ -104,7 +107,7 @@ class CheckRooms(unittest.TestCase):
 
     def test_names_headers_of_ros_and_messages_below_ros(self):
         for place in ("src/base/wire.cpp", "test/base/wire_test.cpp"):
-            for header in ("ros/time.h", "geometry_msgs/Pose.h", "spherical_actuator_calibration/CoilCurrents.h"):
+            for header in ("ros/time.h", "geometry_msgs/Pose.h", "eigen_conversions/eigen_msg.h", "spherical_actuator_calibration/CoilCurrents.h"):
                 with self.subTest(place + header):
                     self.write(place, f"#include <{header}>\n")
                     self.expect_one(f"{place}: includes {header}: base must not know ROS")
@@ -144,6 +147,27 @@ class CheckRooms(unittest.TestCase):
             found[length] = [one for one in self.complaints() if "TEST" in one]
         self.assertEqual(found[60], [])
         self.assertEqual(found[61], ["test/base/turn_test.cpp:1: TEST_F(Turn, Turns) has 61 lines, more than 60."])
+
+    def test_counts_the_head_of_a_function(self):
+        body = 57 * "  turn();\n" + "}\n"
+        for name, head in (("turn", "Angle turn(int a,\n           int b) {\n"), ("Coil::turn", "void Coil::turn(int a,\n                int b)\n    const {\n")):
+            with self.subTest(name):
+                self.write("src/base/long.cpp", head + body)
+                length = head.count("\n") + 58
+                found = [one for one in self.complaints() if "base/long.cpp" in one and "base: holds" not in one]
+                expected = [f"src/base/long.cpp:1: {name} has {length} lines, more than 60."] if length > 60 else []
+                self.assertEqual(found, expected)
+
+    def test_takes_no_class_or_table_for_a_function(self):
+        self.write("test/base/table.cpp", "struct Turns {\n" + 70 * "  int a;\n" + "};\nconstexpr int kTurns[] = {\n" + 70 * "  1,\n" + "};\n")
+        self.assertEqual([one for one in self.complaints() if "table.cpp" in one], [])
+
+    def test_names_a_long_function_in_shell(self):
+        for length in (60, 61):
+            self.write("scripts/turn", "#!/usr/bin/env bash\nturn() {\n" + (length - 2) * "  echo\n" + "}\n")
+            if length == 60:
+                self.assertEqual(self.complaints(), [])
+        self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
 
     def test_names_a_long_cmake_file(self):
         for name in ("CMakeLists.txt", "src/base/CMakeLists.txt", "cmake/rooms.cmake"):
