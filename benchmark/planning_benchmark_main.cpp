@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"

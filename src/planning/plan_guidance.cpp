@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
 namespace {

@@ -7,10 +7,13 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
-#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
+
+struct PlanningProblem;
+struct PosePlanOptions;
+struct Sample;
+struct SignedCoil;
 
 /// One pose that could be visited, and what could be observed there.
 struct PoseCandidate {
@@ -35,11 +38,11 @@ Eigen::MatrixXd heldInformation(const PlanningProblem& problem,
                                 const std::vector<Eigen::Index>& coordinates);
 
 /// The samples that one visit gives, without values: one with the orientation where that is
-/// measured, and one with a torque for each pattern.
+/// measured, and one with a torque for each CoilPattern.
 std::vector<Sample> visitSamples(const PlanningProblem& problem,
                                  const PosePlanOptions& options,
                                  const Eigen::Vector3d& joint_position,
-                                 const std::vector<CoilPattern>& patterns);
+                                 const std::vector<std::vector<SignedCoil>>& patterns);
 
 /// Whether patterns of several coils are planned: only the joint cycle takes them.
 bool plansPatterns(const PlanningProblem& problem, const PosePlanOptions& options);

@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "travel_order.hpp"
 #include "weighing_design.hpp"
 

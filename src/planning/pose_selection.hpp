@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "pose_candidates.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
 

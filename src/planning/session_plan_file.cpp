@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_record.hpp"
 
 namespace sac {
 namespace {
@@ -241,6 +242,10 @@ SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator)
     session.dwells.push_back(dwell);
   }
   return session;
+}
+
+SessionPlan loadPlannedSession(const std::string& path, const Actuator& actuator) {
+  return sessionOf(loadSessionPlan(path), actuator);
 }
 
 }  // namespace sac

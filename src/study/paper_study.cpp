@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 
 namespace sac {

@@ -170,7 +170,7 @@ StudyRecord run(const Options& options) {
   const Shard shard = parseShard(options.shard_text);
   StudyOptions study;
   study.nominal = loadActuator(*options.actuator_path);
-  study.plan = options.plan_path ? sessionOf(loadSessionPlan(*options.plan_path), study.nominal)
+  study.plan = options.plan_path ? loadPlannedSession(*options.plan_path, study.nominal)
                                  : planSession(study.nominal, options.plan, options.plan_seed);
   study.tracker = choose<TrackerUse>(
       "tracker",

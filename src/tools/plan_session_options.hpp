@@ -7,7 +7,7 @@
 
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {
 

@@ -25,7 +25,7 @@ Actuator truthOf(const Actuator& nominal, const SimulateRecordingOptions& option
 }
 
 SessionPlan planOf(const Actuator& nominal, const SimulateRecordingOptions& options) {
-  return options.plan_path ? sessionOf(loadSessionPlan(*options.plan_path), nominal)
+  return options.plan_path ? loadPlannedSession(*options.plan_path, nominal)
                            : planSession(nominal, options.plan, options.simulation.seed);
 }
 

@@ -21,6 +21,7 @@
 #include "spherical_actuator_calibration/measurement/motion_plan_file.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_record.hpp"
 #include "spherical_actuator_calibration/study/study_file.hpp"
 
 namespace sac::fuzz {

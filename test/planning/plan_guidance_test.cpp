@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
+
 namespace sac {
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include "pose_candidates.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"

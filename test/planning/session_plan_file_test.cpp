@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_record.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/measurement/sample.hpp"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 
 namespace sac {
+
+struct PlannedPose;
 
 /// What the operator of a plan does next, in a sentence with the pose [rad and degrees] and the
 /// coils; empty when each pose is measured. A pose is measured when samples in use near it, by 0.1

@@ -148,7 +148,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
   answer(response, [&] {
     const std::size_t count = session_.clearSamples(utcDate());
     intake_.forgetMotion();
-    plan_.clear();
+    plan_ = nullptr;
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
   });
@@ -205,7 +205,7 @@ void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response&
     if (report.success) {
       topics_.publishParameters(session_);
       if (request.cycle == Cycle::kRefine) {
-        plan_.clear();
+        plan_ = nullptr;
       }
     }
     publishStatus();
@@ -336,8 +336,10 @@ void CalibrationNode::publishStatus() {
     const GradedCalibration& graded = session_.grade();
     progress.saved = files_.isSaved(session_.revision().number);
     progress.contradicted = graded.grade == Grade::kContradicted;
-    progress.plan_step =
-        planStep(plan_, calibration.samples(), calibration.config().estimation.current_threshold);
+    if (plan_) {
+      progress.plan_step = planStep(
+          *plan_, calibration.samples(), calibration.config().estimation.current_threshold);
+    }
     topics_.publishStatus(session_, progress, graded);
   } catch (const std::exception& error) {
     last_error_ = error.what();

@@ -1,8 +1,12 @@
 #include <exception>
+#include <memory>
+#include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
+#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/planning/time_budget.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
@@ -47,7 +51,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    plan_ = plan.poses;
+    plan_ = std::make_shared<const std::vector<PlannedPose>>(plan.poses);
     publishStatus();
   } catch (const std::exception& error) {
     response.success = 0;

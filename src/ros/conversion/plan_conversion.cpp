@@ -6,6 +6,8 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/planning/planning_problem.hpp"
+#include "spherical_actuator_calibration/planning/pose_plan.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
 namespace sac {

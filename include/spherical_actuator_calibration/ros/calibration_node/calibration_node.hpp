@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -21,7 +22,6 @@
 #include "spherical_actuator_calibration/Calibrate.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
@@ -32,6 +32,8 @@
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
 namespace sac {
+
+struct PlannedPose;
 
 /// The calibration of one unit while it is measured: takes samples on request or by itself, runs
 /// the cycles, keeps everything in the session database, and publishes the parameters in force.
@@ -107,7 +109,9 @@ class CalibrationNode {
   LiveSession session_;
   std::deque<Sample> waiting_;  ///< captured by itself, not stored yet: the disk did not take it
   std::string last_error_;
-  std::vector<PlannedPose> plan_;  ///< that was asked for last, until it is done or out of use
+  /// That was asked for last, until it is done or out of use; nothing without one. Behind a
+  /// pointer, so that not all who use the node compile the planner.
+  std::shared_ptr<const std::vector<PlannedPose>> plan_;
   CalibrationTopics topics_;
 
   std::atomic<bool> auto_capture_;

@@ -3,10 +3,12 @@
 #include <cstddef>
 
 #include "spherical_actuator_calibration/PlanPoses.h"
-#include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
+
+struct PosePlan;
+struct PosePlanOptions;
 
 /// Options of the service plan_poses: what a request leaves at zero is as by default. Throws
 /// ConfigError when it names patterns that there are not.
