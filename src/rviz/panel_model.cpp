@@ -6,6 +6,8 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
+
 namespace sac {
 namespace {
 
@@ -38,7 +40,7 @@ std::string number(const char* format, double value) {
 
 /// "joint", 1 → "joint_1"
 std::string numbered(const std::string& name, std::size_t index) {
-  return name + "_" + std::to_string(index + 1);
+  return name + "_" + std::to_string(numberOf(index));
 }
 
 bool isPure(const std::string& unit) {

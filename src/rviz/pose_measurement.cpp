@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
+
 namespace sac {
 namespace {
 
@@ -117,7 +119,7 @@ void PoseMeasurement::end(const std::string& reason) {
 bool PoseMeasurement::carries(const std::vector<double>& measured) const {
   const double tolerance = std::max(kTolerance, kToleranceShare * std::abs(current()));
   for (std::size_t j = 0; j < measured.size(); ++j) {
-    const double wanted = j + 1 == coil() ? current() : 0.0;
+    const double wanted = numberOf(j) == coil() ? current() : 0.0;
     if (!(std::abs(measured[j] - wanted) <= tolerance)) {
       return false;
     }

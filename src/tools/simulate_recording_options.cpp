@@ -207,11 +207,12 @@ void requireNoOtherPlan(const CommandLine& line) {
 }
 
 void apply(const RawValues& raw, SimulateRecordingOptions& options) {
-  if (raw.main_coil == 0) {
+  const std::optional<std::size_t> main_coil = indexOf(raw.main_coil);
+  if (!main_coil) {
     throw ConfigError("--main-coil: coils count from 1.");
   }
   options.truth_path = raw.truth_out.value_or(besideRecording(options.output_path));
-  options.plan.main_coil = raw.main_coil - 1;
+  options.plan.main_coil = *main_coil;
   options.simulation.seed = raw.seed;
   options.simulation.wrench_sensor.force_bias = parseVector("force-bias", raw.force_bias);
   options.simulation.wrench_sensor.torque_bias = parseVector("torque-bias", raw.torque_bias);
