@@ -12,11 +12,8 @@
 namespace sac {
 namespace {
 
-constexpr double kSamePose = 0.1;  // [rad]
-
 bool isAt(const Sample& sample, const PlannedPose& pose) {
-  return !sample.validation &&
-         (sample.joint_position - pose.joint_position).cwiseAbs().maxCoeff() <= kSamePose;
+  return (sample.joint_position - pose.joint_position).cwiseAbs().maxCoeff() <= kPoseTolerance;
 }
 
 /// Coils that count as excited, with their signs.

@@ -4,10 +4,13 @@
 #include <QVBoxLayout>
 #include <utility>
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/RemoveSample.h"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 
 namespace sac {
@@ -17,6 +20,27 @@ constexpr int kMostPoses = 100;
 constexpr double kLargestCurrent = 100.0;  // [A]; the coil driver has its own limits
 /// Beside the capture: for currents to come, and for the node to answer [s].
 constexpr double kLongestBeside = 15.0;
+
+/// Names of the joints in the description that the nodes read; `otherwise` where there is none.
+std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
+                                      const std::array<std::string, 3>& otherwise) {
+  using XmlRpc::XmlRpcValue;
+  XmlRpcValue joints;
+  if (!node.getParam("actuator/joints", joints) || joints.getType() != XmlRpcValue::TypeArray ||
+      joints.size() != static_cast<int>(otherwise.size())) {
+    return otherwise;
+  }
+  std::array<std::string, 3> names;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    XmlRpcValue& joint = joints[static_cast<int>(k)];
+    if (joint.getType() != XmlRpcValue::TypeStruct || !joint.hasMember("name") ||
+        joint["name"].getType() != XmlRpcValue::TypeString) {
+      return otherwise;
+    }
+    names[k] = printable(static_cast<std::string>(joint["name"]));
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -90,13 +114,12 @@ void HandGuide::listen() {
       node_,
       "samples",
       kAll,
-      [this](const msg::CalibrationSample::ConstPtr& message) {
-        guide_.receive(*message, model_.currentThreshold());
-      },
+      [this](const msg::CalibrationSample::ConstPtr& message) { guide_.receive(*message); },
       tellRefusal("samples")));
 }
 
 void HandGuide::refresh() {
+  guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
     take(*answer);
   }
@@ -139,6 +162,7 @@ void HandGuide::plan() {
 
 void HandGuide::takePlan(const ServiceAnswer& answer) {
   if (answer.success) {
+    guide_.nameJoints(jointNames(node_, guide_.jointNames()));
     guide_.take(answer.poses);
   }
   outcome_->setText(QString::fromStdString(answer.message));
@@ -223,7 +247,7 @@ void HandGuide::tellTarget() {
   sensor_msgs::JointState message;
   message.header.stamp = ros::Time::now();
   if (target) {
-    message.name = {"joint_1", "joint_2", "joint_3"};
+    message.name.assign(guide_.jointNames().begin(), guide_.jointNames().end());
     message.position.assign(target->begin(), target->end());
   }
   wanted_pose_.publish(message);

@@ -83,6 +83,8 @@ class PanelModel {
 
   /// A coil below it counts as off [A].
   double currentThreshold() const { return status_.current_threshold; }
+  /// Joint angles that differ by at most this from a planned pose are at it [rad].
+  double poseTolerance() const { return status_.pose_tolerance; }
 
   /// What to do next, in words.
   std::string nextStep() const;

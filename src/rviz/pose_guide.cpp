@@ -3,30 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kDegrees = 57.29577951308232;
-
-/// The coil that a sample excites, counted from 1; 0: none; nothing: several.
-std::optional<std::uint32_t> excitedCoil(const std::vector<double>& currents, double threshold) {
-  std::uint32_t coil = 0;
-  for (std::size_t j = 0; j < currents.size(); ++j) {
-    if (std::abs(currents[j]) < threshold) {
-      continue;
-    }
-    if (coil != 0) {
-      return std::nullopt;
-    }
-    coil = static_cast<std::uint32_t>(j + 1);
-  }
-  return coil;
-}
-
 std::string inDegrees(double angle) {
   char text[32];
-  std::snprintf(text, sizeof(text), "%.1f°", kDegrees * std::abs(angle));
+  std::snprintf(text, sizeof(text), "%.1f°", std::abs(angle) / kOneDegree);
   return (angle < 0.0 ? "−" : "+") + std::string(text);
 }
 
@@ -40,13 +27,17 @@ std::string listed(const std::vector<std::uint32_t>& coils) {
 
 }  // namespace
 
+void PoseGuide::judgeBy(double tolerance, double threshold) {
+  tolerance_ = tolerance;
+  threshold_ = threshold;
+}
+
 void PoseGuide::take(const std::vector<msg::PlannedPose>& poses) {
   poses_.clear();
   for (const msg::PlannedPose& planned : poses) {
     Pose pose;
     std::copy(planned.joint_position.begin(), planned.joint_position.end(), pose.joints.begin());
-    pose.patterns = {0};
-    pose.patterns.insert(pose.patterns.end(), planned.coils.begin(), planned.coils.end());
+    pose.coils.assign(planned.coils.begin(), planned.coils.end());
     poses_.push_back(std::move(pose));
   }
 }
@@ -54,8 +45,7 @@ void PoseGuide::take(const std::vector<msg::PlannedPose>& poses) {
 void PoseGuide::receive(const sensor_msgs::JointState& message) {
   std::array<double, 3> joints = {};
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    const auto named =
-        std::find(message.name.begin(), message.name.end(), "joint_" + std::to_string(k + 1));
+    const auto named = std::find(message.name.begin(), message.name.end(), names_[k]);
     const auto place = named == message.name.end()
                            ? k
                            : static_cast<std::size_t>(std::distance(message.name.begin(), named));
@@ -67,32 +57,49 @@ void PoseGuide::receive(const sensor_msgs::JointState& message) {
   joints_ = joints;
 }
 
-void PoseGuide::receive(const msg::CalibrationSample& sample, double threshold) {
-  const std::optional<std::uint32_t> coil = excitedCoil(sample.current, threshold);
-  if (!coil) {
-    return;
-  }
+void PoseGuide::receive(const msg::CalibrationSample& sample) {
+  const std::optional<std::uint32_t> coil = excitedCoil(sample.current);
   std::array<double, 3> joints = {};
   std::copy(sample.joint_position.begin(), sample.joint_position.end(), joints.begin());
   for (Pose& pose : poses_) {
-    if (isSame(pose.joints, joints)) {
+    if (!isSame(pose.joints, joints)) {
+      continue;
+    }
+    pose.has_sample = true;
+    if (coil) {
       pose.measured.insert(*coil);
     }
   }
 }
 
-bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) {
-  return std::equal(one.begin(), one.end(), other.begin(), [](double a, double b) {
-    return std::abs(a - b) <= kSamePose;
+bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) const {
+  return std::equal(one.begin(), one.end(), other.begin(), [this](double a, double b) {
+    return std::abs(a - b) <= tolerance_;
   });
 }
 
-std::vector<std::uint32_t> PoseGuide::missing(std::size_t pose) const {
-  std::vector<std::uint32_t> result;
-  for (const std::uint32_t pattern : poses_.at(pose).patterns) {
-    if (poses_[pose].measured.count(pattern) == 0) {
-      result.push_back(pattern);
+std::optional<std::uint32_t> PoseGuide::excitedCoil(const std::vector<double>& currents) const {
+  std::uint32_t coil = 0;
+  for (std::size_t j = 0; j < currents.size(); ++j) {
+    if (std::abs(currents[j]) < threshold_) {
+      continue;
     }
+    if (coil != 0) {
+      return std::nullopt;
+    }
+    coil = static_cast<std::uint32_t>(numberOf(j));
+  }
+  return coil;
+}
+
+std::vector<std::uint32_t> PoseGuide::missing(std::size_t pose) const {
+  const Pose& at = poses_.at(pose);
+  std::vector<std::uint32_t> result;
+  std::copy_if(at.coils.begin(), at.coils.end(), std::back_inserter(result), [&](auto coil) {
+    return at.measured.count(coil) == 0;
+  });
+  if (at.measured.count(0) == 0 && (!result.empty() || !at.has_sample)) {
+    result.insert(result.begin(), 0);
   }
   return result;
 }
@@ -134,7 +141,7 @@ std::string PoseGuide::advice() const {
     return "All " + std::to_string(poses_.size()) + " poses are measured: calibrate.";
   }
   const std::string which =
-      "Pose " + std::to_string(*target + 1) + " of " + std::to_string(poses_.size()) + ": ";
+      "Pose " + std::to_string(numberOf(*target)) + " of " + std::to_string(poses_.size()) + ": ";
   if (!joints_) {
     return which + "the joint angles are silent.";
   }
@@ -147,9 +154,8 @@ std::string PoseGuide::advice() const {
   std::string turns;
   for (std::size_t k = 0; k < joints_->size(); ++k) {
     const double left = poses_[*target].joints[k] - (*joints_)[k];
-    if (std::abs(left) > kSamePose) {
-      turns += (turns.empty() ? "" : ", ") + ("joint_" + std::to_string(k + 1)) + " by " +
-               inDegrees(left);
+    if (std::abs(left) > tolerance_) {
+      turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + inDegrees(left);
     }
   }
   return which + "turn " + turns + ".";

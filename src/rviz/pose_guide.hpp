@@ -20,15 +20,20 @@ namespace sac {
 /// been measured there. Knows no windows.
 class PoseGuide {
  public:
-  /// Differences of joint angles up to this one are the same pose [rad].
-  static constexpr double kSamePose = 0.02;
+  /// The rule of the calibration node (CalibrationStatus): joint angles that differ by at most
+  /// `tolerance` [rad] are the same pose, a coil below `threshold` [A] is off.
+  void judgeBy(double tolerance, double threshold);
+  /// As the description names the joints; joint_1..3 by default.
+  void nameJoints(const std::array<std::string, 3>& names) { names_ = names; }
+  const std::array<std::string, 3>& jointNames() const { return names_; }
 
   /// Poses to measure at, in their order, instead of those before.
   void take(const std::vector<msg::PlannedPose>& poses);
-  /// Joint angles [rad]: of joint_1..3 by their names, or the first three where there are none.
+  /// Joint angles [rad]: by their names, or the first three where there are none.
   void receive(const sensor_msgs::JointState& message);
-  /// A sample that is held: its pose and pattern are measured. A coil below `threshold` [A] is off.
-  void receive(const msg::CalibrationSample& sample, double threshold);
+  /// A sample that is held, to judge or not: its pose and pattern are measured, and with the
+  /// pattern its opposite, which tells the same.
+  void receive(const msg::CalibrationSample& sample);
 
   bool hasPlan() const { return !poses_.empty(); }
   /// Index of the first pose that is not measured; nothing where none is left.
@@ -38,7 +43,7 @@ class PoseGuide {
   /// Index of the pose where the rotor is; the first that is not measured, if there are several.
   std::optional<std::size_t> here() const;
   /// Coils to excite at a pose that no sample holds yet, counted from 1, in turn; 0: without
-  /// current, which comes first.
+  /// current, which comes first. None where all coils are measured, and anything at all.
   std::vector<std::uint32_t> missing(std::size_t pose) const;
   /// What to do, in words: "Pose 2 of 8: turn joint_1 by +12.3°, joint_3 by −4.0°."
   std::string advice() const;
@@ -46,12 +51,18 @@ class PoseGuide {
  private:
   struct Pose {
     std::array<double, 3> joints = {};
-    std::vector<std::uint32_t> patterns;
+    std::vector<std::uint32_t> coils;
     std::set<std::uint32_t> measured;
+    bool has_sample = false;
   };
 
-  static bool isSame(const std::array<double, 3>& one, const std::array<double, 3>& other);
+  bool isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) const;
+  /// The coil that currents [A] excite, counted from 1; 0: none; nothing: several.
+  std::optional<std::uint32_t> excitedCoil(const std::vector<double>& currents) const;
 
+  double tolerance_ = 0.0;  ///< [rad]
+  double threshold_ = 0.0;  ///< [A]
+  std::array<std::string, 3> names_ = {"joint_1", "joint_2", "joint_3"};
   std::vector<Pose> poses_;
   std::optional<std::array<double, 3>> joints_;
 };

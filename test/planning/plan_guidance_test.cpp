@@ -32,7 +32,7 @@ TEST(PlanGuidance, LeadsFromPoseToPose) {
   samples.push_back(sampleAt(first, {2.0, 0.0, 0.0}));
   EXPECT_NE(planStep(plan, samples, kThreshold).find("then with coil 3 excited."),
             std::string::npos);
-  samples.push_back(sampleAt(first + Eigen::Vector3d(0.0, 0.05, 0.0), {0.0, 0.0, 2.0}));
+  samples.push_back(sampleAt(first + Eigen::Vector3d(0.0, 0.04, 0.0), {0.0, 0.0, 2.0}));
   EXPECT_EQ(planStep(plan, samples, kThreshold),
             "Go on with the plan, 1 of 2 poses are measured: turn the rotor to joints 0.00, 0.30, "
             "0.00 rad (0, 17, 0 deg) and capture.");
@@ -60,12 +60,21 @@ TEST(PlanGuidance, TellsSignsOfPatterns) {
   EXPECT_EQ(planStep({pose}, samples, kThreshold), "");
 }
 
-TEST(PlanGuidance, HeldOutAndDistantSamplesCarryOutNothing) {
-  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}, {}}};
-  Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
+// A plan may be made for the samples that judge.
+TEST(PlanGuidance, CountsHeldOutSamples) {
+  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {1}, {}}};
+  Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 2.0, 0.0});
   held_out.validation = true;
-  const Sample distant = sampleAt(Eigen::Vector3d(0.0, 0.0, 0.2), {0.0, 0.0, 0.0});
-  EXPECT_NE(planStep(plan, {held_out, distant}, kThreshold), "");
+  EXPECT_EQ(planStep(plan, {held_out}, kThreshold), "");
+}
+
+TEST(PlanGuidance, DistantSamplesCarryOutNothing) {
+  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {}, {}}};
+  const auto step = [&](double q) {
+    return planStep(plan, {sampleAt(Eigen::Vector3d(0.0, -q, q), {0.0, 0.0, 0.0})}, kThreshold);
+  };
+  EXPECT_NE(step(kPoseTolerance + 0.01), "");
+  EXPECT_EQ(step(kPoseTolerance - 0.01), "");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"
 
@@ -245,6 +246,10 @@ TEST_F(PosePlanner, PlansJointsOfAnActuatorWithoutTorqueModel) {
   EXPECT_TRUE(isAllObservable(plan));
   problem_.request = {Cycle::kPoles, 0};
   EXPECT_THROW(planPoses(problem_, options_), ConfigError);
+}
+
+TEST(PlanOptions, KeepPosesApartByTwiceTheToleranceOfMeasuring) {
+  EXPECT_DOUBLE_EQ(kPoseTolerance, 0.5 * PosePlanOptions{}.minimum_spacing);
 }
 
 TEST_F(PosePlanner, RefusesOptionsOutOfRange) {

@@ -35,7 +35,10 @@ msg::CalibrationSample sample(double q1, double q2, double q3, const std::vector
 
 class PoseGuideTest : public testing::Test {
  protected:
-  PoseGuideTest() { guide_.take({planned(0.1, 0.0, -1.0, {2, 5}), planned(0.3, 0.2, 1.0, {})}); }
+  PoseGuideTest() {
+    guide_.judgeBy(0.05, 0.1);
+    guide_.take({planned(0.1, 0.0, -1.0, {2, 5}), planned(0.3, 0.2, 1.0, {})});
+  }
 
   PoseGuide guide_;
 };
@@ -60,19 +63,49 @@ TEST_F(PoseGuideTest, TellsWhatIsToBeMeasuredThere) {
 }
 
 TEST_F(PoseGuideTest, GoesOnWhenAllIsMeasured) {
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.01, 0.0, 0.0, 0.0}), 0.1);
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 0.0}), 0.1);
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.01, 0.0, 0.0, 0.0}));
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 0.0}));
   // Several coils, and another pose.
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 2.0}), 0.1);
-  guide_.receive(sample(0.2, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, 2.0}), 0.1);
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 2.0}));
+  guide_.receive(sample(0.2, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, 2.0}));
   EXPECT_EQ(guide_.missing(0), (Coils{5}));
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, -2.0}), 0.1);
+  // The opposite current tells the same.
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, -2.0}));
   EXPECT_EQ(guide_.next(), 1U);
   guide_.receive(joints(0.3, 0.2, 1.0));
   EXPECT_EQ(guide_.advice(), "Pose 2 of 2: there. Clamp the rotor, then measure.");
-  guide_.receive(sample(0.3, 0.2, 1.0, {0.0, 0.0, 0.0, 0.0, 0.0}), 0.1);
+  guide_.receive(sample(0.3, 0.2, 1.0, {0.0, 0.0, 0.0, 0.0, 0.0}));
   EXPECT_FALSE(guide_.next());
   EXPECT_EQ(guide_.advice(), "All 2 poses are measured: calibrate.");
+}
+
+TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {
+  guide_.receive(joints(0.14, -0.04, -1.04));
+  EXPECT_EQ(guide_.here(), 0U);
+  guide_.receive(joints(0.16, 0.0, -1.0));
+  EXPECT_FALSE(guide_.here());
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 2: turn joint_1 by −3.4°.");
+  guide_.judgeBy(0.07, 0.1);
+  EXPECT_EQ(guide_.here(), 0U);
+}
+
+// As the node counts: without its sample without current a pose is measured all the same.
+TEST_F(PoseGuideTest, NeedsEachCoilAndAnySample) {
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(guide_.missing(0), (Coils{0, 5}));
+  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, 2.0}));
+  EXPECT_EQ(guide_.missing(0), Coils());
+  guide_.receive(sample(0.3, 0.2, 1.0, {2.0, 2.0, 0.0, 0.0, 0.0}));
+  EXPECT_FALSE(guide_.next());
+}
+
+TEST_F(PoseGuideTest, CallsJointsAsTheDescriptionDoes) {
+  guide_.nameJoints({"roll", "pitch", "spin"});
+  sensor_msgs::JointState message;
+  message.name = {"spin", "roll", "pitch"};
+  message.position = {-1.0, 0.0, 0.0};
+  guide_.receive(message);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 2: turn roll by +5.7°.");
 }
 
 TEST_F(PoseGuideTest, KeepsTheLastAnglesWhereAMessageHasNone) {

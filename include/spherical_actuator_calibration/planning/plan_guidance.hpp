@@ -9,10 +9,15 @@ namespace sac {
 
 struct PlannedPose;
 
+/// Joint angles that differ by at most this from those of a planned pose are at it [rad], as a hand
+/// meets it: half of the least spacing of planned poses (PosePlanOptions). Panel and guided session
+/// have it from the message CalibrationStatus.
+inline constexpr double kPoseTolerance = 0.05;
+
 /// What the operator of a plan does next, in a sentence with the pose [rad and degrees] and the
-/// coils; empty when each pose is measured. A pose is measured when samples in use near it, by 0.1
-/// rad in each joint as a hand meets it, have each of its patterns or its opposite, or none where
-/// it has none. `current_threshold` [A]: a coil below it counts as off.
+/// coils; empty when each pose is measured. A pose is measured when samples at it, held out or not,
+/// have each of its patterns or its opposite, or when one is there where it has none.
+/// `current_threshold` [A]: a coil below it counts as off.
 std::string planStep(const std::vector<PlannedPose>& poses,
                      const std::vector<Sample>& samples,
                      double current_threshold);
