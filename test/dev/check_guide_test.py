@@ -114,6 +114,40 @@ class CheckGuide(unittest.TestCase):
         self.assertEqual(len(self.complaints()), 2)
         self.assertIn("9 questions are answered, not 10", self.complaints()[0])
 
+    def test_names_a_place_that_a_recipe_has_forgotten(self):
+        self.replace(
+            "doc/architecture.md",
+            "### Add a coil",
+            "### Add a stream\n\n- `base/torque.hpp`: `TorqueMeasurement` – one like it.\n- `src/actuator/`\n\n### Add a coil",
+        )
+        self.write(f"{INCLUDE}/base/torque.hpp", "struct TorqueMeasurement;\n")
+        self.write("src/base/torque.cpp", "TorqueMeasurement torque();\n")
+        self.write("src/actuator/pair.hpp", "TorqueMeasurement torque();\n")
+        self.assertEqual(self.complaints(), [])
+        self.write("config/recorded.yaml", "topics: [measured_torque]\n")
+        self.assertEqual(
+            self.complaints(),
+            ['doc/architecture.md: "Add a stream" does not name config/recorded.yaml, which names its sample.'],
+        )
+
+    def test_names_a_topic_that_is_spelt_otherwise(self):
+        self.write("src/base/angle.cpp", 'const char* kTopics[] = {"measured_angle", "tracker/pose", "capture"};\n')
+        self.write(
+            "doc/interfaces.md",
+            "## Topics\n\n| topic | type |\n|---|---|\n| `measured_angle`, `tracker/pose` (latched) | `Pose` |\n\n"
+            "## Services\n\n| service |\n|---|\n| `capture` |\n",
+        )
+        self.assertEqual(self.complaints(), [])
+        self.replace("doc/interfaces.md", "measured_angle", "mesured_angle")
+        self.replace("doc/interfaces.md", "`capture`", "`captur`")
+        self.assertEqual(
+            self.complaints(),
+            [
+                "doc/interfaces.md: mesured_angle stands in no source.",
+                "doc/interfaces.md: captur stands in no source.",
+            ],
+        )
+
     def test_names_a_picture_of_yesterday(self):
         self.replace(f"{INCLUDE}/actuator/coil.hpp", '#include "spherical_actuator_calibration/base/angle.hpp"\n', "")
         self.assertEqual(
