@@ -18,7 +18,8 @@ SMALLEST = 1e-17  # that a logarithmic scale shows
 
 def new(xlabel, ylabel):
     figure, axes = pyplot.subplots(figsize=(6.4, 4.0), constrained_layout=True)
-    axes.spines[["top", "right"]].set_visible(False)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     if xlabel != "time [s]":
@@ -28,7 +29,7 @@ def new(xlabel, ylabel):
 
 def put_legend(axes):
     """Above the picture, where it covers nothing."""
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, ncols=3, fontsize="small")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, ncol=3, fontsize="small")
 
 
 def band(axes, x, spreads, label, color):

@@ -51,8 +51,8 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.failures(page("run by tool.report_page_test; long", "scripts/demo")), [])
 
     def test_tests_that_are_listed_are_there(self):
-        self.assertEqual(self.failures(page("listed", "ctest --test-dir build -R tool.report_page_test")), [])
-        self.assertEqual(len(self.failures(page("listed", "ctest --test-dir build -R no_such_test"))), 1)
+        self.assertEqual(self.failures(page("listed", "cd build\nctest -R tool.report_page_test")), [])
+        self.assertEqual(len(self.failures(page("listed", "cd build; ctest -R no_such_test"))), 1)
 
     def test_descriptions_are_read(self):
         self.assertEqual(len(self.failures(page("", "actuator: {name: a}", "yaml"))), 1)

@@ -175,7 +175,7 @@ def _draw_residuals(axes, residuals, key, factor, colour, influential):
     _logarithmic_if_wide(axes, points(residuals)[1])
     axes.set_xlabel("sample")
     if rejected or marked:
-        axes.legend(loc="best", ncols=3, handletextpad=0.2, columnspacing=1.0)
+        axes.legend(loc="best", ncol=3, handletextpad=0.2, columnspacing=1.0)
 
 
 def residuals_of(quantity, residuals, influential):
@@ -254,7 +254,7 @@ def held_out(residuals):
         _whole_numbers(axes.xaxis)
         axes.set_xlabel("sample")
         axes.set_ylabel("residual / uncertainty")
-        axes.legend(loc="best", ncols=2)
+        axes.legend(loc="best", ncol=2)
         largest = max(item["standardized"] for item in residuals)
         figure.alt = (
             f"Standardised residuals of {len(residuals)} held-out measurements, the largest {significant(largest)}; "
@@ -291,7 +291,7 @@ def poses(samples, joints, tilt_limit):
             bar = figure.figure.colorbar(points, ax=axes, ticks=[-math.pi, 0.0, math.pi])
             bar.ax.set_yticklabels(["−π", "0", "π"])
             bar.set_label(f"{joints[2]['name']} [rad]")
-            axes.legend(loc="upper left", ncols=2, handletextpad=0.2)
+            axes.legend(loc="upper left", ncol=2, handletextpad=0.2)
         axes.set_aspect("equal")
         reach = 1.15 * max([limit] + [abs(angle) for sample in samples for angle in sample["joint_position"][:2]])
         axes.set_xlim(-reach, reach)
@@ -379,7 +379,7 @@ def changes(parameters):
         _whole_numbers(axes.xaxis)
         axes.set_xlabel("parameter, in the order of the table")
         axes.set_ylabel("change [mrad]")
-        axes.legend(loc="best", ncols=3, handletextpad=0.2, columnspacing=1.0)
+        axes.legend(loc="best", ncol=3, handletextpad=0.2, columnspacing=1.0)
         largest = max(abs(item["value"] - item["nominal"]) for item in identified)
         figure.alt = (
             f"Difference between identified and nominal value of {len(identified)} parameters with 95 % intervals: at "
