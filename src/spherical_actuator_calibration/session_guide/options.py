@@ -56,15 +56,7 @@ class Options:
             raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
 
 
-def parse(arguments):
-    """Options of a command line. Raises OptionError; prints help and exits for --help."""
-    default = Options()
-    parser = argparse.ArgumentParser(
-        prog="guided_session",
-        description="Leads through a whole calibration: poses, excitations, cycles, validation, saving. "
-        "Started again, it goes on where the session stands.",
-    )
-    add = parser.add_argument
+def _add_what_is_measured(add, default):
     add("--ns", default=default.ns, help="namespace of the actuator (%(default)s)")
     add("--poses", type=int, default=default.poses, help="planned poses (%(default)s)")
     add(
@@ -85,6 +77,12 @@ def parse(arguments):
         default=default.total_current,
         help="sum of all |currents| of a pattern, at most, as the amplifier's limit [A] (%(default)s)",
     )
+    add("--seed", type=int, default=default.seed, help="of the validation poses (%(default)s)")
+    add("--plan", metavar="FILE", help="the poses, coils and current of a plan by plan_session")
+    add("--repeat", metavar="FILE", help="those of an earlier session, from its session.db")
+
+
+def _add_how_it_is_measured(add, default):
     add("--dwell", type=float, default=default.dwell, help="of each capture [s] (%(default)s)")
     add("--settling", type=float, help="rest before it [s] (0.3 in a fixture, 3 by hand)")
     add(
@@ -111,9 +109,18 @@ def parse(arguments):
         help="publish fixture/target instead of asking the operator to turn the rotor",
     )
     add("--yes", action="store_true", help="nothing is asked any more: for scripts that say so")
-    add("--seed", type=int, default=default.seed, help="of the validation poses (%(default)s)")
-    add("--plan", metavar="FILE", help="the poses, coils and current of a plan by plan_session")
-    add("--repeat", metavar="FILE", help="those of an earlier session, from its session.db")
+
+
+def parse(arguments):
+    """Options of a command line. Raises OptionError; prints help and exits for --help."""
+    default = Options()
+    parser = argparse.ArgumentParser(
+        prog="guided_session",
+        description="Leads through a whole calibration: poses, excitations, cycles, validation, saving. "
+        "Started again, it goes on where the session stands.",
+    )
+    _add_what_is_measured(parser.add_argument, default)
+    _add_how_it_is_measured(parser.add_argument, default)
     values = vars(parser.parse_args(arguments))
     del values["yes"]
     return Options(**values)

@@ -1,0 +1,286 @@
+/// What flows against what is set, as the supervisor of currents judges it.
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "drivers/supervised_coils.hpp"
+#include "spherical_actuator_calibration/drivers/current_supervisor.hpp"
+
+namespace sac {
+namespace {
+
+/// What is set and measured in the first coil [A].
+struct Flow {
+  double set = 0.0;
+  double measured = 0.0;
+  int beats = 1;
+};
+
+std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& with = limits()) {
+  CurrentSupervisor supervisor(with, 2);
+  double now = 10.0;
+  for (const Flow& flow : flows) {
+    for (int n = 0; n < flow.beats; ++n) {
+      now += 0.005;
+      supervisor.setting(amperes(flow.set));
+      supervisor.observe(amperes(flow.measured), now);
+    }
+  }
+  return supervisor.fault();
+}
+
+TEST(SupervisedCurrents, WhatFlowsAgainstWhatWasSetIsAnErrorAfterSomeBeats) {
+  EXPECT_EQ(faultAfter({{1.0, 1.1, 100}}), "");
+  EXPECT_EQ(faultAfter({{0.0, 2.0, 3}}), "");
+  // A zero between them takes nothing back that counts.
+  EXPECT_NE(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0}, {0.0, 2.0, 3}}), "");
+  EXPECT_EQ(faultAfter({{0.0, 2.0, 3}, {0.0, 0.0, 24}, {0.0, 2.0, 3}}), "");
+  for (const Flow& flow : {Flow{0.0, 2.0, 4}, Flow{1.0, 0.0, 40}, Flow{1.0, -1.0, 4}}) {
+    EXPECT_NE(faultAfter({flow}), "") << flow.set << ' ' << flow.measured;
+  }
+  const std::string fault = faultAfter({{0.0, 2.0, 4}, {0.0, 0.0, 100}});
+  EXPECT_NE(fault.find("coil 1 carries 2.00 A where 0.00 A are set"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("Switch it off"), std::string::npos) << fault;
+}
+
+// 0.15 s of 1.5 s: less than what agreeing beats take back of the comparison's count.
+TEST(SupervisedCurrents, CurrentThatComesRarelyIsAnErrorToo) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  std::vector<Flow> flows{{0.0, 0.0, 270}, {0.0, 2.0, 30}};
+  EXPECT_EQ(faultAfter(flows, shipped), "");
+  flows.insert(flows.end(), {{0.0, 0.0, 270}, {0.0, 2.0, 30}});
+  EXPECT_NE(faultAfter(flows, shipped), "");
+  // An honest amplifier's lag is none, however often.
+  flows.clear();
+  for (int n = 0; n < 100; ++n) {
+    flows.insert(flows.end(), {{2.0, 0.0, 20}, {0.0, 0.0, 13}, {0.0, 2.0, 20}, {0.0, 0.0, 100}});
+  }
+  EXPECT_EQ(faultAfter(flows, shipped), "");
+}
+
+// In 2 s 0.16 s of 2 A, in a coil that nobody commands, while another one has its current.
+TEST(SupervisedCurrents, CurrentThatComesRarelyBesideACommandedCoilIsAnErrorToo) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  CurrentSupervisor supervisor(shipped, 2);
+  double told = 0.0;
+  for (int beat = 0; beat < 1000 && told == 0.0; ++beat) {
+    supervisor.setting(amperes(1.0));
+    supervisor.observe(amperes(1.0, beat % 50 < 4 ? 2.0 : 0.0), 0.005 * beat);
+    told = supervisor.fault().empty() ? 0.0 : 0.005 * beat;
+  }
+  EXPECT_GT(told, 1.0);
+  EXPECT_LT(told, 4.0);
+  EXPECT_NE(supervisor.fault().find("coil 2 carries 2.00 A where 0.00 A are set"),
+            std::string::npos)
+      << supervisor.fault();
+}
+
+TEST(SupervisedCurrents, TheHeartbeatIsWithheldBeforeADeviationIsSure) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  CurrentSupervisor supervisor(shipped, 2);
+  double time = 0.0;
+  const auto beats = [&](int count, double measured) {
+    for (int beat = 0; beat < count; ++beat, time += 0.005) {
+      supervisor.setting(amperes(1.0));
+      supervisor.observe(amperes(measured), time);
+    }
+  };
+  beats(100, 1.0);
+  EXPECT_TRUE(supervisor.mayBeat());
+  // Half of what is an error; no lag explains it, as nothing else was set before.
+  beats(21, 3.0);
+  EXPECT_FALSE(supervisor.mayBeat());
+  EXPECT_EQ(supervisor.fault(), "");
+  beats(200, 1.0);
+  EXPECT_TRUE(supervisor.mayBeat());
+}
+
+TEST(SupervisedCurrents, ADriverThatStartsGivesNoHeartbeatWhileCurrentFlows) {
+  CurrentSupervisor supervisor(limits(), 2);
+  EXPECT_FALSE(supervisor.mayBeat());
+  supervisor.setting(amperes(0.0));
+  supervisor.observe(amperes(0.0, 1.0), 0.0);
+  EXPECT_FALSE(supervisor.mayBeat());
+  supervisor.observe(amperes(0.0, 0.1), 0.005);
+  EXPECT_TRUE(supervisor.mayBeat());
+}
+
+// Of a loop that is held up: each beat finds that the command has run out, or one again.
+TEST(SupervisedCurrents, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
+  std::vector<Flow> late;
+  for (int n = 0; n < 20; ++n) {
+    late.push_back({2.0, 0.0});
+    late.push_back({0.0, 2.0});
+  }
+  EXPECT_EQ(faultAfter(late), "");
+  // On the way from one to the other.
+  EXPECT_EQ(faultAfter({{0.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}, {2.0, 1.0}, {0.0, 1.0}, {2.0, 1.0}}),
+            "");
+  // Beyond both, and what was set once does not excuse what flows for long.
+  EXPECT_NE(faultAfter({{2.0, 0.0}, {0.0, 2.3}, {2.0, -0.3}, {0.0, 2.3}, {2.0, 2.3}}), "");
+  EXPECT_NE(faultAfter({{2.0, 2.0}, {0.0, 2.0, 40}}), "");
+}
+
+/// A supervisor in a fault, by a current in the second coil.
+class FaultOfCurrents : public ::testing::Test {
+ protected:
+  FaultOfCurrents() { deviate(); }
+
+  void deviate() { observe(4, 2.0); }
+  void observe(int beats, double measured) {
+    for (int n = 0; n < beats; ++n) {
+      supervisor_.setting(amperes(0.0));
+      beat_ += 0.005;
+      supervisor_.observe(amperes(0.0, measured), beat_);
+    }
+  }
+  /// What follows happens a moment later.
+  void command(double current) {
+    now_ += 0.1;
+    ASSERT_EQ(supervisor_.offer(given("/owner", now_, current), at(now_)), "");
+  }
+  bool isFollowed() const { return supervisor_.command(now_).has_value(); }
+
+  CurrentSupervisor supervisor_{limits(), 2};
+  double now_ = 10.0;
+  double beat_ = 10.0;
+};
+
+TEST_F(FaultOfCurrents, EndsWhenZeroWasMeasuredForAsLongAndIsCommanded) {
+  ASSERT_NE(supervisor_.fault(), "");
+  observe(3, 0.0);
+  command(0.0);
+  EXPECT_FALSE(isFollowed());
+  observe(1, 0.1);
+  EXPECT_EQ(supervisor_.fault(), "");
+  EXPECT_EQ(supervisor_.faults(), 1);
+  EXPECT_TRUE(isFollowed());
+  command(1.0);
+  EXPECT_EQ((*supervisor_.command(now_))[0], 1.0);
+}
+
+TEST_F(FaultOfCurrents, StaysWhileAnythingButZeroIsCommanded) {
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "nothing was commanded";
+  command(1.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "the commander goes on blindly";
+  command(0.0);
+  command(1.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "") << "it wants current again";
+  EXPECT_FALSE(isFollowed());
+  command(0.0);
+  observe(1, 0.0);
+  EXPECT_EQ(supervisor_.fault(), "");
+}
+
+TEST_F(FaultOfCurrents, StaysWhileMoreThanZeroIsMeasured) {
+  command(0.0);
+  for (int n = 0; n < 5; ++n) {
+    observe(3, 0.0);
+    observe(1, 0.2);
+    EXPECT_NE(supervisor_.fault(), "");
+  }
+  observe(4, 0.0);
+  EXPECT_EQ(supervisor_.fault(), "");
+}
+
+// Its own watchdog made it zero, as the heartbeat was withheld: with the next heartbeat the current
+// that it does not let go of would be back.
+TEST_F(FaultOfCurrents, StaysWhereTheAmplifierDidNotObeyByItself) {
+  command(0.0);
+  observe(50, 2.0);
+  observe(1000, 0.0);
+  EXPECT_NE(supervisor_.fault(), "");
+  EXPECT_FALSE(isFollowed());
+}
+
+TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
+  CurrentSupervisor supervisor(limits(), 2);
+  ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
+  for (const double now : {10.0, 10.1}) {
+    for (int n = 0; n < 4; ++n) {
+      supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n);
+    }
+  }
+  EXPECT_NE(supervisor.fault(), "");
+}
+
+TEST_F(FaultOfCurrents, StaysTheThirdTime) {
+  for (int fault = 1; fault < 3; ++fault) {
+    EXPECT_EQ(supervisor_.faults(), fault);
+    command(0.0);
+    observe(4, 0.0);
+    ASSERT_EQ(supervisor_.fault(), "");
+    deviate();
+  }
+  EXPECT_NE(supervisor_.fault().find("start the driver anew"), std::string::npos);
+  command(0.0);
+  observe(100, 0.0);
+  EXPECT_NE(supervisor_.fault(), "");
+}
+
+TEST(SupervisedCurrents, DuringSuchAnErrorNoCommandIsFollowed) {
+  CurrentSupervisor supervisor(limits(), 2);
+  for (int n = 0; n < 4; ++n) {
+    supervisor.observe(amperes(0.0, 2.0), 0.005 * n);
+  }
+  ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
+  EXPECT_FALSE(supervisor.command(10.0));
+  EXPECT_NE(supervisor.zeroReason(10.0).find("coil 2"), std::string::npos);
+}
+
+/// What is set and measured for some beats, of so many seconds each, and whether it confirms zero.
+struct Ending {
+  const char* what;
+  std::vector<Flow> flows;
+  bool confirms;
+  double beat = 0.005;
+};
+
+TEST(SupervisedCurrents, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
+  const std::vector<Ending> endings{
+      {"nothing was measured", {}, false},
+      {"one zero", {{0.0, 0.0}}, false},
+      {"zeros for 0.29 s", {{0.0, 0.0, 59}}, false},
+      {"zeros for 0.31 s", {{0.0, 0.01, 63}}, true},
+      {"two zeros far from each other", {{0.0, 0.0, 2}}, false, 0.4},
+      {"five of a fast loop", {{0.0, 0.0, 5}}, false, 0.001},
+      {"many of a fast loop", {{0.0, 0.0, 302}}, true, 0.001},
+      {"another current is set", {{0.0, 0.0, 70}, {1.0, 0.0, 70}}, false},
+      {"and zero again", {{1.0, 0.0, 70}, {0.0, 0.0, 40}}, false},
+      {"a pulse still under way", {{2.0, 0.0, 30}, {0.0, 0.0, 30}, {0.0, 2.0, 30}}, false},
+      {"a current shows once", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 40}}, false},
+      {"and then no more", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 63}}, true},
+      {"each second one is zero", {{0.0, 2.0}, {0.0, 0.0}, {0.0, 2.0}, {0.0, 0.0}}, false},
+  };
+  for (const Ending& ending : endings) {
+    CurrentSupervisor supervisor(limits(), 2);
+    double now = 10.0;
+    for (const Flow& flow : ending.flows) {
+      for (int n = 0; n < flow.beats; ++n) {
+        now += ending.beat;
+        supervisor.setting(amperes(flow.set));
+        supervisor.observe(amperes(0.0, flow.measured), now);
+      }
+    }
+    EXPECT_EQ(supervisor.isZeroConfirmed(), ending.confirms) << ending.what;
+    EXPECT_EQ(supervisor.unconfirmedReason().empty(), ending.confirms) << ending.what;
+  }
+}
+
+TEST(SupervisedCurrents, TellsTheCurrentThatKeepsZeroFromBeingConfirmed) {
+  CurrentSupervisor supervisor(limits(), 2);
+  EXPECT_NE(supervisor.unconfirmedReason(), "");
+  supervisor.observe(amperes(0.0, -0.2), 10.0);
+  EXPECT_NE(supervisor.unconfirmedReason().find("0.20 A"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sac
