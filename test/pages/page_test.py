@@ -247,6 +247,8 @@ class Reader:
             listed = subprocess.run(["ctest", "-N"], cwd=BUILD, stdout=subprocess.PIPE, text=True, check=True).stdout
             names = re.findall(r"^ *Test +#\d+: (\S+)", listed, re.MULTILINE)
             self.tests = {re.sub(r"^_ctest_\w+_rostest_test_rostest_(\w+)\.test$", r"\1", name) for name in names}
+            # Also those that a build without the session database leaves out.
+            self.tests |= {path.stem for path in (self.package / "test/rostest").glob("*.test")}
         return self.tests
 
     def check_yaml(self, block):
