@@ -15,7 +15,12 @@ LARGEST = 64 << 20  # [bytes] of a text file
 DEEPEST = 64  # maps and lists within each other
 MOST_NODES = 1_000_000  # of a document; an alias counts as much as what it stands for
 LONGEST_NUMBER = 1024  # [characters]; Python needs the square of it
-KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"))
+KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a FIFO"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISLNK, "a symbolic link"),
+)
 # Obeyed by terminals, or no character at all: bytes of a file name that are no UTF-8 are surrogates.
 NOT_SHOWN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
 
@@ -60,9 +65,21 @@ def _opened(path, flags):
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)
-        kind = next((name for is_kind, name in KINDS if is_kind(mode)), "a device")
-        raise TextFileError(f"{path}: is {kind}, not a file.")
+        raise TextFileError(f"{path}: is {_kind_of(mode)}, not a file.")
     return descriptor
+
+
+def _kind_of(mode):
+    return next((name for is_kind, name in KINDS if is_kind(mode)), "a device")
+
+
+def other_kind(path, follow=True):
+    """What stands at a path where a file belongs, such as "a FIFO"; None for a file and for nothing."""
+    try:
+        mode = os.stat(path, follow_symlinks=follow).st_mode
+    except (OSError, ValueError):
+        return None
+    return None if stat.S_ISREG(mode) else _kind_of(mode)
 
 
 def read_text(path, largest=LARGEST):

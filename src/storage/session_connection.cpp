@@ -1,6 +1,7 @@
 #include "session_connection.hpp"
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <SQLiteCpp/Transaction.h>
@@ -46,6 +47,27 @@ constexpr char kLost[] =
   throw DataError(path + ": " + failure +
                   ", because the file was removed or replaced at this moment; put it back as it "
                   "was, and start the node again.");
+}
+
+/// What stands at a path where a file, or nothing, belongs; empty when there is nothing wrong.
+std::string wrongKind(const std::string& path) {
+  std::error_code ignored;
+  switch (std::filesystem::symlink_status(path, ignored).type()) {
+    case std::filesystem::file_type::none:
+    case std::filesystem::file_type::not_found:
+    case std::filesystem::file_type::regular:
+      return "";
+    case std::filesystem::file_type::directory:
+      return "a folder";
+    case std::filesystem::file_type::symlink:
+      return "a symbolic link";
+    case std::filesystem::file_type::fifo:
+      return "a FIFO";
+    case std::filesystem::file_type::socket:
+      return "a socket";
+    default:
+      return "a device";
+  }
 }
 
 /// A journal that is void between two transactions, and no shared memory: what others do to a log
@@ -112,6 +134,18 @@ void SessionConnection::write(const std::string& failure,
     throwLost(path_, failure);
   }
   content_ = std::move(after);
+}
+
+void SessionConnection::requireFilesBeside(const std::string& failure) const {
+  // Links are followed to where SQLite has its journal.
+  const std::string file = sqlite3_db_filename(database_.getHandle(), "main");
+  for (const char* const ending : {"-journal", "-wal", "-shm"}) {
+    const std::string kind = wrongKind(file + ending);
+    if (!kind.empty()) {
+      throw DataError(path_ + ": " + failure + ", because " + file + ending + " is " + kind +
+                      ", not a file; remove it, and try again.");
+    }
+  }
 }
 
 void SessionConnection::requireInPlace(const std::string& failure) const {

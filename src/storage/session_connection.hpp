@@ -27,6 +27,7 @@ class SessionConnection {
   /// Runs `action` and returns its result. `failure` tells in errors what did not happen.
   template <typename Action>
   auto read(const std::string& failure, Action action) const {
+    requireFilesBeside(failure);
     try {
       return action();
     } catch (const SQLite::Exception& error) {
@@ -41,6 +42,8 @@ class SessionConnection {
 
  private:
   [[noreturn]] void fail(const std::string& failure, const SQLite::Exception& error) const;
+  /// Refuses what SQLite would open beside the file and wait for.
+  void requireFilesBeside(const std::string& failure) const;
   /// Refuses what would be stored where it cannot be read back.
   void requireInPlace(const std::string& failure) const;
   void requireContent(const std::string& failure) const;

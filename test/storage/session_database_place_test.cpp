@@ -3,6 +3,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -71,6 +72,44 @@ TEST_F(PlaceTest, WhatWasRefusedMeanwhileIsNotThereAfterwards) {
   SessionDatabase database(path(), jointIdentity());
   ASSERT_EQ(database.samplesInUse().size(), 2U);
   EXPECT_EQ(database.samplesInUse()[1].id, 2U);
+}
+
+TEST_F(PlaceTest, WhatIsNoFileBesideItIsToldAndNotOpened) {
+  SessionDatabase database(path(), jointIdentity());
+  std::uint32_t id = 0;
+  for (const char* const ending : {"-journal", "-wal", "-shm"}) {
+    const std::string beside = path() + ending;
+    fs::remove(beside);
+    ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
+    const std::string told = ", because " + beside + " is a FIFO, not a file; remove it";
+    EXPECT_NE(add(database, 9).find(told), std::string::npos) << add(database, 9);
+    EXPECT_NE(errorMessage<DataError>([&] { database.samplesInUse(); }).find(told),
+              std::string::npos);
+    fs::remove(beside);
+    fs::create_symlink("elsewhere", beside);
+    EXPECT_NE(add(database, 9).find("is a symbolic link, not a file"), std::string::npos);
+    fs::remove(beside);
+    EXPECT_EQ(add(database, ++id), "no exception");
+  }
+}
+
+TEST_F(PlaceTest, ASessionIsNotOpenedWithWhatIsNoFileBesideIt) {
+  for (const char* const ending : {"-journal", "-wal", "-shm"}) {
+    const std::string beside = path() + ending;
+    ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
+    const std::string told =
+        errorMessage<DataError>([&] { const SessionDatabase opened(path(), jointIdentity()); });
+    EXPECT_NE(told.find(beside + " is a FIFO, not a file; remove it"), std::string::npos) << told;
+    fs::remove(beside);
+    { const SessionDatabase opened(path(), jointIdentity()); }
+    // What a link leads to has its journal there.
+    fs::remove(beside);
+    fs::create_symlink(path(), folder_.path("link.db"));
+    ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
+    EXPECT_THROW(SessionDatabase(folder_.path("link.db"), jointIdentity()), DataError);
+    fs::remove(beside);
+    fs::remove(folder_.path("link.db"));
+  }
 }
 
 /// Whether a process that knows nothing of this one can open the session: it waits for a byte.

@@ -250,6 +250,23 @@ class Export(Folder):
             self.assertEqual(result.returncode, 2)
             self.assertIn(part, result.stderr)
 
+    def test_what_would_be_waited_for_is_refused(self):
+        session = self.folder / "session.db"
+        os.mkfifo(session)
+        # As a program, which can be given up on.
+        program = SOURCE / "scripts" / "export_session"
+        self.assertIn(f"{session}: is a FIFO, not a file.", run(program, session, self.folder / "out").stderr)
+        session.unlink()
+        with contextlib.closing(sqlite3.connect(session)) as database:
+            database.execute("CREATE TABLE a (b)")
+        for ending in ("-journal", "-wal", "-shm"):
+            beside = self.folder / f"session.db{ending}"
+            os.mkfifo(beside)
+            result = run("timeout", "60", program, session, self.folder / "out")
+            self.assertEqual(result.returncode, 2, result)
+            self.assertIn(f"{beside} is a FIFO, not a file; remove it.", result.stderr)
+            beside.unlink()
+
     def test_what_was_left_half_written_is_refused(self):
         killed = (
             "import os, sqlite3\n"

@@ -8,7 +8,7 @@ import os
 import pathlib
 import sqlite3
 
-from ..text_files import write_text
+from ..text_files import other_kind, write_text
 from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
@@ -46,8 +46,7 @@ class Session:
 
     def __init__(self, path):
         self.path = path
-        if not os.path.isfile(path):
-            raise ExportError(f"{path}: there is no such file.")
+        self._require_files()
         self._database = sqlite3.connect(":memory:")
         try:
             self._copy()
@@ -61,6 +60,19 @@ class Session:
 
     def __exit__(self, *_):
         self._database.close()
+
+    def _require_files(self):
+        """SQLite would open what stands at these names, and wait for ever for who writes into a FIFO."""
+        kind = other_kind(self.path)
+        if kind is not None:
+            raise ExportError(f"{self.path}: is {kind}, not a file.")
+        if not os.path.isfile(self.path):
+            raise ExportError(f"{self.path}: there is no such file.")
+        for ending in ("-journal", "-wal", "-shm"):
+            beside = os.path.realpath(self.path) + ending
+            kind = other_kind(beside, follow=False)
+            if kind is not None:
+                raise ExportError(f"{self.path}: cannot be read while {beside} is {kind}, not a file; remove it.")
 
     def _copy(self):
         """One state of the session; the node, which waits while somebody reads, waits for no more than this."""
