@@ -5,6 +5,7 @@
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "storage_error.hpp"
+#include "table_text.hpp"
 
 namespace sac {
 namespace {
@@ -129,6 +130,17 @@ std::int64_t pragma(const SQLite::Database& database, const char* sql) {
   return row.next() ? row.integer() : 0;
 }
 
+/// Of every format that is known.
+TableTexts ownTexts() {
+  SQLite::Database own(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  createSessionSchema(own);
+  TableTexts texts = tableTexts(own);
+  // Formats before 4.
+  texts["cycles"].insert(
+      "cycle TEXT NOT NULL CHECK (cycle IN ('joint', 'poles', 'coil', 'refine'))");
+  return texts;
+}
+
 }  // namespace
 
 bool hasSessionSchema(const SQLite::Database& database, const std::string& path) {
@@ -145,6 +157,13 @@ bool hasSessionSchema(const SQLite::Database& database, const std::string& path)
     throw DataError(path + ": a newer version of this package made this session database (format " +
                     std::to_string(version) + ", this version knows " +
                     std::to_string(kSchemaVersion) + "); update the package.");
+  }
+  // Before any table is read: a view can be without end, a trigger take back what is inserted.
+  const std::string foreign = foreignObject(database, ownTexts());
+  if (!foreign.empty()) {
+    throw DataError(path + ": the session database holds " + foreign +
+                    " as this package does not make it; put a copy of the file back, or move it "
+                    "away to start anew.");
   }
   RowReader check(database, "PRAGMA quick_check(1)");
   const std::string finding = check.next() ? check.text() : "no answer";

@@ -7,7 +7,8 @@
 namespace sac {
 
 /// True when the file is a session database; false when it holds nothing yet. Changes nothing.
-/// Throws DataError when it is something else, of a newer version, or damaged.
+/// Throws DataError when it is something else, of a newer version, damaged, or holds what
+/// this package does not make, such as triggers.
 bool hasSessionSchema(const SQLite::Database& database, const std::string& path);
 
 /// Makes the tables of doc/session_database.md, within the caller's transaction.

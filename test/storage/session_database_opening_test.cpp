@@ -1,6 +1,8 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -125,6 +127,36 @@ TEST_F(OpeningTest, OtherDatabasesAreRefusedAndKept) {
   const std::string before = contentOf(path());
   expectRefusal("this is not a session database");
   EXPECT_EQ(contentOf(path()), before);
+}
+
+TEST_F(OpeningTest, WhatThisPackageDoesNotMakeIsRefused) {
+  const std::string whole = make();
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"CREATE TRIGGER t AFTER INSERT ON samples BEGIN DELETE FROM samples WHERE id = NEW.id; END",
+       "the trigger \"t\""},
+      {"CREATE TABLE q AS SELECT * FROM unit; DROP TABLE unit; CREATE VIEW unit AS WITH RECURSIVE "
+       "r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r) SELECT q.* FROM q, r WHERE n < 0",
+       "the table \"q\""},
+      {"DROP TABLE unit; CREATE VIEW unit AS WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL "
+       "SELECT n + 1 FROM r) SELECT n FROM r WHERE n < 0",
+       "the view \"unit\""},
+      {"CREATE INDEX stamps ON samples (stamp)", "the index \"stamps\""},
+      {"DROP TABLE sample_currents; CREATE TABLE sample_currents (sample INTEGER, coil INTEGER, "
+       "current ANY NOT NULL, UNIQUE (sample) ON CONFLICT REPLACE) STRICT",
+       "the table \"sample_currents\""},
+      {"ALTER TABLE unit ADD COLUMN bytes BLOB AS (zeroblob(1000000000))", "the table \"unit\""},
+      {"DROP TABLE unit; CREATE TABLE unit (id INTEGER PRIMARY KEY /* , */ CHECK (id = 1), name "
+       "TEXT NOT NULL)",
+       "the table \"unit\""},
+      {"CREATE TABLE \"\x1b[31m\" (a)", "the table \"\\x1b[31m\""},
+  };
+  for (const auto& [sql, part] : cases) {
+    folder_.write("session.db", whole);
+    database_examples::change(path(), sql);
+    const std::string before = contentOf(path());
+    expectRefusal("the session database holds " + part + " as this package does not make it");
+    EXPECT_EQ(contentOf(path()), before);
+  }
 }
 
 TEST_F(OpeningTest, AnEmptyFileBecomesADatabase) {

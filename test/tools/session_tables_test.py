@@ -267,6 +267,28 @@ class Export(Folder):
             self.assertIn(f"{beside} is a FIFO, not a file; remove it.", result.stderr)
             beside.unlink()
 
+    def test_what_is_no_table_is_refused(self):
+        session = self.folder / "session.db"
+        endless = "WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r) SELECT n FROM r"
+        for number, (sql, part) in enumerate(
+            (
+                (f"CREATE VIEW samples AS {endless}", 'the view "samples"'),
+                ("CREATE TRIGGER t AFTER INSERT ON a BEGIN DELETE FROM a; END", 'the trigger "t"'),
+                ("CREATE TABLE samples (id, date AS (hex(zeroblob(400000000))))", 'the column "date"'),
+                ("CREATE VIRTUAL TABLE samples USING fts5(id)", 'the table "samples"'),
+            )
+        ):
+            session.unlink(missing_ok=True)
+            with contextlib.closing(sqlite3.connect(session)) as database:
+                database.execute("PRAGMA application_id = 1396786003")
+                database.execute("PRAGMA user_version = 4")
+                database.execute("CREATE TABLE a (b)")
+                database.execute(sql)
+            program = SOURCE / "scripts" / "export_session"
+            result = run("timeout", "60", program, session, self.folder / f"out{number}")
+            self.assertEqual(result.returncode, 2, result)
+            self.assertIn(f"{session}: holds {part}, which this package does not make", result.stderr)
+
     def test_what_was_left_half_written_is_refused(self):
         killed = (
             "import os, sqlite3\n"

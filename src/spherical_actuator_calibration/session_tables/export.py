@@ -98,6 +98,22 @@ class Session:
                 f"{self.path}: a newer version of this package made this session database; update the package."
             )
 
+        self._require_tables()
+
+    def _require_tables(self):
+        """A view can be without end, and a column that is calculated of any size."""
+        foreign = self.rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index') OR rootpage = 0")
+        foreign = foreign or self.rows(
+            "SELECT 'column', p.name FROM sqlite_schema AS s, pragma_table_xinfo(s.name) AS p "
+            "WHERE s.type = 'table' AND p.hidden <> 0"
+        )
+        if foreign:
+            kind, name = foreign[0]
+            raise ExportError(
+                f'{self.path}: holds the {kind} "{name}", which this package does not make; export a copy that '
+                "nobody has changed."
+            )
+
     def _pragma(self, name):
         return self._database.execute(f"PRAGMA {name}").fetchone()[0]
 
