@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include <yaml-cpp/eventhandler.h>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::size_t kDeepest = 64;
 constexpr std::size_t kMostNodes = 1'000'000;
+constexpr std::size_t kMostOpen = 1000;
+constexpr std::size_t kMostSigns = 2 * kMostNodes;
 
 /// Listens to the parser and counts, so that nothing is built of a text that is refused.
 class Census : public YAML::EventHandler {
@@ -101,6 +104,31 @@ class Census : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::size_t> sizes_;  ///< of collections that have ended, in nodes
 };
 
+// yaml-cpp holds all that stands in brackets, 250 bytes for a sign, before it tells any of it. What
+// is quoted or a comment counts, too: how much of that there is changes nothing by much.
+void refuseWhatIsHeld(const std::string& text) {
+  int line = 1;
+  std::size_t open = 0;
+  std::size_t signs = 0;
+  for (const char sign : text) {
+    line += sign == '\n' ? 1 : 0;
+    if (sign == '[' || sign == '{') {
+      ++open;
+    } else if ((sign == ']' || sign == '}') && open > 0) {
+      --open;
+    }
+    signs += std::string_view("[]{},:?&*!\"'").find(sign) != std::string_view::npos ? 1 : 0;
+    if (open > kMostOpen) {
+      throw YamlDefect(line, "more than " + std::to_string(kMostOpen) + " brackets are open here.");
+    }
+    if (signs > kMostSigns) {
+      throw YamlDefect(line,
+                       "more than " + std::to_string(kMostSigns) +
+                           " brackets, commas, colons and the like are not read.");
+    }
+  }
+}
+
 #ifdef YAML_CPP_BEFORE_0_7
 /// yaml-cpp never gets past a colon before the end of a list in brackets, and takes memory without
 /// end meanwhile.
@@ -118,6 +146,7 @@ void refuseColonBeforeBracket(const std::string& text) {
 }  // namespace
 
 YAML::Node parseSingleDocument(const std::string& text) {
+  refuseWhatIsHeld(text);
 #ifdef YAML_CPP_BEFORE_0_7
   refuseColonBeforeBracket(text);
 #endif

@@ -65,9 +65,30 @@ TEST(InputFile, AYamlTextThatNeverEndsIsRefused) {
 TEST(InputFile, AYamlTextIsOnlySoDeep) {
   const std::string deep = std::string(40, '[') + std::string(40, ']');
   EXPECT_EQ(yamlRefusal("a: " + deep), "no exception");
-  const std::string deeper = std::string(100'000, '[');
-  EXPECT_EQ(yamlRefusal("a: " + deeper),
+  EXPECT_EQ(yamlRefusal("a: " + std::string(1000, '[')),
             "f.yaml:1: maps and lists stand more than 64 deep within each other.");
+}
+
+// Of what stands in brackets yaml-cpp tells nothing before it has all of it in memory.
+TEST(InputFile, AYamlTextHasOnlySoManyBracketsAndSigns) {
+  for (const char bracket : {'[', '{'}) {
+    EXPECT_EQ(yamlRefusal("a:\n  " + std::string(100'000, bracket)),
+              "f.yaml:2: more than 1000 brackets are open here.");
+  }
+  const auto repeated = [](const std::string& text, std::size_t count) {
+    std::string result;
+    for (std::size_t n = 0; n < count; ++n) {
+      result += text;
+    }
+    return result;
+  };
+  for (const char* const text : {"a,", "\"]\"[", "[#]\n", "{a: 1},", "&a ", "? ", "a: ", "!x "}) {
+    const std::string message = yamlRefusal("[" + repeated(text, 2'500'000));
+    EXPECT_NE(message.find(" are not read."), std::string::npos) << text << message;
+  }
+  EXPECT_EQ(yamlRefusal("# within [0, inf)\na: [" + repeated("{b: [1, 2]}, ", 20'000) + "]\n"),
+            "no exception");
+  EXPECT_EQ(yamlRefusal(repeated("# within [0, inf)\n", 900) + "a: 1\n"), "no exception");
 }
 
 TEST(InputFile, AYamlTextCountsWhatItsAliasesStandFor) {
