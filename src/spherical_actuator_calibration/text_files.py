@@ -15,6 +15,11 @@ LARGEST = 64 << 20  # [bytes] of a text file
 DEEPEST = 64  # maps and lists within each other
 MOST_NODES = 1_000_000  # of a document; an alias counts as much as what it stands for
 LONGEST_NUMBER = 1024  # [characters]; Python needs the square of it
+LONGEST_INTEGER = 80  # [characters]; 64 bit as "0b..." have 66
+MOST_DIRECTIVES = 8  # lines such as %TAG; libyaml compares each with all before it
+DIRECTIVE = re.compile("(?:^|[\r\n\x85\u2028\u2029])\ufeff?%")
+INTEGER = dict(yaml.SafeLoader.yaml_implicit_resolvers["1"])["tag:yaml.org,2002:int"]
+TAGS = (None, "!", "tag:yaml.org,2002:str")  # others call for work of which the text tells nothing
 KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a FIFO"),
@@ -99,6 +104,7 @@ def read_yaml(path, largest=LARGEST):
 
 def parsed_yaml(text, path):
     """The same of a text; `path` names it in errors. Its size is known before anything is built of it."""
+    _require_few_directives(text, path)
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         _Census(path).take(yaml.parse(text, Loader=loader))
@@ -114,6 +120,13 @@ def parsed_yaml(text, path):
         raise TextFileError(f"{path}{place}: this is not valid YAML{words}.") from error
 
 
+def _require_few_directives(text, path):
+    for number, directive in enumerate(DIRECTIVE.finditer(text), 1):
+        if number > MOST_DIRECTIVES:
+            line = text.count("\n", 0, directive.end()) + 1
+            raise TextFileError(f"{path}:{line}: more than {MOST_DIRECTIVES} lines begin with %; none is needed.")
+
+
 class _Census:
     """Counts what a document would be made of."""
 
@@ -127,6 +140,8 @@ class _Census:
         """Raises TextFileError for what is not to be built."""
         documents = 0
         for event in events:
+            if isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)) and event.tag not in TAGS:
+                self._fail(event, f"a tag, {event.tag[:40]}, is not read; write the value without it.")
             if isinstance(event, yaml.ScalarEvent):
                 self._take_scalar(event)
             elif isinstance(event, yaml.CollectionStartEvent):
@@ -145,10 +160,19 @@ class _Census:
 
     def _take_scalar(self, event):
         self._count(event, 1)
-        if len(event.value) > LONGEST_NUMBER and event.implicit[0] and event.value[0] in "+-.0123456789":
-            self._fail(event, f"a number has more than {LONGEST_NUMBER} digits.")
+        if event.implicit[0] and event.value[:1] in tuple("+-.0123456789"):
+            self._take_number(event)
         if event.anchor is not None:
             self._sizes[event.anchor] = 1
+
+    def _take_number(self, event):
+        if len(event.value) > LONGEST_NUMBER:
+            self._fail(event, f"a number has more than {LONGEST_NUMBER} digits.")
+        # Of larger ones any number have the same hash, and a map of them takes the square of its size.
+        if INTEGER.match(event.value):
+            too_long = len(event.value) > LONGEST_INTEGER
+            if too_long or not -(1 << 63) <= _integer(event.value) < 1 << 64:
+                self._fail(event, "a whole number has more than 64 bit; write it as a text in quotes.")
 
     def _begin(self, event):
         self._open.append((event.anchor, self._nodes))
@@ -163,6 +187,11 @@ class _Census:
 
     def _fail(self, event, sentence):
         raise TextFileError(f"{self._path}:{event.start_mark.line + 1}: {sentence}")
+
+
+def _integer(text):
+    """Of what INTEGER matches, as PyYAML reads it."""
+    return yaml.constructor.SafeConstructor().construct_yaml_int(yaml.ScalarNode("", text))
 
 
 def require_writable(path):

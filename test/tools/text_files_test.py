@@ -6,6 +6,7 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 
 from spherical_actuator_calibration.text_files import (
@@ -78,6 +79,29 @@ class TextFiles(Folder):
         self.assertEqual(parsed_yaml("a: &x [1, 2.5]\nb: *x\n", "a"), {"a": [1, 2.5], "b": [1, 2.5]})
         self.assertEqual(parsed_yaml("[" * 64 + "]" * 64, "a")[0][0], parsed_yaml("[" * 62 + "]" * 62, "a"))
         self.assertIn("a:1: maps and lists stand more than 64", self.refusal(parsed_yaml, "[" * 65 + "]" * 65, "a"))
+
+    def test_what_takes_more_time_than_its_text_is_told_at_once(self):
+        prime = (1 << 61) - 1  # of its multiples Python's hashes are the same
+        for text, part in (
+            ("".join(f"{k * prime}: 0\n" for k in range(1, 50001)), "x:9: a whole number has more than 64 bit"),
+            ('a: !!int "1' + ":1" * 100000 + '"', "x:1: a tag, tag:yaml.org,2002:int, is not read"),
+            ("".join("- 1" + ":1" * 500 + "\n" for _ in range(20000)), "x:1: a whole number has more than 64 bit"),
+            ("a: !!set {b, c}\n", "x:1: a tag, tag:yaml.org,2002:set, is not read"),
+            ("".join(f"%TAG !e{k}! tag:x,2000:\n" for k in range(50000)) + "---\na\n", "x:9: more than 8 lines begin"),
+            ("\ufeff" + "\r%TAG ! !" * 9 + "\r---\ra\r", "x:1: more than 8 lines begin"),
+        ):
+            with self.subTest(part):
+                begin = time.process_time()
+                self.assertIn(part, self.refusal(parsed_yaml, text, "x"))
+                self.assertLess(time.process_time() - begin, 3.0)
+
+    def test_numbers_of_64_bit_and_texts_are_read(self):
+        largest = {"a": (1 << 64) - 1, "b": -(1 << 63), "c": "9" * 30, "d": "1", "e": "x", "f": 1e300}
+        text = f"%YAML 1.1\n---\na: {hex(largest['a'])}\nb: {largest['b']}\nc: '{largest['c']}'\n"
+        text += "d: !!str 1\ne: ! x\nf: 1.0e+300\n"
+        self.assertEqual(parsed_yaml(text, "x"), largest)
+        for number in ("18446744073709551616", "-9223372036854775809", "0b1" + "0" * 64, "0x1" + "0" * 90):
+            self.assertIn("x:1: a whole number has more than 64 bit", self.refusal(parsed_yaml, f"a: {number}", "x"))
 
     def test_terminals_are_not_obeyed(self):
         self.assertEqual(printable("a\tb\nä €"), "a\tb\nä €")
