@@ -130,15 +130,29 @@ void refuseWhatIsHeld(const std::string& text) {
 }
 
 #ifdef YAML_CPP_BEFORE_0_7
-/// yaml-cpp never gets past a colon before the end of a list in brackets, and takes memory without
-/// end meanwhile.
-void refuseColonBeforeBracket(const std::string& text) {
+/// yaml-cpp never gets past a colon before the end of a list in brackets, nor past one in brackets
+/// that ends the text, and takes memory without end meanwhile.
+void refuseOpenColons(const std::string& text) {
   std::istringstream lines(text);
   std::string line;
+  std::ptrdiff_t open = 0;
+  int last = 0;  // line that ends with a colon, where nothing but comments has come since
   for (int number = 1; std::getline(lines, line); ++number) {
-    if (line.find(":]") < line.find('#')) {
+    const std::string content = line.substr(0, line.find('#'));
+    if (content.find(":]") != std::string::npos) {
       throw YamlDefect(number, "a colon stands before \"]\": write what follows it.");
     }
+    open +=
+        std::count_if(content.begin(), content.end(), [](char c) { return c == '[' || c == '{'; });
+    open -=
+        std::count_if(content.begin(), content.end(), [](char c) { return c == ']' || c == '}'; });
+    const std::size_t end = content.find_last_not_of(" \t\r");
+    if (end != std::string::npos) {
+      last = content[end] == ':' ? number : 0;
+    }
+  }
+  if (last > 0 && open > 0) {
+    throw YamlDefect(last, "the text ends with a colon, and a bracket is open.");
   }
 }
 #endif
@@ -148,7 +162,7 @@ void refuseColonBeforeBracket(const std::string& text) {
 YAML::Node parseSingleDocument(const std::string& text) {
   refuseWhatIsHeld(text);
 #ifdef YAML_CPP_BEFORE_0_7
-  refuseColonBeforeBracket(text);
+  refuseOpenColons(text);
 #endif
   try {
     std::istringstream stream(text);
