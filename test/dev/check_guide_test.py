@@ -115,11 +115,8 @@ class CheckGuide(unittest.TestCase):
         self.assertIn("9 questions are answered, not 10", self.complaints()[0])
 
     def test_names_a_place_that_a_recipe_has_forgotten(self):
-        self.replace(
-            "doc/architecture.md",
-            "### Add a coil",
-            "### Add a stream\n\n- `base/torque.hpp`: `TorqueMeasurement` – one like it.\n- `src/actuator/`\n\n### Add a coil",
-        )
+        recipe = "### Add a stream\n\n- `base/torque.hpp`: `TorqueMeasurement` – one like it.\n- `src/actuator/`\n\n"
+        self.replace("doc/architecture.md", "### Add a coil", recipe + "### Add a coil")
         self.write(f"{INCLUDE}/base/torque.hpp", "struct TorqueMeasurement;\n")
         self.write("src/base/torque.cpp", "TorqueMeasurement torque();\n")
         self.write("src/actuator/pair.hpp", "TorqueMeasurement torque();\n")

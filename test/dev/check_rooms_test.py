@@ -107,7 +107,12 @@ class CheckRooms(unittest.TestCase):
 
     def test_names_headers_of_ros_and_messages_below_ros(self):
         for place in ("src/base/wire.cpp", "test/base/wire_test.cpp"):
-            for header in ("ros/time.h", "geometry_msgs/Pose.h", "eigen_conversions/eigen_msg.h", "spherical_actuator_calibration/CoilCurrents.h"):
+            for header in (
+                "ros/time.h",
+                "geometry_msgs/Pose.h",
+                "eigen_conversions/eigen_msg.h",
+                "spherical_actuator_calibration/CoilCurrents.h",
+            ):
                 with self.subTest(place + header):
                     self.write(place, f"#include <{header}>\n")
                     self.expect_one(f"{place}: includes {header}: base must not know ROS")
@@ -150,7 +155,11 @@ class CheckRooms(unittest.TestCase):
 
     def test_counts_the_head_of_a_function(self):
         body = 57 * "  turn();\n" + "}\n"
-        for name, head in (("turn", "Angle turn(int a,\n           int b) {\n"), ("Coil::turn", "void Coil::turn(int a,\n                int b)\n    const {\n")):
+        heads = {
+            "turn": "Angle turn(int a,\n           int b) {\n",
+            "Coil::turn": "void Coil::turn(int a,\n                int b)\n    const {\n",
+        }
+        for name, head in heads.items():
             with self.subTest(name):
                 self.write("src/base/long.cpp", head + body)
                 length = head.count("\n") + 58
@@ -159,7 +168,9 @@ class CheckRooms(unittest.TestCase):
                 self.assertEqual(found, expected)
 
     def test_takes_no_class_or_table_for_a_function(self):
-        self.write("test/base/table.cpp", "struct Turns {\n" + 70 * "  int a;\n" + "};\nconstexpr int kTurns[] = {\n" + 70 * "  1,\n" + "};\n")
+        struct = "struct Turns {\n" + 70 * "  int a;\n" + "};\n"
+        table = "constexpr int kTurns[] = {\n" + 70 * "  1,\n" + "};\n"
+        self.write("test/base/table.cpp", struct + table)
         self.assertEqual([one for one in self.complaints() if "table.cpp" in one], [])
 
     def test_names_a_long_function_in_shell(self):
