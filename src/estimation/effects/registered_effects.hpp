@@ -19,13 +19,8 @@
 
 namespace sac::effects {
 
-/// All laboratory effects, in the order of their coordinates. To add one:
-///   1. write effects/<name>.hpp beside this file: a class like its neighbours, with kName, kUnit,
-///      kActsOn, kBelongsTo, a constructor (nominal, selection), and an override for each thing it
-///      acts on;
-///   2. name the class here;
-///   3. say what it is in config/calibration.yaml and doc/method.md, Laboratory;
-///   4. let test/estimation/laboratory_effects_test.cpp find it in simulated samples.
+/// All laboratory effects, in the order of their coordinates. What another one needs beside its
+/// name here: "Add an effect" in doc/architecture.md.
 using Registered = std::tuple<TorqueBias,
                               RotorUnbalance,
                               StrengthScale,
