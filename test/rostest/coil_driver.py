@@ -304,7 +304,7 @@ class CoilDriver(unittest.TestCase):
     def test_ends_at_zero_when_it_gets_no_memory(self):
         node = self.started(watchdog=PATIENT, memory_limit=300)
         self.follow()
-        with hostile_peer.connect(f"{node.name}/set_logger_level") as link:
+        with hostile_peer.connect(node.name) as link:
             link.sendall(struct.pack("<I", 900000000))  # what roscpp makes room for
             written = node.wait_for_end()
         self.assertTrue(self.is_zero())

@@ -158,7 +158,7 @@ def without_memory(laboratory):
     with contextlib.ExitStack() as links:
         for _ in range(3):
             begin = time.monotonic()
-            link = links.enter_context(hostile_peer.connect(f"{laboratory.driver.name}/set_logger_level"))
+            link = links.enter_context(hostile_peer.connect(laboratory.driver.name))
             link.sendall(struct.pack("<I", 900000000))
         status = status_of(laboratory)
     return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")

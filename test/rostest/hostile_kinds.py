@@ -342,5 +342,4 @@ REQUESTS = {
         "calibration/plan_poses",
         text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd", *[math.nan] * 3),
     ),
-    "a logger by a path": ("visualization/set_logger_level", text(TRICK) + text(ESCAPES)),
 }

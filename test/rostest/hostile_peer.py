@@ -102,21 +102,28 @@ class HostilePublisher:
             link.close()
 
 
-def address_of(service):
-    """Where a service is served, which is where the node's topics are, too."""
-    uri = rosgraph.Master(CALLER).lookupService(service)
-    host, port = re.match(r"rosrpc://(.*):(\d+)", uri).groups()
-    return host, int(port)
+def connect(node):
+    """A link to where a node serves its topics and services."""
+    slave = xmlrpc.client.ServerProxy(rosgraph.Master(CALLER).lookupNode(node))
+    code, message, protocol = slave.requestTopic(CALLER, "/rosout", [["TCPROS"]])
+    if code != 1:
+        raise OSError(message)
+    _, host, port = protocol
+    return socket.create_connection((host, port), timeout=PATIENCE)
 
 
-def connect(service):
-    link = socket.create_connection(address_of(service), timeout=PATIENCE)
-    return link
+def meet(node):
+    """Waits until a node answers who asks for its log."""
+    with connect(node) as link:
+        link.sendall(header(callerid=CALLER, topic="/rosout", type="rosgraph_msgs/Log", md5sum="*"))
+        receive_framed(link)
 
 
 def call(service, content, send_length=None):
     """Calls a service by a request of any bytes; returns whether it succeeded, and the bytes of its answer."""
-    with connect(service) as link:
+    uri = rosgraph.Master(CALLER).lookupService(service)
+    host, port = re.match(r"rosrpc://(.*):(\d+)", uri).groups()
+    with socket.create_connection((host, int(port)), timeout=PATIENCE) as link:
         link.sendall(header(callerid=CALLER, service=service, md5sum="*", type="*"))
         receive_framed(link)
         length = len(content) if send_length is None else send_length

@@ -12,10 +12,14 @@
 namespace sac {
 namespace {
 
-// roscpp offers this service to everybody. Where rosconsole is built with log4cxx 1.0, as Debian
-// has it, the answer frees what log4cxx goes on to use: two calls end the node by SIGSEGV.
-void withdrawGetLoggers() {
-  ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve("~get_loggers"));
+// roscpp offers these services to everybody. Where rosconsole is built with log4cxx 1.0, as Debian
+// has it, the answer to the first frees what log4cxx goes on to use: two calls end the node by
+// SIGSEGV. The second keeps each name that it is given, of any length, until the node ends;
+// programs that set levels ask for the loggers first.
+void withdrawLoggerServices() {
+  for (const char* const service : {"~get_loggers", "~set_logger_level"}) {
+    ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve(service));
+  }
 }
 
 }  // namespace
@@ -30,7 +34,7 @@ int runNode(int argc,
   // The last handle to go ends ROS, and with it the console that errors are told on.
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
-  withdrawGetLoggers();
+  withdrawLoggerServices();
   try {
     body(node, private_node);
   } catch (const std::exception& error) {
