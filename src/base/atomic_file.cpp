@@ -34,9 +34,12 @@ class TemporaryFile {
   explicit TemporaryFile(const fs::path& target) : target_(target) {
     // Another process, or one that crashed before, may hold a name: take the next.
     constexpr int kAttempts = 1000;
+    // Not of the whole name: what is added would make a long one longer than a file's may be.
+    constexpr std::size_t kLongest = 100;
+    const std::string name = target.filename().string().substr(0, kLongest);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      path_ = target.parent_path() / ("." + target.filename().string() + "." +
-                                      std::to_string(::getpid()) + "-" + std::to_string(attempt));
+      path_ = target.parent_path() /
+              ("." + name + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt));
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
       if (descriptor_ >= 0) {
         return;

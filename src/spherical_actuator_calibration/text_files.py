@@ -3,6 +3,7 @@
 The rules are those of the programs in C++ (readInputFile(), YamlMap, printable(), writeFileAtomically()).
 """
 
+import contextlib
 import os
 import re
 import stat
@@ -199,6 +200,8 @@ def require_writable(path):
     takes no file, or a name that is no regular file's."""
     _require_regular(path)
     try:
+        with contextlib.suppress(FileNotFoundError):
+            os.lstat(path)  # tells a name that is too long
         with tempfile.TemporaryFile(dir=_folder_of(path)):
             pass
     except (OSError, ValueError) as error:
@@ -211,7 +214,7 @@ def write_text(path, text):
     _require_regular(path)
     temporary = None
     try:
-        descriptor, temporary = tempfile.mkstemp(dir=_folder_of(path), prefix=f".{os.path.basename(path)}.")
+        descriptor, temporary = tempfile.mkstemp(dir=_folder_of(path), prefix=_temporary_prefix(path))
         with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
             file.write(text)
             file.flush()
@@ -226,6 +229,11 @@ def write_text(path, text):
         if isinstance(error, (OSError, ValueError)):
             raise _unwritable(path, error) from error
         raise
+
+
+def _temporary_prefix(path):
+    """Not of the whole name: what is added would make a long one longer than a file's may be."""
+    return os.fsdecode(b"." + os.fsencode(os.path.basename(path))[:100] + b".")
 
 
 def _folder_of(path):

@@ -1,11 +1,14 @@
 #include "tool_main.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
+
+#include <sys/stat.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
@@ -66,6 +69,10 @@ void requireNewFile(const std::string& path, OverwritePolicy policy) {
   }
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw DataError(path + ": this is not a regular file; choose another name.");
+  }
+  struct stat ignored = {};
+  if (::lstat(path.c_str(), &ignored) != 0 && errno == ENAMETOOLONG) {
+    throw DataError(path + ": cannot be written: its name is too long; choose another.");
   }
   const fs::path folder = fs::absolute(path, error).parent_path();
   if (error || ::access(folder.c_str(), W_OK | X_OK) != 0) {

@@ -87,6 +87,19 @@ TEST(AtomicFile, TellsThatTheFolderIsMissing) {
             path + ": cannot be written: No such file or directory.");
 }
 
+TEST(AtomicFile, TakesNamesAsLongAsTheDiskDoes) {
+  const TemporaryFolder folder;
+  const std::string longest = folder.path(std::string(255, 'x'));
+  writeFileAtomically(longest, "content", OverwritePolicy::kRefuse);
+  writeFileAtomically(longest, "another", OverwritePolicy::kReplace);
+  EXPECT_EQ(contentOf(longest), "another");
+  EXPECT_EQ(folder.files(), 1);
+  EXPECT_EQ(errorMessage<DataError>(
+                [&] { writeFileAtomically(longest + "x", "content", OverwritePolicy::kRefuse); }),
+            longest + "x: cannot be written: File name too long.");
+  EXPECT_EQ(folder.files(), 1);
+}
+
 TEST(AtomicFile, ReplacesNothingButFiles) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path("a"));

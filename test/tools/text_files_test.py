@@ -128,6 +128,11 @@ class TextFiles(Folder):
             write_text(path, "a: \ud800")
         self.assertEqual(path.read_bytes(), "a: ä\n".encode())
         self.assertEqual(os.listdir(self.folder), ["out.yaml"])
+        path.unlink()
+        longest = self.folder / ("ä" * 127)
+        require_writable(longest)
+        write_text(longest, "b: 2\n")
+        self.assertEqual(os.listdir(self.folder), [longest.name])
 
     def test_names_that_cannot_be_written(self):
         os.mkfifo(self.folder / "fifo")
@@ -136,6 +141,7 @@ class TextFiles(Folder):
             (self.folder / "fifo", "not a regular file"),
             (self.folder, "not a regular file"),
             ("/dev/full", "not a regular file"),
+            (self.folder / ("x" * 256), "cannot be written: File name too long"),
         ):
             self.assertIn(reason, self.refusal(require_writable, path))
             self.assertIn(reason, self.refusal(write_text, path, "1"))

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "support/error_message.hpp"
 #include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -36,6 +38,14 @@ TEST_F(ToolMain, WhatCannotBePrintedIsAnError) {
   EXPECT_EQ(run("", "--help >/dev/null"), kToolSuccess);
   EXPECT_EQ(run("", "--help >/dev/full"), kToolUnusable);
   EXPECT_EQ(errors_, "simulate_recording: the standard output cannot be written.\n");
+}
+
+TEST_F(ToolMain, NamesThatAreTooLongAreToldFirst) {
+  const std::string longest = folder_.path(std::string(255, 'x'));
+  EXPECT_NO_THROW(requireNewFile(longest, OverwritePolicy::kRefuse));
+  EXPECT_EQ(
+      errorMessage<DataError>([&] { requireNewFile(longest + "x", OverwritePolicy::kReplace); }),
+      longest + "x: cannot be written: its name is too long; choose another.");
 }
 
 TEST_F(ToolMain, FilesThatMayNotGrowAreAnError) {
