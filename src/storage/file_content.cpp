@@ -1,7 +1,8 @@
 #include "file_content.hpp"
 
+#include <algorithm>
 #include <functional>
-#include <string_view>
+#include <string>
 
 #include <sys/types.h>
 
@@ -10,59 +11,60 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kBlock = 65536;
+constexpr std::size_t kBlock = 65536;  // holds whole pages of every size
 
-// Places in the header of an SQLite database, where numbers have their highest byte first.
-constexpr std::size_t kHeader = 100;
-constexpr std::size_t kPageSize = 16;
-constexpr std::size_t kChangeCounter = 24;
-constexpr std::size_t kPageCount = 28;
-constexpr std::size_t kVersionValidFor = 92;
+std::size_t hashOf(std::string_view bytes) {
+  return std::hash<std::string_view>()(bytes);
+}
 
-constexpr std::uint32_t kLargestPage = 65536;  // two bytes hold it as 1
+/// Reads until the block is full or there is no more; what cannot be read is as good as cut off.
+std::size_t readBlock(int descriptor, std::uint64_t place, std::string& block) {
+  std::size_t size = 0;
+  while (size < block.size()) {
+    const ssize_t count = ::pread(
+        descriptor, block.data() + size, block.size() - size, static_cast<off_t>(place + size));
+    if (count <= 0) {
+      return size;
+    }
+    size += static_cast<std::size_t>(count);
+  }
+  return size;
+}
 
 }  // namespace
 
-FileContent::FileContent(int descriptor) {
+FileContent::FileContent(int descriptor, std::size_t page) : page_(page) {
   std::string block(kBlock, '\0');
-  for (;;) {
-    const ssize_t count =
-        ::pread(descriptor, block.data(), block.size(), static_cast<off_t>(size_));
-    if (count <= 0) {  // what cannot be read is as good as cut off
-      return;
+  std::size_t size = kBlock;
+  for (std::uint64_t place = 0; size == kBlock; place += size) {
+    size = readBlock(descriptor, place, block);
+    for (std::size_t begin = 0; begin < size; begin += page_) {
+      const std::size_t length = std::min(page_, size - begin);
+      pages_.push_back(hashOf(std::string_view(block).substr(begin, length)));
     }
-    const std::string_view bytes(block.data(), static_cast<std::size_t>(count));
-    if (blocks_.empty()) {
-      header_ = bytes.substr(0, kHeader);
-    }
-    blocks_.push_back(std::hash<std::string_view>()(bytes));
-    size_ += bytes.size();
   }
 }
 
-bool FileContent::follows(const FileContent& before) const {
-  if (*this == before) {
-    return true;
-  }
-  return number(kChangeCounter) == before.number(kChangeCounter) + 1 &&
-         number(kVersionValidFor) == number(kChangeCounter) && size_ >= wholeSize();
+bool FileContent::mayHold(std::uint64_t place, std::string_view bytes) const {
+  const std::uint64_t number = place / page_;
+  return !isPage(place, bytes) || number >= pages_.size() || pages_[number] == hashOf(bytes);
 }
 
-std::uint64_t FileContent::wholeSize() const {
-  const std::uint32_t page = number(kPageSize, sizeof(std::uint16_t));
-  return std::uint64_t{page == 1 ? kLargestPage : page} * number(kPageCount);
+void FileContent::put(std::uint64_t place, std::string_view bytes) {
+  if (!isPage(place, bytes)) {
+    is_known_ = false;
+    return;
+  }
+  const std::uint64_t number = place / page_;
+  if (number >= pages_.size()) {
+    // What is passed over is written later, or another than what stands there then.
+    pages_.resize(number + 1);
+  }
+  pages_[number] = hashOf(bytes);
 }
 
-std::uint32_t FileContent::number(std::size_t place, std::size_t bytes) const {
-  if (header_.size() < place + bytes) {
-    return 0;
-  }
-  constexpr unsigned kBitsOfByte = 8;
-  std::uint32_t result = 0;
-  for (const char byte : header_.substr(place, bytes)) {
-    result = result << kBitsOfByte | static_cast<unsigned char>(byte);
-  }
-  return result;
+bool FileContent::isPage(std::uint64_t place, std::string_view bytes) const {
+  return bytes.size() == page_ && place % page_ == 0;
 }
 
 }  // namespace sac

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sac {
@@ -10,26 +10,25 @@ namespace sac {
 /// What stands in a database file at one moment, told from any other content.
 class FileContent {
  public:
-  /// Reads all of the file. Nothing that SQLite keeps in memory takes part.
-  explicit FileContent(int descriptor);
+  /// Reads all of the file, which has pages of this size. Nothing that SQLite keeps in memory takes
+  /// part.
+  FileContent(int descriptor, std::size_t page);
 
-  /// Whether one transaction of SQLite, which counts them in the file, made this of `before`; also
-  /// one that had nothing to change.
-  bool follows(const FileContent& before) const;
+  /// False for a page that is another here. Of anything but a whole page nothing is known.
+  bool mayHold(std::uint64_t place, std::string_view bytes) const;
+  /// Writes a page. Of anything else nothing is known afterwards: such a content equals none.
+  void put(std::uint64_t place, std::string_view bytes);
 
   bool operator==(const FileContent& other) const {
-    return size_ == other.size_ && header_ == other.header_ && blocks_ == other.blocks_;
+    return is_known_ && other.is_known_ && pages_ == other.pages_;
   }
 
  private:
-  /// A number of the header, or 0 where the file is too short to have one.
-  std::uint32_t number(std::size_t place, std::size_t bytes = sizeof(std::uint32_t)) const;
-  /// As the header says.
-  std::uint64_t wholeSize() const;
+  bool isPage(std::uint64_t place, std::string_view bytes) const;
 
-  std::uint64_t size_ = 0;
-  std::string header_;
-  std::vector<std::size_t> blocks_;  ///< a hash of each block
+  std::size_t page_;
+  bool is_known_ = true;
+  std::vector<std::size_t> pages_;  ///< a hash of each
 };
 
 }  // namespace sac

@@ -44,9 +44,10 @@ constexpr char kLost[] =
 }
 
 [[noreturn]] void throwReplaced(const std::string& path, const std::string& failure) {
-  throw DataError(path + ": " + failure +
-                  ", because the file was removed or replaced at this moment; put it back as it "
-                  "was, and start the node again.");
+  throw DataError(
+      path + ": " + failure +
+      ", because the file was removed, replaced or changed at this moment; put it back as it "
+      "was, and start the node again.");
 }
 
 /// What stands at a path where a file, or nothing, belongs; empty when there is nothing wrong.
@@ -70,6 +71,22 @@ std::string wrongKind(const std::string& path) {
   }
 }
 
+[[noreturn]] void throwBeside(const std::string& path,
+                              const std::string& failure,
+                              const std::string& beside,
+                              const std::string& kind) {
+  throw DataError(path + ": " + failure + ", because " + beside + " is " + kind +
+                  ", not a file; remove it, and try again.");
+}
+
+/// Undoes before what a transaction that was killed left half written.
+std::size_t pageSize(const SQLite::Database& database) {
+  RowReader(database, "PRAGMA user_version").next();
+  RowReader size(database, "PRAGMA page_size");
+  size.next();
+  return size.count();
+}
+
 /// A journal that is void between two transactions, and no shared memory: what others do to a log
 /// beside the file would take back what was acknowledged, and a shorter memory end the process.
 void setJournal(SQLite::Database& database, const std::string& path) {
@@ -88,6 +105,10 @@ void setJournal(SQLite::Database& database, const std::string& path) {
 SessionConnection::SessionConnection(const std::string& path,
                                      const std::function<void(SQLite::Database&)>& fill)
     : path_(path), lock_(path), database_(openFile(path)) {
+  watch_.attach(database_);
+  page_ = read(kOpenFailure, [this] { return pageSize(database_); });
+  watch_.expect(content());
+  sqlite3_db_release_memory(database_.getHandle());  // what was read before that
   const bool is_made = read(kOpenFailure, [this] { return hasSessionSchema(database_, path_); });
   read(kOpenFailure, [this] { setJournal(database_, path_); });
   if (is_made && isEarlierSchema(database_)) {
@@ -100,10 +121,11 @@ SessionConnection::SessionConnection(const std::string& path,
   }
   // Not before: a table that others refer to is made anew without it.
   read(kOpenFailure, [this] { database_.exec("PRAGMA foreign_keys = ON"); });
-  if (!(identityOf(path_) == lock_.file())) {
+  FileContent now = content();
+  if (!(identityOf(path_) == lock_.file()) || !(now == watch_.expected())) {
     throwReplaced(path_, kOpenFailure);
   }
-  content_ = FileContent(lock_.descriptor());
+  content_ = std::move(now);
   // The name of the file; SQLite sees to that of its journal only. A process that ended early may
   // have left this undone.
   syncFolder(std::filesystem::absolute(path_).parent_path());
@@ -112,8 +134,9 @@ SessionConnection::SessionConnection(const std::string& path,
 void SessionConnection::write(const std::string& failure,
                               const std::function<void(SQLite::Database&)>& action) {
   requireInPlace(failure);
-  // Pages that were read earlier may be of a content that stood there only for a while.
-  sqlite3_db_release_memory(database_.getHandle());
+  if (content_) {
+    watch_.expect(*content_);  // not what a transaction that failed would have made of it
+  }
   read(failure, [&] {
     SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
     // Not before: SQLite has now undone what a transaction that failed left half written.
@@ -128,8 +151,8 @@ void SessionConnection::write(const std::string& failure,
   // Changed at this very moment: nobody knows whether it will be read back. Nothing more is stored
   // until the node starts again and reads what is there, so that a repetition is not stored twice.
   // One look decides: a second one could see a folder that went only then, refuse, and forget it.
-  FileContent after(lock_.descriptor());
-  is_lost_ = !(identityOf(path_) == lock_.file()) || !after.follows(*content_);
+  FileContent after = content();
+  is_lost_ = !(identityOf(path_) == lock_.file()) || !(after == watch_.expected());
   if (is_lost_) {
     throwLost(path_, failure);
   }
@@ -140,10 +163,10 @@ void SessionConnection::requireFilesBeside(const std::string& failure) const {
   // Links are followed to where SQLite has its journal.
   const std::string file = sqlite3_db_filename(database_.getHandle(), "main");
   for (const char* const ending : {"-journal", "-wal", "-shm"}) {
-    const std::string kind = wrongKind(file + ending);
+    const std::string beside = file + ending;
+    const std::string kind = wrongKind(beside);
     if (!kind.empty()) {
-      throw DataError(path_ + ": " + failure + ", because " + file + ending + " is " + kind +
-                      ", not a file; remove it, and try again.");
+      throwBeside(path_, failure, beside, kind);
     }
   }
 }
@@ -155,7 +178,7 @@ void SessionConnection::requireInPlace(const std::string& failure) const {
 }
 
 void SessionConnection::requireContent(const std::string& failure) const {
-  if (content_ && !(FileContent(lock_.descriptor()) == *content_)) {
+  if (content_ && !(content() == *content_)) {
     throwLost(path_, failure);
   }
 }
@@ -165,7 +188,10 @@ void SessionConnection::fail(const std::string& failure, const SQLite::Exception
   const int code = error.getErrorCode() & kPrimaryCode;
   // As SQLite tells a content that is not its own. After other errors a journal may have to be
   // undone first.
-  if (code == SQLITE_ERROR || code == SQLITE_CORRUPT || code == SQLITE_NOTADB) {
+  if (code == SQLITE_CORRUPT && content_) {  // it was whole, and may be so again by now
+    throwLost(path_, failure);
+  }
+  if (code == SQLITE_ERROR || code == SQLITE_NOTADB) {
     requireContent(failure);
   }
   throwStorageError(path_, failure, error);

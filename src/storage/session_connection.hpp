@@ -8,6 +8,7 @@
 #include <SQLiteCpp/Exception.h>
 
 #include "file_content.hpp"
+#include "page_watch.hpp"
 #include "process_lock.hpp"
 #include "storage_error.hpp"
 
@@ -47,10 +48,14 @@ class SessionConnection {
   /// Refuses what would be stored where it cannot be read back.
   void requireInPlace(const std::string& failure) const;
   void requireContent(const std::string& failure) const;
+  /// What stands in the file now.
+  FileContent content() const { return {lock_.descriptor(), page_}; }
 
   std::string path_;
   ProcessLock lock_;
+  PageWatch watch_;
   SQLite::Database database_;
+  std::size_t page_ = 0;                ///< size of one [byte]
   std::optional<FileContent> content_;  ///< that SQLite left behind, once it is opened
   bool is_lost_ = false;                ///< a transaction may be where nobody reads it
 };

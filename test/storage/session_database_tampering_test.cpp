@@ -1,11 +1,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include <SQLiteCpp/Database.h>
 #include <gtest/gtest.h>
 
+#include "session_connection.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
@@ -140,6 +142,83 @@ TEST_F(TamperingTest, WhatAnotherJournalTookBackIsNoticed) {
     run("cat '" + other + "-journal' > '" + path() + "-journal'");
   }
   expectRefusal(add(database, 3));
+}
+
+/// A session of which pages are changed within a transaction.
+class MomentTest : public TamperingTest {
+ protected:
+  MomentTest() {
+    SessionDatabase database(path(), jointIdentity());
+    for (std::uint32_t id = 1; id <= 20; ++id) {
+      EXPECT_EQ(add(database, id), "no exception");
+    }
+  }
+  /// Writes into the file as another program does.
+  void overwrite(std::size_t place, const std::string& bytes) const {
+    run("printf '" + bytes + "' | dd of='" + path() +
+        "' bs=1 conv=notrunc status=none seek=" + std::to_string(place));
+  }
+  static std::string write(SessionConnection& connection,
+                           const std::function<void(SQLite::Database&)>& action) {
+    return errorMessage<DataError>([&] { connection.write("it was not stored", action); });
+  }
+  static void insert(SQLite::Database& database) {
+    database.exec(
+        "INSERT INTO cycle_errors SELECT 1, 7, 0.5 FROM cycles;"
+        "UPDATE samples SET validation = 1 WHERE id = 20");
+  }
+
+  static constexpr auto kNothing = [](SQLite::Database&) {};
+};
+
+TEST_F(MomentTest, AByteThatChangesWithinATransactionIsNoticed) {
+  const std::size_t place = textOf(path()).find("actuator:");
+  ASSERT_NE(place, std::string::npos);
+  SessionConnection connection(path(), kNothing);
+  expectRefusal(write(connection, [&](SQLite::Database& database) {
+    insert(database);
+    overwrite(place, "P");
+  }));
+  // Nobody knows any more what will be read back.
+  overwrite(place, textOf(path()).substr(place, 1));
+  expectRefusal(write(connection, insert));
+}
+
+TEST_F(MomentTest, NoPageIsReadThatWasChangedWithinATransaction) {
+  const std::string whole = textOf(path());
+  SessionConnection connection(path(), kNothing);
+  expectRefusal(write(connection, [&](SQLite::Database& database) {
+    overwrite(whole.size() - 1, "x");
+    database.exec("PRAGMA shrink_memory; DELETE FROM sample_currents; DELETE FROM samples");
+  }));
+  put(whole);
+  EXPECT_EQ(write(connection, insert), "no exception");
+  EXPECT_EQ(database_examples::query(path(), "SELECT count(*) FROM sample_currents"), "480");
+}
+
+TEST_F(MomentTest, WhatIsCutOffOrAddedWithinATransactionIsNoticed) {
+  const std::string whole = textOf(path());
+  for (const char* const size : {"-4096", "+1", "+4096"}) {
+    put(whole);
+    SessionConnection connection(path(), kNothing);
+    expectRefusal(write(connection, [&](SQLite::Database& database) {
+      insert(database);
+      run(std::string("truncate -s ") + size + " '" + path() + "'");
+    }));
+  }
+}
+
+TEST_F(MomentTest, WhatWasWrittenBeforeATransactionFailedIsUndone) {
+  SessionConnection connection(path(), kNothing);
+  const auto fail = [](SQLite::Database& database) {
+    // More than SQLite keeps in memory.
+    database.exec("PRAGMA cache_size = 2; UPDATE samples SET date = hex(randomblob(5000))");
+    throw DataError("no");
+  };
+  EXPECT_EQ(write(connection, fail), "no");
+  EXPECT_EQ(write(connection, insert), "no exception");
+  EXPECT_EQ(database_examples::query(path(), "SELECT count(*) FROM samples WHERE date LIKE '20%'"),
+            "20");
 }
 
 TEST_F(TamperingTest, WhoReadsIsWaitedForAndThenTold) {
