@@ -5,7 +5,6 @@ quite, and pushes it away once in the middle of a pose."""
 import math
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import threading
@@ -13,7 +12,7 @@ import unittest
 
 import rospy
 import rostest
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
+from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, run_tool, wait_for
 from emulated_lab import EmulatedLab
 from guided_program import GuidedProgram
 from true_parameters import expect_truth
@@ -70,8 +69,7 @@ class GuidedByHand(unittest.TestCase):
         """A plan from which the session does not need to add poses."""
         path = pathlib.Path(self.folder.name) / "plan.yaml"
         description = pathlib.Path(rospy.get_param("~config")) / "pm_spherical_8x24.yaml"
-        command = ["rosrun", PACKAGE, "plan_session", "--actuator", str(description), "--output", str(path)]
-        subprocess.run([*command, "--poses", "8", "--patterns", "weighing", "--candidates", "100"], check=True)
+        run_tool("plan_session", actuator=description, output=path, poses=8, candidates=100)
         return str(path)
 
     def led(self, *options):
@@ -103,7 +101,7 @@ class GuidedByHand(unittest.TestCase):
 
     def expect_torques_without_bias(self):
         for sample in self.client.held().values():
-            if sample.has_torque:
+            if sample.has_torque and max(map(abs, sample.current)) > 1.0:
                 self.assertGreater(sample.torque_shared_stddev, 0.0, f"sample {sample.id}")
 
 
