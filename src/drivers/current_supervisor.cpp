@@ -95,8 +95,8 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
     return "The driver ends.";
   }
   if (command.caller.empty()) {
-    return "A command without the name of its sender does not count: two of them could not be told "
-           "apart.";
+    return "A command without the name of its sender does not count: publish it as a ROS node, "
+           "which gives its own.";
   }
   const std::string who = "The command of " + command.caller + " ";
   std::string defect = commandDefect(command.currents, coils_);

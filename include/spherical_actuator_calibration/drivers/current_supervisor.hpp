@@ -128,8 +128,8 @@ class CurrentSupervisor {
   /// Per coil, by the steady clock [s]; nothing: not zero is set, or nothing was measured since.
   std::vector<std::optional<double>> zero_set_since_;
   std::optional<double> last_observed_;  ///< likewise
-  double strays_ =
-      0.0;  ///< current in coils long after zero was set there, less what was forgiven [s]
+  /// Current in coils long after zero was set there, less what was forgiven [s].
+  double strays_ = 0.0;
   std::string fault_;
   int faults_ = 0;
   double fault_at_ = 0.0;  ///< by the steady clock [s]
