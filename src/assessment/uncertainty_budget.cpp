@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
@@ -24,7 +25,8 @@ class Budget {
         options_(session.config().estimation),
         space_(session.model().space()),
         belief_(session.state().belief),
-        chosen_(estimatedCoordinates(space_, report)) {
+        chosen_(estimatedCoordinates(space_, report)),
+        observed_(static_cast<Eigen::Index>(chosen_.size())) {
     problem_.model = &session.model();
     problem_.samples = &session.samples();
     problem_.observations =
@@ -35,7 +37,7 @@ class Budget {
       held_[static_cast<std::size_t>(p)] = false;
     }
     const auto size = static_cast<Eigen::Index>(chosen_.size());
-    information_ = Eigen::MatrixXd::Zero(size, size);
+    known_ = Eigen::MatrixXd::Zero(size, size);
     others_ = Eigen::MatrixXd::Zero(size, space_.size());
   }
 
@@ -82,7 +84,8 @@ class Budget {
   std::vector<Eigen::Index> chosen_;
   EstimationProblem problem_;
   std::vector<bool> held_;
-  Eigen::MatrixXd information_;
+  InformationSum observed_;
+  Eigen::MatrixXd known_;   ///< information beside the observations
   Eigen::MatrixXd others_;  ///< Σ JᵀV⁻¹J_held
   std::vector<std::string> sources_;
   std::map<std::string, Eigen::MatrixXd> meat_;  ///< covariance of N δx by each source
@@ -142,8 +145,10 @@ void Budget::add(const Dwell& dwell) {
     covariance.block<3, 3>(row, row) += own * own.transpose();
   }
   const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, chosen_);
-  const Eigen::MatrixXd weighed = covariance.llt().solve(J);  // V⁻¹J
-  information_ += J.transpose() * weighed;
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::MatrixXd whitened = factor.matrixL().solve(J);
+  observed_.addDense(whitened, Eigen::VectorXd::Zero(whitened.rows()));
+  const Eigen::MatrixXd weighed = factor.matrixU().solve(whitened);  // V⁻¹J
   others_ += weighed.transpose() * dwell.jacobian;
   for (std::size_t k = 0; k < dwell.is_orientation.size(); ++k) {
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
@@ -168,12 +173,12 @@ void Budget::sumKnowledge() {
     const double variance = effect < 0 ? 0.0 : space_.effects().statedVariance(effect);
     if (variance > 0.0) {
       const auto place = static_cast<Eigen::Index>(k);
-      information_(place, place) += 1.0 / variance;
+      known_(place, place) += 1.0 / variance;
       of(space_.effects().at(effect).name)(place, place) += 1.0 / variance;
     }
   }
   const Eigen::MatrixXd open = priorInformation(report_.open_directions, belief_, chosen_);
-  information_ += open;
+  known_ += open;
   Eigen::MatrixXd covariance = belief_.covariance;
   for (const Eigen::Index p : chosen_) {
     covariance.row(p).setZero();
@@ -184,10 +189,11 @@ void Budget::sumKnowledge() {
 
 std::vector<BudgetEntry> Budget::propagated() {
   const auto size = static_cast<Eigen::Index>(chosen_.size());
+  const Eigen::MatrixXd information = observed_.information() + known_;
   const Eigen::MatrixXd all = reportedJacobian(space_, belief_.x);
   const Eigen::MatrixXd chosen = all(Eigen::all, chosen_);
   const Eigen::MatrixXd reported =
-      chosen * information_.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+      chosen * information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   std::vector<BudgetEntry> entries;
   for (const std::string& source : sources_) {
     const Eigen::VectorXd variance =

@@ -86,7 +86,9 @@ AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
   Eigen::Vector3d axis;
   Eigen::Matrix<double, 3, 2> d_axis;
   chart_.evaluate(place[0], place[1], axis, d_axis);
-  Normal sum;
+  Normal normal;
+  WhitenedObservation whitened;
+  whitened.columns = {0, 1};
   for (const ScannedTorque& torque : scanned_.torques) {
     const Eigen::Vector3d own = torque.to_rotor * axis;
     Eigen::Vector3d rest = torque.rest;
@@ -99,16 +101,13 @@ AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
         d_own -= partner.weight * (is_pole_ ? pair.d_pole : pair.d_coil);
       }
     }
-    const Eigen::Vector3d residual = torque.whitening * rest;
-    const Eigen::Matrix<double, 3, 2> jacobian =
-        torque.whitening * d_own * torque.to_rotor * d_axis;
-    const double square = residual.squaredNorm() / limit_;
-    const double weight = 1.0 / (1.0 + square);
-    sum.misfit += limit_ * std::log1p(square);
-    sum.gradient += weight * jacobian.transpose() * residual;
-    sum.information += weight * jacobian.transpose() * jacobian;
+    whitened.residual = torque.whitening * rest;
+    whitened.jacobian = torque.whitening * d_own * torque.to_rotor * d_axis;
+    const double square = whitened.residual.squaredNorm() / limit_;
+    normal.misfit += limit_ * std::log1p(square);
+    normal.sum.add(whitened, 1.0 / (1.0 + square));
   }
-  return sum;
+  return normal;
 }
 
 /// The minimum below a place of the scan.
@@ -118,10 +117,10 @@ Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place) const {
   double damping = 1e-3;
   Normal here = linearized(place);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Eigen::Matrix2d damped = here.information;
+    Eigen::Matrix2d damped = here.sum.information();
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-6;
-    Eigen::Vector2d step = -damped.ldlt().solve(here.gradient);
+    Eigen::Vector2d step = -damped.ldlt().solve(Eigen::Vector2d(here.sum.gradient()));
     // Beyond one step of the scan is another place of it.
     step *= std::min(1.0, step_ / std::max(step.norm(), kNothing));
     const Normal there = linearized(place + step);
@@ -191,9 +190,10 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
     return found;
   }
   const Normal here = linearized(present);
+  const Eigen::Matrix2d information = here.sum.information();
   const auto is_known = [&](const ScannedPlace& there) {
     const Eigen::Vector2d apart = there.place - present;
-    const bool is_within = apart.dot(here.information * apart) < kWithin && there.gain < kFarBetter;
+    const bool is_within = apart.dot(information * apart) < kWithin && there.gain < kFarBetter;
     return is_within || apart.norm() < kSamePlace ||
            std::any_of(found.begin(), found.end(), [&](const ScannedPlace& other) {
              return (other.place - there.place).norm() < kSamePlace;

@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
@@ -70,11 +71,9 @@ class AxisScan {
   static double reach(double range);
 
  private:
-  /// Half the gradient and half the Gauss–Newton Hessian beside the misfit.
   struct Normal {
-    double misfit = 0.0;
-    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+    double misfit = 0.0;  ///< by the robust loss
+    InformationSum sum{2};
   };
 
   double coarseMisfit(const Eigen::Vector2d& place) const;

@@ -73,18 +73,16 @@ class Objective {
 
   /// Where the sum over the observations is known already.
   NormalEquations atStart() const {
-    NormalEquations result;
-    result.cost = input_.at_start->squaredMisfit();
-    result.gradient = input_.at_start->gradient()(input_.free);
-    result.information = input_.at_start->information()(input_.free, input_.free);
-    addPrior(input_.start, result);
-    return result;
+    InformationSum sum = input_.at_start->at(input_.free);
+    double cost = sum.squaredMisfit();
+    addPrior(input_.start, sum, cost);
+    return {cost, sum.gradient(), sum.information()};
   }
 
   NormalEquations normalEquations(const Eigen::VectorXd& x) const {
     const ModelPoint point = input_.evaluator->at(x);
     InformationSum sum(free_.size());
-    NormalEquations result;
+    double cost = 0.0;
     LinearizedObservation linear;
     WhitenedObservation whitened;
     for (std::size_t n = 0; n < input_.active.size(); ++n) {
@@ -92,15 +90,13 @@ class Objective {
         input_.evaluator->linearize(n, point, linear);
         whiten(linear, (*input_.whitening)[n], free_, whitened);
         const LossValue value = loss(whitened.residual.squaredNorm());
-        result.cost += value.value;
+        cost += value.value;
         sum.add(whitened, value.weight);
       }
     }
-    addDwells(point, sum, result.cost);
-    result.information = sum.information();
-    result.gradient = sum.gradient();
-    addPrior(x, result);
-    return result;
+    addDwells(point, sum, cost);
+    addPrior(x, sum, cost);
+    return {cost, sum.gradient(), sum.information()};
   }
 
   Eigen::VectorXd moved(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const {
@@ -174,13 +170,11 @@ class Objective {
     }
   }
 
-  void addPrior(const Eigen::VectorXd& x, NormalEquations& result) const {
+  void addPrior(const Eigen::VectorXd& x, InformationSum& sum, double& cost) const {
     if (prior_.rows() > 0) {
-      const Eigen::MatrixXd jacobian = prior_(Eigen::all, input_.free);
       const Eigen::VectorXd residual = prior_ * x - prior_mean_;
-      result.information += jacobian.transpose() * jacobian;
-      result.gradient += jacobian.transpose() * residual;
-      result.cost += residual.squaredNorm();
+      sum.addDense(prior_(Eigen::all, input_.free), residual);
+      cost += residual.squaredNorm();
     }
   }
 

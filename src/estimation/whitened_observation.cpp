@@ -93,6 +93,24 @@ void InformationSum::add(const WhitenedObservation& observation, double weight) 
   }
 }
 
+void InformationSum::addAt(const std::vector<Eigen::Index>& places, const InformationSum& other) {
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    for (std::size_t a = 0; a <= b; ++a) {
+      upper_(places[a], places[b]) +=
+          other.upper_(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+    }
+  }
+  gradient_(places) += other.gradient_;
+  squared_misfit_ += other.squared_misfit_;
+}
+
+InformationSum InformationSum::at(const std::vector<Eigen::Index>& places) const {
+  InformationSum chosen(upper_(places, places));
+  chosen.gradient_ = gradient_(places);
+  chosen.squared_misfit_ = squared_misfit_;
+  return chosen;
+}
+
 Eigen::MatrixXd InformationSum::information() const {
   return upper_.selfadjointView<Eigen::Upper>();
 }

@@ -201,7 +201,7 @@ void Estimator::findCovariance() {
   const double windows = std::pow(result_.estimate.covariance_scale, 2);
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
   const Eigen::MatrixXd all_noise =
-      windows * sums.balance.information + orientations * sums.orientation.information + prior;
+      windows * sums.balance.information() + orientations * sums.orientation.information() + prior;
   const Eigen::MatrixXd noise = all_noise(estimated, estimated);
   Eigen::MatrixXd held = problem_.prior.covariance;
   for (const Eigen::Index a : estimated) {
@@ -263,14 +263,15 @@ HeldOutMotion Estimator::countHeldOut() {
 void Estimator::judgeHeldOut() {
   HeldOutMotion& held_out = result_.summary.held_out;
   std::size_t values = 0;
-  const TermSum sum = terms_.heldOut(descent_.x(), values);
+  const InformationSum sum = terms_.heldOut(descent_.x(), values);
   if (values == 0) {
     return;
   }
-  const double squares =
-      std::max(0.0,
-               jointChiSquare(
-                   sum.information, sum.gradient, sum.misfit, result_.estimate.belief.covariance));
+  const double squares = std::max(0.0,
+                                  jointChiSquare(sum.information(),
+                                                 sum.gradient(),
+                                                 sum.squaredMisfit(),
+                                                 result_.estimate.belief.covariance));
   const auto freedom = static_cast<double>(values);
   held_out.reduced_chi_square = squares / freedom;
   held_out.probability = chiSquareProbability(freedom, squares);

@@ -135,7 +135,7 @@ Eigen::VectorXd MotionDescent::step(double damping_of_all) {
 
 void MotionDescent::noteError() {
   const auto values = terms_.servingWindows() * static_cast<std::size_t>(terms_.valuesPerWindow());
-  errors_.push_back(std::sqrt(sums_.balance.misfit / static_cast<double>(values)));
+  errors_.push_back(std::sqrt(sums_.balance.squaredMisfit() / static_cast<double>(values)));
 }
 
 /// Gauss–Newton with the windows as they are linearised, until the next step is at most `tolerance`
@@ -230,11 +230,11 @@ void MotionDescent::findDelay(const TermOrder& order) {
     Eigen::VectorXd x = problem_.prior.x;
     x[place] = kGrid * n / scale;
     terms_.linearize(x, sparse);
-    const TermSum sum = terms_.balance(x);
-    Eigen::MatrixXd information = sum.information(others, others);
+    const InformationSum sum = terms_.balance(x);
+    Eigen::MatrixXd information = sum.information()(others, others);
     information.diagonal().array() += 1.0 / (kLoose * kLoose);
-    const Eigen::VectorXd gradient = sum.gradient(others);
-    const double left = sum.misfit - gradient.dot(information.ldlt().solve(gradient));
+    const Eigen::VectorXd gradient = sum.gradient()(others);
+    const double left = sum.squaredMisfit() - gradient.dot(information.ldlt().solve(gradient));
     if (left < least) {
       least = left;
       best = x[place];

@@ -12,12 +12,12 @@ namespace sac {
 
 /// Both kinds of terms at one place.
 struct MotionSums {
-  TermSum balance;
-  TermSum orientation;
+  InformationSum balance{0};
+  InformationSum orientation{0};
 
-  Eigen::MatrixXd information() const { return balance.information + orientation.information; }
-  Eigen::VectorXd gradient() const { return balance.gradient + orientation.gradient; }
-  double misfit() const { return balance.misfit + orientation.misfit; }
+  Eigen::MatrixXd information() const { return balance.information() + orientation.information(); }
+  Eigen::VectorXd gradient() const { return balance.gradient() + orientation.gradient(); }
+  double misfit() const { return balance.squaredMisfit() + orientation.squaredMisfit(); }
 };
 
 /// The descent from the prior to the solution, coarse first.

@@ -46,11 +46,6 @@ struct OrientationSum {
   }
 };
 
-void startSum(Eigen::Index size, TermSum& sum) {
-  sum.information.setZero(size, size);
-  sum.gradient.setZero(size);
-}
-
 }  // namespace
 
 Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance) {
@@ -155,9 +150,8 @@ void MotionTerms::linearizeWindows(const TermOrder& order) {
   });
 }
 
-TermSum MotionTerms::balance(const Eigen::VectorXd& x) {
-  TermSum sum;
-  startSum(x.size(), sum);
+InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
+  InformationSum sum(x.size());
   const Eigen::VectorXd apart = x - linearized_at_;
   Eigen::MatrixXd jacobian;
   for (std::size_t n = 0; n < windows_.size(); n += every_) {
@@ -168,13 +162,9 @@ TermSum MotionTerms::balance(const Eigen::VectorXd& x) {
     if (!term.serves()) {
       continue;
     }
-    const double weight = weightOf(term.square / window_scale_);
     jacobian = whitening * term.balance.jacobian;
-    sum.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), weight);
-    sum.gradient.noalias() += weight * (jacobian.transpose() * term.residual);
-    sum.misfit += weight * term.residual.squaredNorm();
+    sum.addDense(jacobian, term.residual, weightOf(term.square / window_scale_));
   }
-  sum.information = Eigen::MatrixXd(sum.information.selfadjointView<Eigen::Lower>());
   return sum;
 }
 
@@ -216,27 +206,18 @@ void MotionTerms::moveOrientations(const Eigen::VectorXd& x) {
   }
 }
 
-TermSum MotionTerms::orientation(const Eigen::VectorXd& x) {
-  TermSum sum;
-  startSum(x.size(), sum);
+InformationSum MotionTerms::orientation(const Eigen::VectorXd& x) {
   moveOrientations(x);
-  const auto count = static_cast<Eigen::Index>(orienting_.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(count);
+  InformationSum orienting(static_cast<Eigen::Index>(orienting_.size()));
   for (std::size_t n = 0; n < orientations_.size(); ++n) {
     const OrientationTerm& term = orientations_[n];
-    if (!term.serves()) {
-      continue;
+    if (term.serves()) {
+      orienting.addDense(
+          orientationJacobian(n), term.residual, weightOf(term.square / orientation_scale_));
     }
-    const double weight = weightOf(term.square / orientation_scale_);
-    const auto jacobian = orientationJacobian(n);
-    information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), weight);
-    gradient.noalias() += weight * (jacobian.transpose() * term.residual);
-    sum.misfit += weight * term.residual.squaredNorm();
   }
-  sum.information(orienting_, orienting_) =
-      Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
-  sum.gradient(orienting_) = gradient;
+  InformationSum sum(x.size());
+  sum.addAt(orienting_, orienting);
   return sum;
 }
 
@@ -261,14 +242,11 @@ void MotionTerms::holdOut() {
   }
 }
 
-TermSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& values) {
-  TermSum sum;
-  startSum(x.size(), sum);
+InformationSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& values) {
+  InformationSum sum(x.size());
   values = 0;
   const auto add = [&](const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual) {
-    sum.information.noalias() += jacobian.transpose() * jacobian;
-    sum.gradient.noalias() += jacobian.transpose() * residual;
-    sum.misfit += residual.squaredNorm();
+    sum.addDense(jacobian, residual);
     values += static_cast<std::size_t>(residual.size());
   };
   const Eigen::VectorXd apart = x - linearized_at_;

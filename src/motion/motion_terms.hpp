@@ -5,20 +5,13 @@
 #include <Eigen/Core>
 
 #include "motion_span.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "spherical_actuator_calibration/motion/motion_problem.hpp"
 #include "stream_noise.hpp"
 #include "tracker_term.hpp"
 #include "window_balance.hpp"
 
 namespace sac {
-
-/// Normal equations of one kind of terms, in all coordinates: half the Hessian and half the
-/// gradient of the squared whitened misfit.
-struct TermSum {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-  double misfit = 0.0;  ///< Σ of squared whitened residuals, robustly weighted
-};
 
 /// One window in the estimation.
 struct WindowTerm {
@@ -89,13 +82,13 @@ class MotionTerms {
   void setNoiseFactors(double joints, double currents);
 
   void linearize(const Eigen::VectorXd& x, const TermOrder& order);
-  // Of the terms that serve, by the last linearisation.
-  TermSum balance(const Eigen::VectorXd& x);
-  TermSum orientation(const Eigen::VectorXd& x);
+  // Of the terms that serve, by the last linearisation and robustly weighted, in all coordinates.
+  InformationSum balance(const Eigen::VectorXd& x);
+  InformationSum orientation(const Eigen::VectorXd& x);
   /// Of what is held out and active, without robust weights: the windows' balance, and the mean
   /// orientation within each, so that white noise of the tracker does not hide the rest. `values`:
   /// how many residuals.
-  TermSum heldOut(const Eigen::VectorXd& x, std::size_t& values);
+  InformationSum heldOut(const Eigen::VectorXd& x, std::size_t& values);
 
  private:
   void holdOut();

@@ -62,6 +62,22 @@ class InformationSum {
   /// `weight`: of the observation beside its noise.
   void add(const WhitenedObservation& observation, double weight = 1.0);
 
+  /// n residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in units
+  /// of their noise.
+  template <typename Jacobian, typename Residual>
+  void addDense(const Eigen::MatrixBase<Jacobian>& jacobian,
+                const Eigen::MatrixBase<Residual>& residual,
+                double weight = 1.0) {
+    upper_.template selfadjointView<Eigen::Upper>().rankUpdate(jacobian.transpose(), weight);
+    gradient_.noalias() += weight * (jacobian.transpose() * residual);
+    squared_misfit_ += weight * residual.squaredNorm();
+  }
+
+  /// A sum over some of the coordinates. `places`: theirs, ascending.
+  void addAt(const std::vector<Eigen::Index>& places, const InformationSum& other);
+  /// The same in some of the coordinates, the others held. `places`: theirs, ascending.
+  InformationSum at(const std::vector<Eigen::Index>& places) const;
+
   /// Takes CᵀKC off the information, what was spent on quantities beside the coordinates; they add
   /// `misfit` of their own. `crossed`: C, of which only `columns` (ascending) are not zero.
   template <typename Crossed, typename Covariance>
