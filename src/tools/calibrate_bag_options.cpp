@@ -4,7 +4,6 @@
 #include <regex>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
@@ -74,28 +73,6 @@ void check(const CalibrateBagOptions& options) {
   }
 }
 
-/// No output may replace what the run reads, or another output.
-void requireSeparateFiles(const CalibrateBagOptions& options) {
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--config", options.config_path);
-  files.read("--truth", options.truth_path);
-  files.read("--urdf-template", options.urdf_template_path);
-  files.read("--issuer", options.issuer_path);
-  files.read("BAG", options.bags);
-  files.write("--output", options.output_path);
-  files.write("--urdf", options.urdf_path);
-  files.write("--covariance", options.covariance_path);
-  files.write("--certificate", options.certificate_path);
-  files.write("--apply-diagnosis", options.corrected_path);
-  if (options.report_folder) {
-    const std::filesystem::path folder(*options.report_folder);
-    files.write("--report", (folder / "report.yaml").string());
-    files.write("--report", (folder / "report.html").string());
-  }
-  files.requireSeparate();
-}
-
 /// What is understood only after all has been read.
 struct Words {
   std::optional<std::string> cycles;
@@ -104,15 +81,16 @@ struct Words {
 };
 
 void addInputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
-  line.add("actuator",
-           options.actuator_path,
-           "YAML",
-           "actuator description; without it the one of the recorded session");
-  line.add("config",
-           options.config_path,
-           "YAML",
-           "configuration, config/calibration.yaml shows all; without it the one of the recorded "
-           "session, or the defaults");
+  line.addInput("actuator",
+                options.actuator_path,
+                "YAML",
+                "actuator description; without it the one of the recorded session");
+  line.addInput(
+      "config",
+      options.config_path,
+      "YAML",
+      "configuration, config/calibration.yaml shows all; without it the one of the recorded "
+      "session, or the defaults");
   line.add("ns", options.ns, "NAME", "namespace of the recorded topics");
   line.add("from",
            words.source,
@@ -131,43 +109,43 @@ void addInputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
 }
 
 void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
-  line.add("output",
-           words.output,
-           "YAML",
-           "calibrated description to write; needed but for --diagnose or --check alone");
+  line.addOutput("output",
+                 words.output,
+                 "YAML",
+                 "calibrated description to write; needed but for --diagnose or --check alone");
   line.addSwitch("diagnose",
                  options.diagnose,
                  "tell mistakes of wiring and effects that the samples speak for: exit status 1 "
                  "where there are any");
-  line.add("apply-diagnosis",
-           options.corrected_path,
-           "YAML",
-           "description or configuration to write, corrected by what is diagnosed");
+  line.addOutput("apply-diagnosis",
+                 options.corrected_path,
+                 "YAML",
+                 "description or configuration to write, corrected by what is diagnosed");
   line.addSwitch("check",
                  options.check,
                  "judge the description by the samples of the recordings: is it still valid?");
-  line.add("urdf", options.urdf_path, "URDF", "calibrated robot description to write");
-  line.add("urdf-template",
-           options.urdf_template_path,
-           "URDF",
-           "robot description to start from; without it the shipped one of that name");
+  line.addOutput("urdf", options.urdf_path, "URDF", "calibrated robot description to write");
+  line.addInput("urdf-template",
+                options.urdf_template_path,
+                "URDF",
+                "robot description to start from; without it the shipped one of that name");
   line.add("report",
            options.report_folder,
            "DIR",
            "folder for the report: report.html for people, report.yaml with all figures");
-  line.add("covariance",
-           options.covariance_path,
-           "YAML",
-           "covariance of all parameters to write, with names, units and uncertainty budget");
-  line.add("certificate",
-           options.certificate_path,
-           "XML",
-           "digital calibration certificate to write (PTB's DCC 3.3, with the covariance)");
-  line.add("issuer",
-           options.issuer_path,
-           "YAML",
-           "laboratory, person and customer that the certificate names");
-  line.add("truth", options.truth_path, "YAML", "true parameters, to compare with");
+  line.addOutput("covariance",
+                 options.covariance_path,
+                 "YAML",
+                 "covariance of all parameters to write, with names, units and uncertainty budget");
+  line.addOutput("certificate",
+                 options.certificate_path,
+                 "XML",
+                 "digital calibration certificate to write (PTB's DCC 3.3, with the covariance)");
+  line.addInput("issuer",
+                options.issuer_path,
+                "YAML",
+                "laboratory, person and customer that the certificate names");
+  line.addInput("truth", options.truth_path, "YAML", "true parameters, to compare with");
   line.add("date", options.date, "ISO8601", "date of the calibration, in UTC; without it now");
 }
 
@@ -182,13 +160,18 @@ std::optional<CalibrateBagOptions> parseCalibrateBagOptions(int argc,
   addInputs(line, options, words);
   addOutputs(line, options, words);
   line.addForce(options.overwrite);
-  line.addOperands(options.bags);
+  line.addInputs(options.bags, "BAG");
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
   options.output_path = words.output.value_or("");
   check(options);
-  requireSeparateFiles(options);
+  if (options.report_folder) {
+    for (const char* file : {"report.yaml", "report.html"}) {
+      line.requireSeparate("report",
+                           (std::filesystem::path(*options.report_folder) / file).string());
+    }
+  }
   if (words.source) {
     options.source = parseSource(*words.source);
   }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -61,9 +60,9 @@ struct Options {
 
 void addTrialOptions(CommandLine& line, Options& options) {
   line.beginGroup("Options");
-  line.add("actuator", options.actuator_path, "YAML", "actuator description (nominal)");
-  line.add("config", options.config_path, "YAML", "as for calibrate_bag");
-  line.addRequired("output", options.output_path, "YAML", "study to write");
+  line.addInput("actuator", options.actuator_path, "YAML", "actuator description (nominal)");
+  line.addInput("config", options.config_path, "YAML", "as for calibrate_bag");
+  line.addRequiredOutput("output", options.output_path, "YAML", "study to write");
   line.addForce(options.overwrite);
   line.addSwitch("merge", options.merge, "join the shards that are given");
   line.add("trials", options.trials, "N", "of the whole study");
@@ -73,10 +72,10 @@ void addTrialOptions(CommandLine& line, Options& options) {
 }
 
 void addSessionOptions(CommandLine& line, Options& options) {
-  line.add("plan",
-           options.plan_path,
-           "YAML",
-           "session planned by plan_session, in the place of the poses and the current below");
+  line.addInput("plan",
+                options.plan_path,
+                "YAML",
+                "session planned by plan_session, in the place of the poses and the current below");
   line.add("plan-seed", options.plan_seed, "N", "of the poses, the same in all trials");
   line.add("joint-poses", options.plan.joint_poses, "N", "poses without current");
   line.add("main-coil-poses", options.plan.main_coil_poses, "N", "poses with coil 1 excited");
@@ -97,17 +96,6 @@ void addErrorOptions(CommandLine& line, Options& options) {
   line.add("coil-error", options.errors.coil_angle, "RAD", "the same of coil angles");
 }
 
-/// The study must replace nothing that it is made of.
-void requireSeparateFiles(const Options& options) {
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--config", options.config_path);
-  files.read("--plan", options.plan_path);
-  files.read("SHARD", options.shard_paths);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
-}
-
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options options;
   options.plan.validation_poses = 0;
@@ -115,7 +103,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   addTrialOptions(line, options);
   addSessionOptions(line, options);
   addErrorOptions(line, options);
-  line.addOperands(options.shard_paths);
+  line.addInputs(options.shard_paths, "SHARD");
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
@@ -125,7 +113,6 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   if (options.merge == options.shard_paths.empty()) {
     throw ConfigError("--merge takes the files of the shards, and nothing else does; see --help.");
   }
-  requireSeparateFiles(options);
   return options;
 }
 

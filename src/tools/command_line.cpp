@@ -35,6 +35,22 @@ void CommandLine::addRequired(const std::string& name,
   addOption(name, po::value<std::string>()->value_name(unit)->notifier(store), help + "; needed");
 }
 
+void CommandLine::addRequiredInput(const std::string& name,
+                                   std::string& path,
+                                   const std::string& unit,
+                                   const std::string& help) {
+  addRequired(name, path, unit, help);
+  roles_.emplace_back([name, &path](FileRoles& files) { files.read("--" + name, path); });
+}
+
+void CommandLine::addRequiredOutput(const std::string& name,
+                                    std::string& path,
+                                    const std::string& unit,
+                                    const std::string& help) {
+  addRequired(name, path, unit, help);
+  roles_.emplace_back([name, &path](FileRoles& files) { files.write("--" + name, path); });
+}
+
 void CommandLine::addSwitch(const std::string& name, bool& target, const std::string& help) {
   addOption(name, po::bool_switch(&target), help);
 }
@@ -48,12 +64,14 @@ void CommandLine::addForce(OverwritePolicy& target) {
   addOption("force", po::bool_switch()->notifier(store), "replace files that exist");
 }
 
-void CommandLine::addOperands(std::vector<std::string>& target) {
-  operands_ = &target;
+void CommandLine::addInputs(std::vector<std::string>& paths, const std::string& name) {
+  operands_ = &paths;
+  roles_.emplace_back([name, &paths](FileRoles& files) { files.read(name, paths); });
 }
 
 bool CommandLine::parse(int argc, const char* const* argv, std::ostream& out) {
   given_.clear();
+  files_ = FileRoles();
   po::options_description shown;
   for (const auto& group : groups_) {
     shown.add(*group);
@@ -83,7 +101,16 @@ bool CommandLine::parse(int argc, const char* const* argv, std::ostream& out) {
   } catch (const po::error& error) {
     throw ConfigError(std::string(error.what()) + "; --help tells the options.");
   }
+  for (const auto& enter : roles_) {
+    enter(files_);
+  }
+  files_.requireSeparate();
   return true;
+}
+
+void CommandLine::requireSeparate(const std::string& name, const std::string& path) {
+  files_.write("--" + name, path);
+  files_.requireSeparate();
 }
 
 bool CommandLine::wasGiven(const std::string& name) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 
@@ -62,18 +64,49 @@ class CommandLine {
         name, boost::program_options::value<Value>()->value_name(unit)->notifier(store), help);
   }
 
+  // The same of files. What a run writes must be no file that it reads or writes already:
+  // FileRoles.
+  template <typename Path>
+  void addInput(const std::string& name,
+                Path& path,
+                const std::string& unit,
+                const std::string& help) {
+    add(name, path, unit, help);
+    roles_.emplace_back([name, &path](FileRoles& files) { files.read("--" + name, path); });
+  }
+  template <typename Path>
+  void addOutput(const std::string& name,
+                 Path& path,
+                 const std::string& unit,
+                 const std::string& help) {
+    add(name, path, unit, help);
+    roles_.emplace_back([name, &path](FileRoles& files) { files.write("--" + name, path); });
+  }
+  void addRequiredInput(const std::string& name,
+                        std::string& path,
+                        const std::string& unit,
+                        const std::string& help);
+  void addRequiredOutput(const std::string& name,
+                         std::string& path,
+                         const std::string& unit,
+                         const std::string& help);
+
   /// A switch that sets `target`.
   void addSwitch(const std::string& name, bool& target, const std::string& help);
 
   /// --force: replaces files that exist.
   void addForce(OverwritePolicy& target);
 
-  /// What is given without a name of an option.
-  void addOperands(std::vector<std::string>& target);
+  /// Files to read that are given without a name of an option. `name` stands for one in the help.
+  void addInputs(std::vector<std::string>& paths, const std::string& name);
 
   /// Fills in the targets. False when help was asked for: it is printed to `out` and nothing else
   /// is done. Throws ConfigError that names the option.
   bool parse(int argc, const char* const* argv, std::ostream& out);
+
+  /// After parse(): what else is written because of an option. Throws ConfigError when the run
+  /// reads or writes that file already.
+  void requireSeparate(const std::string& name, const std::string& path);
 
   /// Whether an option was given, even with its default value. After parse().
   bool wasGiven(const std::string& name) const;
@@ -92,6 +125,8 @@ class CommandLine {
   std::vector<std::string> required_;
   std::vector<std::string>* operands_ = nullptr;
   boost::program_options::variables_map given_;
+  std::vector<std::function<void(FileRoles&)>> roles_;  ///< of the files that are given
+  FileRoles files_;
 };
 
 /// The value that a word of an option stands for. Throws ConfigError that names the option and the

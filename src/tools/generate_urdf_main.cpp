@@ -3,7 +3,6 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
@@ -25,25 +24,20 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   CommandLine line(
       "Usage: generate_urdf --actuator A.yaml [--output U.urdf]\n\n"
       "Writes the robot description of an actuator, with any number of poles and coils.\n\n");
-  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
-  line.add("dimensions",
-           options.dimensions_path,
-           "YAML",
-           "sizes, materials and limits; every key in config/actuator_dimensions.yaml");
-  line.add("output",
-           options.output_path,
-           "URDF",
-           "robot description to write; without it, the standard output");
+  line.addRequiredInput("actuator", options.actuator_path, "YAML", "actuator description");
+  line.addInput("dimensions",
+                options.dimensions_path,
+                "YAML",
+                "sizes, materials and limits; every key in config/actuator_dimensions.yaml");
+  line.addOutput("output",
+                 options.output_path,
+                 "URDF",
+                 "robot description to write; without it, the standard output");
   line.add("frame-prefix", options.frame_prefix, "TEXT", "before the names of all links");
   line.addForce(options.overwrite);
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--dimensions", options.dimensions_path);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
   return options;
 }
 

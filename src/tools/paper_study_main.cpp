@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
@@ -47,19 +46,14 @@ std::optional<Options> parseOptions(int argc, char** argv) {
       "Usage: paper_study --actuator NOMINAL.yaml --truth TRUTH.yaml --output STUDY.yaml\n\n"
       "Simulates what the paper's section 4.3 does, on many random sets of orientations.\n"
       "study/paper_study draws tables and figures of it.\n\n");
-  line.addRequired("actuator", options.nominal_path, "YAML", "the actuator as drawn");
-  line.addRequired("truth", options.truth_path, "YAML", "the actuator as made");
-  line.addRequired("output", options.output_path, "YAML", "results to write");
+  line.addRequiredInput("actuator", options.nominal_path, "YAML", "the actuator as drawn");
+  line.addRequiredInput("truth", options.truth_path, "YAML", "the actuator as made");
+  line.addRequiredOutput("output", options.output_path, "YAML", "results to write");
   line.add("seeds", options.seeds, "N", "random sets of orientations per simulation");
   line.addForce(options.overwrite);
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.nominal_path);
-  files.read("--truth", options.truth_path);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
   return options;
 }
 

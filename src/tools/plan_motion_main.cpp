@@ -4,7 +4,6 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/actuator_dimensions.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
@@ -72,11 +71,11 @@ std::optional<PlanMotionOptions> parseOptions(int argc, char** argv) {
   ControlGains& gains = options.planner.rehearsal.controller.motion_gains;
   CommandLine line(kIntroduction);
   line.beginGroup("Files");
-  line.addRequired(
+  line.addRequiredInput(
       "actuator", options.actuator_path, "YAML", "actuator description, nominal or calibrated");
-  line.addRequired("output", options.output_path, "YAML", "plan to write");
+  line.addRequiredOutput("output", options.output_path, "YAML", "plan to write");
   line.addForce(options.overwrite);
-  line.add("dimensions", options.dimensions_path, "YAML", "of the rotor, for its inertia");
+  line.addInput("dimensions", options.dimensions_path, "YAML", "of the rotor, for its inertia");
   addMotionOptions(line, options.planner);
   addChoiceOptions(line, options.planner);
   addSensorOptions(line, options.planner);
@@ -86,11 +85,6 @@ std::optional<PlanMotionOptions> parseOptions(int argc, char** argv) {
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--dimensions", options.dimensions_path);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
   return options;
 }
 

@@ -1,7 +1,6 @@
 #include "plan_session_options.hpp"
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -30,14 +29,14 @@ struct RawValues {
 
 void addFileOptions(CommandLine& line, PlanSessionOptions& options) {
   line.beginGroup("Files");
-  line.addRequired(
+  line.addRequiredInput(
       "actuator", options.actuator_path, "YAML", "actuator description, nominal or calibrated");
-  line.addRequired("output", options.output_path, "YAML", "plan to write");
+  line.addRequiredOutput("output", options.output_path, "YAML", "plan to write");
   line.addForce(options.overwrite);
-  line.add("config", options.config_path, "YAML", "as for calibrate_bag");
-  line.add("samples", options.samples_path, "YAML", "samples measured already");
+  line.addInput("config", options.config_path, "YAML", "as for calibrate_bag");
+  line.addInput("samples", options.samples_path, "YAML", "samples measured already");
   line.add("ns", options.ns, "NAME", "namespace of the topics of recordings");
-  line.addOperands(options.bags);
+  line.addInputs(options.bags, "BAG");
 }
 
 void addPlanOptions(CommandLine& line, PosePlanOptions& plan, double& time_budget, RawValues& raw) {
@@ -108,13 +107,6 @@ std::optional<PlanSessionOptions> parsePlanSessionOptions(int argc,
   if (!line.parse(argc, argv, out)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--config", options.config_path);
-  files.read("--samples", options.samples_path);
-  files.read("BAG", options.bags);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
   options.cycle = parseCycle(raw.cycle);
   options.plan.tracker_on = choose<bool>("tracker", raw.tracker, {{"on", true}, {"off", false}});
   options.plan.patterns = choose<PlanPatterns>(

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/csv_file.hpp"
@@ -44,22 +43,18 @@ struct Options {
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options options;
   CommandLine line(kIntroduction);
-  line.addRequired(
+  line.addRequiredInput(
       "actuator", options.actuator_path, "YAML", "description, usually a calibrated one");
-  line.addRequired(
+  line.addRequiredInput(
       "joints", options.joints_path, "CSV", "joint sensor angles [rad], a pose a line");
-  line.addRequired("output", options.output_path, "CSV", "orientations (and torques) to write");
-  line.add("currents", options.currents_path, "CSV", "coil currents [A], a line for each pose");
+  line.addRequiredOutput(
+      "output", options.output_path, "CSV", "orientations (and torques) to write");
+  line.addInput(
+      "currents", options.currents_path, "CSV", "coil currents [A], a line for each pose");
   line.addForce(options.overwrite);
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--joints", options.joints_path);
-  files.read("--currents", options.currents_path);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
   return options;
 }
 

@@ -8,7 +8,6 @@
 #include <ros/init.h>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "register_frames_live.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -44,17 +43,6 @@ struct Options {
   bool isLive() const { return bags.empty() && !samples_path; }
 };
 
-/// The registration must replace nothing that it is made of.
-void requireSeparateFiles(const Options& options) {
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--config", options.config_path);
-  files.read("--samples", options.samples_path);
-  files.read("BAG", options.bags);
-  files.write("--output", options.output_path);
-  files.requireSeparate();
-}
-
 std::optional<Options> parseOptions(int argc, char** argv) {
   std::vector<std::string> words;
   ros::removeROSArgs(argc, argv, words);
@@ -65,24 +53,25 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   }
   Options options;
   CommandLine line(kIntroduction);
-  line.add("actuator",
-           options.actuator_path,
-           "YAML",
-           "description, of the drawing or calibrated; live: that of the parameter server");
-  line.add("config",
-           options.config_path,
-           "YAML",
-           "configuration: dwell, means, estimation, tolerance (config/calibration.yaml)");
-  line.add("output", options.output_path, "YAML", "the registration with its covariance to write");
-  line.add("samples",
-           options.samples_path,
-           "YAML",
-           "instead of a recording: samples whose orientation is the marker's in the tracker");
+  line.addInput("actuator",
+                options.actuator_path,
+                "YAML",
+                "description, of the drawing or calibrated; live: that of the parameter server");
+  line.addInput("config",
+                options.config_path,
+                "YAML",
+                "configuration: dwell, means, estimation, tolerance (config/calibration.yaml)");
+  line.addOutput(
+      "output", options.output_path, "YAML", "the registration with its covariance to write");
+  line.addInput("samples",
+                options.samples_path,
+                "YAML",
+                "instead of a recording: samples whose orientation is the marker's in the tracker");
   line.add("ns", options.live.ns, "NAME", "namespace of the actuator's topics");
   line.add("poses", options.live.poses, "COUNT", "live: so many different poses are enough");
   line.add("duration", options.live.duration, "s", "live: over which a pose is averaged");
   line.addForce(options.overwrite);
-  line.addOperands(options.bags);
+  line.addInputs(options.bags, "BAG");
   if (!line.parse(static_cast<int>(arguments.size()), arguments.data(), std::cout)) {
     return std::nullopt;
   }
@@ -99,7 +88,6 @@ std::optional<Options> parseOptions(int argc, char** argv) {
         options.live.duration < SampleBuilderOptions().largest_dwell)) {
     throw ConfigError("--duration: more than 0 s, and less than the longest dwell.");
   }
-  requireSeparateFiles(options);
   return options;
 }
 

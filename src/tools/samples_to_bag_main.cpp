@@ -10,7 +10,6 @@
 #include <rosbag/bag.h>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
@@ -40,20 +39,15 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   CommandLine line(
       "Usage: samples_to_bag --actuator A.yaml --samples S.yaml --output OUT.bag\n\n"
       "Writes measured samples as the messages that calibrate_bag reads.\n\n");
-  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description");
-  line.addRequired("samples", options.samples_path, "YAML", "measured samples");
-  line.addRequired("output", options.output_path, "BAG", "recording to write");
+  line.addRequiredInput("actuator", options.actuator_path, "YAML", "actuator description");
+  line.addRequiredInput("samples", options.samples_path, "YAML", "measured samples");
+  line.addRequiredOutput("output", options.output_path, "BAG", "recording to write");
   line.add("ns", options.ns, "NAME", "namespace of the topics");
   line.addForce(options.overwrite);
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
   }
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--samples", options.samples_path);
-  files.write("--output", options.output_path);
-  files.write("--output", options.output_path + ".active");
-  files.requireSeparate();
+  line.requireSeparate("output", options.output_path + ".active");
   return options;
 }
 

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 
 #include "command_line.hpp"
-#include "file_roles.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
@@ -46,16 +45,17 @@ struct RawValues {
 
 void addFileOptions(CommandLine& line, SimulateRecordingOptions& options, RawValues& raw) {
   line.beginGroup("Files");
-  line.addRequired("actuator", options.actuator_path, "YAML", "actuator description (nominal)");
-  line.addRequired("output", options.output_path, "BAG", "recording to write");
+  line.addRequiredInput(
+      "actuator", options.actuator_path, "YAML", "actuator description (nominal)");
+  line.addRequiredOutput("output", options.output_path, "BAG", "recording to write");
   line.add("truth-out",
            raw.truth_out,
            "YAML",
            "where the true parameters are written; without it OUT.truth.yaml beside OUT.bag");
-  line.add("truth-in",
-           options.truth_in_path,
-           "YAML",
-           "true parameters; without it they are drawn around the nominal ones");
+  line.addInput("truth-in",
+                options.truth_in_path,
+                "YAML",
+                "true parameters; without it they are drawn around the nominal ones");
   line.addForce(options.bag.overwrite);
   line.add("ns", options.bag.ns, "NAME", "namespace of the topics");
   line.add("compression", raw.compression, "none|lz4", "of the recording");
@@ -75,11 +75,11 @@ void addTruthOptions(CommandLine& line, SimulateRecordingOptions& options, RawVa
 void addPlanOptions(CommandLine& line, SimulateRecordingOptions& options, RawValues& raw) {
   line.beginGroup("Session");
   SessionPlanOptions& plan = options.plan;
-  line.add("plan",
-           options.plan_path,
-           "YAML",
-           "session planned by plan_session; takes the place of all options below, "
-           "except tracker-poses");
+  line.addInput("plan",
+                options.plan_path,
+                "YAML",
+                "session planned by plan_session; takes the place of all options below, "
+                "except tracker-poses");
   line.add("joint-poses", plan.joint_poses, "N", "poses without current");
   line.add("main-coil", raw.main_coil, "J", "coil that identifies the poles; coils count from 1");
   line.add("main-coil-poses", plan.main_coil_poses, "N", "poses with the main coil excited");
@@ -226,18 +226,6 @@ void apply(const RawValues& raw, SimulateRecordingOptions& options) {
   options.bag.begin = options.simulation.begin;
 }
 
-/// The recording and its truth must replace nothing that they are made of, and not each other.
-void requireSeparateFiles(const SimulateRecordingOptions& options) {
-  FileRoles files;
-  files.read("--actuator", options.actuator_path);
-  files.read("--truth-in", options.truth_in_path);
-  files.read("--plan", options.plan_path);
-  files.write("--output", options.output_path);
-  files.write("--output", options.output_path + ".active");
-  files.write("--truth-out", options.truth_path);
-  files.requireSeparate();
-}
-
 }  // namespace
 
 std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
@@ -264,7 +252,8 @@ std::optional<SimulateRecordingOptions> parseSimulateRecordingOptions(int argc,
     requireNoOtherPlan(line);
   }
   apply(raw, options);
-  requireSeparateFiles(options);
+  line.requireSeparate("output", options.output_path + ".active");
+  line.requireSeparate("truth-out", options.truth_path);
   return options;
 }
 
