@@ -78,9 +78,8 @@ MotionRecording MotionRecorder::take() {
 }
 
 MotionTimes timesOf(const MotionStreams& streams) {
-  constexpr double kSpan = 0.1;      // [s] over which a rotor turns or rests
-  constexpr double kMoved = 0.01;    // [rad] in that time
-  constexpr float kCurrent = 0.05F;  // [A] of a coil that is on
+  constexpr double kSpan = 0.1;    // [s] over which a rotor turns or rests
+  constexpr double kMoved = 0.01;  // [rad] in that time
   MotionTimes times;
   std::size_t begin = 0;
   std::size_t current = 0;
@@ -94,7 +93,7 @@ MotionTimes timesOf(const MotionStreams& streams) {
            streams.current_stamps[current] < streams.joint_stamps[n];
          ++current) {
       const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
-      is_driven = is_driven || row.cwiseAbs().maxCoeff() > kCurrent;
+      is_driven = is_driven || row.cwiseAbs().maxCoeff() > kExcitationThreshold;
     }
     const bool moves = (streams.joints[n] - streams.joints[begin]).norm() > kMoved;
     times.all += passed;

@@ -58,7 +58,7 @@ struct EstimationOptions {
   double max_deviation = 6.0;
   ManufacturingTolerance tolerance;
   /// A coil below this current counts as off [A].
-  double current_threshold = 0.05;
+  double current_threshold = kExcitationThreshold;
   /// A joint that moves less than this tells nothing about its axis [rad].
   double min_joint_motion = 0.1;
   /// Assumed where a sample states no uncertainty [rad], [N·m].

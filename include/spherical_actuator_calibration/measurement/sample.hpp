@@ -13,6 +13,9 @@ using Stamp = std::int64_t;
 
 inline constexpr double kSecondsPerTick = 1e-9;
 
+/// A coil of at least this |current| counts as excited unless the configuration says otherwise [A].
+inline constexpr double kExcitationThreshold = 0.05;
+
 /// Seconds from `begin` to `end`.
 inline double secondsBetween(Stamp begin, Stamp end) {
   return static_cast<double>(end - begin) * kSecondsPerTick;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
 namespace sac {
 
 /// What is done about the torque that acts without current (sensor bias, unbalanced rotor).
@@ -25,7 +27,8 @@ struct SampleBuilderOptions {
   double largest_dwell = 120.0;      ///< a longer one is cut, so that memory stays bounded [s]
 
   // Current patterns within a dwell.
-  double current_threshold = 0.05;           ///< a coil below it counts as not excited [A]
+  /// A coil below it counts as not excited [A].
+  double current_threshold = kExcitationThreshold;
   double current_tolerance = 0.02;           ///< a pattern is constant within ± this, per coil [A]
   double settle_after_current_change = 0.1;  ///< left out at the begin of a segment [s]
   double guard_before_current_change = 0.02;  ///< left out at the end of a segment [s]
