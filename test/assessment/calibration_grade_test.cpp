@@ -15,17 +15,6 @@ std::vector<CycleRequest> wholeCalibration() {
   return {{Cycle::kJoint}, {Cycle::kRefine}};
 }
 
-/// The paper's session; every tenth sample is held out.
-std::vector<Sample> sessionSamples() {
-  scenarios::Generator generator(4);
-  std::vector<Sample> samples =
-      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
-  for (std::size_t n = 9; n < samples.size(); n += 10) {
-    samples[n].validation = true;
-  }
-  return samples;
-}
-
 CalibrationConfig registered() {
   CalibrationConfig config;
   stateRegistration(config, {0.0, 0.0, 0.0});
@@ -55,13 +44,13 @@ TEST(CalibrationGrade, HasOneNamePerGrade) {
 }
 
 TEST(CalibrationGrade, GoodNeedsEveryParameterAndHeldOutSamplesThatAgree) {
-  const GradedCalibration graded = gradeOf(sessionSamples(), wholeCalibration());
+  const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), wholeCalibration());
   EXPECT_EQ(graded.grade, Grade::kGood) << graded.reason;
   EXPECT_TRUE(tells(graded, "all 73 parameters are identified")) << graded.reason;
 }
 
 TEST(CalibrationGrade, NothingIsGoodThatWasNotJudged) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
     sample.validation = false;
   }
@@ -71,7 +60,7 @@ TEST(CalibrationGrade, NothingIsGoodThatWasNotJudged) {
 }
 
 TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
     sample.has_torque = sample.has_torque && !sample.validation;
   }
@@ -81,7 +70,7 @@ TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
 }
 
 TEST(CalibrationGrade, UsableWherePartsAreMissing) {
-  const GradedCalibration graded = gradeOf(sessionSamples(), {{Cycle::kJoint}});
+  const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), {{Cycle::kJoint}});
   EXPECT_EQ(graded.grade, Grade::kUsable);
   EXPECT_TRUE(tells(graded, "9 of 73 parameters are identified")) << graded.reason;
 }
@@ -89,17 +78,17 @@ TEST(CalibrationGrade, UsableWherePartsAreMissing) {
 TEST(CalibrationGrade, UsableWhereTheWantedAccuracyIsMissed) {
   CalibrationConfig config = registered();
   config.wanted.orientation = 1e-7;
-  const GradedCalibration one = gradeOf(sessionSamples(), wholeCalibration(), config);
+  const GradedCalibration one = gradeOf(scenarios::heldOutSession(), wholeCalibration(), config);
   EXPECT_EQ(one.grade, Grade::kUsable);
   EXPECT_TRUE(tells(one, "above the wanted 0.0001 mrad")) << one.reason;
   config.wanted = {1.0, 1e-9};
-  EXPECT_EQ(gradeOf(sessionSamples(), wholeCalibration(), config).grade, Grade::kUsable);
+  EXPECT_EQ(gradeOf(scenarios::heldOutSession(), wholeCalibration(), config).grade, Grade::kUsable);
   config.wanted = {1.0, 1.0};
-  EXPECT_EQ(gradeOf(sessionSamples(), wholeCalibration(), config).grade, Grade::kGood);
+  EXPECT_EQ(gradeOf(scenarios::heldOutSession(), wholeCalibration(), config).grade, Grade::kGood);
 }
 
 TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
     if (sample.validation) {
       sample.R_stator_rotor = rotationExp({0.01, 0.0, 0.0}) * sample.R_stator_rotor;
@@ -111,7 +100,7 @@ TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
 TEST(CalibrationGrade, ACycleThatFailedSpoilsNothing) {
   std::vector<CycleRequest> requests = wholeCalibration();
   requests.push_back({Cycle::kCoil, 24});
-  EXPECT_EQ(gradeOf(sessionSamples(), requests).grade, Grade::kGood);
+  EXPECT_EQ(gradeOf(scenarios::heldOutSession(), requests).grade, Grade::kGood);
 }
 
 TEST(CalibrationGrade, FailedWhereNothingIsIdentified) {

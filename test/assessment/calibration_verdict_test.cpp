@@ -13,17 +13,6 @@
 namespace sac {
 namespace {
 
-/// The paper's session; every tenth sample is held out.
-std::vector<Sample> sessionSamples() {
-  scenarios::Generator generator(4);
-  std::vector<Sample> samples =
-      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
-  for (std::size_t n = 9; n < samples.size(); n += 10) {
-    samples[n].validation = true;
-  }
-  return samples;
-}
-
 CalibrationSession sessionWith(const std::vector<Sample>& samples,
                                const std::vector<CycleRequest>& requests) {
   CalibrationConfig config;
@@ -57,7 +46,7 @@ TEST(CalibrationVerdict, NothingWorksWithoutASuccessfulCycle) {
 }
 
 TEST(CalibrationVerdict, GoodWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
-  const std::vector<Sample> samples = sessionSamples();
+  const std::vector<Sample> samples = scenarios::heldOutSession();
   const CalibrationVerdict verdict =
       verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
   EXPECT_EQ(verdict.graded.grade, Grade::kGood);
@@ -70,7 +59,7 @@ TEST(CalibrationVerdict, GoodWhenAllIsIdentifiedAndHeldOutSamplesAgree) {
 }
 
 TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
     if (sample.validation) {
       sample.R_stator_rotor = rotationExp({0.01, 0.0, 0.0}) * sample.R_stator_rotor;
@@ -85,7 +74,7 @@ TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
 
 TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {
   scenarios::Generator generator(2);
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   std::vector<Eigen::Vector3d> poses;
   for (int n = 0; n < 40; ++n) {
     const Eigen::Vector3d pose = scenarios::randomPose(0.2, generator);
@@ -110,7 +99,7 @@ TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {
 }
 
 TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
     sample.validation = false;
   }
@@ -123,7 +112,7 @@ TEST(CalibrationVerdict, AsksForWhatWasNotTried) {
 }
 
 TEST(CalibrationVerdict, NamesRejectedAndIrreplaceableSamples) {
-  std::vector<Sample> samples = sessionSamples();
+  std::vector<Sample> samples = scenarios::heldOutSession();
   samples[20].R_stator_rotor = rotationExp({0.1, 0.0, 0.0}) * samples[20].R_stator_rotor;
   const CalibrationSession session = sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}});
   SampleInfluence influence;
@@ -142,7 +131,7 @@ TEST(CalibrationVerdict, PrefersTheEffectsThatExplainBest) {
   ModelFit fewer = all;
   fewer.effects = "without torque_bias";
   fewer.bic = 100.0;
-  const CalibrationSession session = sessionWith(sessionSamples(), {{Cycle::kJoint}});
+  const CalibrationSession session = sessionWith(scenarios::heldOutSession(), {{Cycle::kJoint}});
   EXPECT_NE(stepsOf(judgeCalibration(session, {}, {all, fewer})).find("\"without torque_bias\""),
             std::string::npos);
   EXPECT_EQ(stepsOf(judgeCalibration(session, {}, {all})).find("effects"), std::string::npos);

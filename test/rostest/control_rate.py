@@ -5,15 +5,13 @@ What a computer that has time must reach is measured, and asked for only where M
 
 import os
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
 from calibration_client import NAMESPACE, PACKAGE, wait_for
-from controller_client import Commands, Controller, parameters_of, target
+from controller_client import Commands, Controller, target
 from driver_node import ERROR
-from emulated_lab import EmulatedLab
+from emulated_lab import LabCase
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import ActuatorParameters, CoilCurrents
 
@@ -36,13 +34,10 @@ class Count:
         self.count += 1
 
 
-class ControlRate(unittest.TestCase):
+class ControlRate(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4, rate=RATE)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab(commands=False, seed=4, rate=RATE)
         cls.lab.change_emulator(friction={"viscous": FRICTION})
         cls.commands = Commands()
         cls.joints = Count("joint_states", JointState)

@@ -2,10 +2,12 @@
 
 import os
 import pathlib
+import tempfile
+import unittest
 
 import rospy
 import yaml
-from calibration_client import DEADLINE, NAMESPACE, wait_for
+from calibration_client import DEADLINE, NAMESPACE, CalibrationClient, wait_for
 from launch_client import Launch, launch_file
 from links import free_port
 from sensor_msgs.msg import JointState
@@ -120,3 +122,22 @@ class EmulatedLab:
     def inject_outlier(self):
         answer = rospy.ServiceProxy(f"{NAMESPACE}/lab_emulator/inject_outlier", Trigger)()
         assert answer.success, answer.message
+
+
+class LabCase(unittest.TestCase):
+    """Tests in one laboratory, which ends with them; `folder` keeps its files."""
+
+    @classmethod
+    def make_lab(cls, **arguments):
+        """Not yet started. `arguments`: of EmulatedLab."""
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.client = CalibrationClient()
+        cls.lab = EmulatedLab(cls.folder.name, **arguments)
+        cls.addClassCleanup(cls.lab.stop)
+
+    @classmethod
+    def start_lab(cls):
+        """Until its calibration node answers."""
+        cls.lab.start()
+        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")

@@ -6,14 +6,12 @@ import math
 import pathlib
 import re
 import sys
-import tempfile
 import threading
-import unittest
 
 import rospy
 import rostest
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, run_tool, wait_for
-from emulated_lab import EmulatedLab
+from calibration_client import PACKAGE, run_tool, wait_for
+from emulated_lab import LabCase
 from guided_program import GuidedProgram
 from true_parameters import expect_truth
 
@@ -54,16 +52,11 @@ class Hand:
         self._thread.join()
 
 
-class GuidedByHand(unittest.TestCase):
+class GuidedByHand(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.client = CalibrationClient()
-        cls.lab = EmulatedLab(cls.folder.name, seed=7, commands=False)
-        cls.addClassCleanup(cls.lab.stop)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        cls.make_lab(seed=7, commands=False)
+        cls.start_lab()
 
     def planned(self):
         """A plan from which the session does not need to add poses."""

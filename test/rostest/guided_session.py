@@ -5,13 +5,11 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
-from emulated_lab import EmulatedLab
+from calibration_client import NAMESPACE, PACKAGE, wait_for
+from emulated_lab import LabCase
 from guided_program import GuidedProgram
 from true_parameters import expect_truth
 
@@ -20,16 +18,11 @@ OPTIONS = ("--drive-fixture", "--yes", "--poses", str(POSES), "--dwell", "0.2")
 OPTIONS += ("--validation-poses", "1", "--settling", "0.15", "--patterns", "weighing")
 
 
-class GuidedSession(unittest.TestCase):
+class GuidedSession(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.client = CalibrationClient()
-        cls.lab = EmulatedLab(cls.folder.name, seed=5, commands=False)
-        cls.addClassCleanup(cls.lab.stop)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        cls.make_lab(seed=5, commands=False)
+        cls.start_lab()
 
     def samples(self):
         """Waits while the node is away."""

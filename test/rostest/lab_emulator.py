@@ -3,15 +3,13 @@
 
 import math
 import sys
-import tempfile
-import unittest
 
 import numpy as np
 import rospy
 import rostest
 import yaml
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
-from emulated_lab import EmulatedLab
+from calibration_client import NAMESPACE, PACKAGE, wait_for
+from emulated_lab import LabCase
 from geometry_msgs.msg import QuaternionStamped
 
 POSE = [0.2, -0.15, 0.8]
@@ -45,16 +43,11 @@ def angle_between(one, other):
     return math.acos(min(1.0, 0.5 * (np.trace(one.T @ other) - 1.0)))
 
 
-class LabEmulator(unittest.TestCase):
+class LabEmulator(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.client = CalibrationClient()
-        cls.lab = EmulatedLab(cls.folder.name, seed=3)
-        cls.addClassCleanup(cls.lab.stop)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/capture")
+        cls.make_lab(seed=3)
+        cls.start_lab()
 
     def setUp(self):
         self.lab.excite(0, 0.0)

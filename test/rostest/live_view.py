@@ -2,60 +2,19 @@
 """The live view in rviz and its panel, on a screen that nobody sees: what it draws, that it follows, and that a
 click on the panel does what the button says."""
 
-import os
-import subprocess
 import sys
-import tempfile
 import time
-import unittest
 
 import rospy
 import rostest
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
-from emulated_lab import EmulatedLab
+from calibration_client import NAMESPACE, PACKAGE, wait_for
 from spherical_actuator_calibration.msg import CalibrationSample
 from tf2_msgs.msg import TFMessage
+from viewed_lab import ViewedLabCase, find_button
 from visualization_msgs.msg import MarkerArray
 
-SIZE = (1280, 720)
 FEWEST_COLOURS = 200
 FEWEST_PIXELS = 30
-FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
-
-
-class Screen:
-    """A virtual display, and pictures of it."""
-
-    def __init__(self):
-        read, write = os.pipe()
-        self._server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
-            pass_fds=(write,),
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(write)
-        with os.fdopen(read) as number:
-            self.display = ":" + number.readline().strip()
-
-    def pixels(self):
-        """Red, green and blue of every pixel."""
-        picture = subprocess.run(
-            ["import", "-display", self.display, "-window", "root", "-depth", "8", "rgb:-"],
-            check=True,
-            stdout=subprocess.PIPE,
-        ).stdout
-        return list(zip(picture[0::3], picture[1::3], picture[2::3]))
-
-    def click(self, x, y):
-        subprocess.run(
-            ["xdotool", "mousemove", str(x), str(y), "click", "1"],
-            check=True,
-            env={**os.environ, "DISPLAY": self.display},
-        )
-
-    def stop(self):
-        self._server.terminate()
-        self._server.wait()
 
 
 def count(pixels, condition):
@@ -74,42 +33,17 @@ def is_glowing(red, green, blue):
     return red > 140 and green > 0.75 * red and blue < 0.4 * red
 
 
-def is_button(red, green, blue):
-    return green > 100 and red < 0.5 * green and blue < 0.6 * green
-
-
-def find_button(pixels):
-    """Middle of the capture button, the only wide thing in its green; None when it is not there."""
-    width = SIZE[0]
-    rows = {}
-    for y in range(SIZE[1]):
-        line = [x for x in range(width) if is_button(*pixels[y * width + x])]
-        if len(line) > FEWEST_BUTTON_PIXELS:
-            rows[y] = sum(line) / len(line)
-    if not rows:
-        return None
-    return round(sum(rows.values()) / len(rows)), round(sum(rows) / len(rows))
-
-
-class LiveView(unittest.TestCase):
+class LiveView(ViewedLabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.screen = Screen()
-        cls.addClassCleanup(cls.screen.stop)
-        cls.client = CalibrationClient()
-        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        cls.lab = EmulatedLab(cls.folder.name, environment=environment, rviz=True)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab()
         cls.markers = []
         cls.frames = {}
         rospy.Subscriber(f"{NAMESPACE}/calibration_markers", MarkerArray, cls.markers.append)
         rospy.Subscriber("/tf", TFMessage, cls.keep_frames)
         cls.samples = []
         rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        cls.start_lab()
 
     @classmethod
     def keep_frames(cls, message):

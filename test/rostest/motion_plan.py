@@ -4,15 +4,13 @@
 import math
 import pathlib
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
 import yaml
 from calibration_client import NAMESPACE, PACKAGE, wait_for
 from controller_client import Commands, Controller, description
-from emulated_lab import EmulatedLab
+from emulated_lab import LabCase
 from geometry_msgs.msg import Vector3
 from spherical_actuator_calibration.msg import ActuatorParameters, MotionStatus
 from spherical_actuator_calibration.srv import FollowMotion, Push
@@ -46,14 +44,11 @@ def plan(duration):
     return yaml.safe_dump({"motion_plan": content})
 
 
-class MotionPlan(unittest.TestCase):
+class MotionPlan(LabCase):
     @classmethod
     def setUpClass(cls):
         cls.refusal = ""
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab(commands=False, seed=4)
         cls.make_it_patient()
         cls.commands = Commands()
         cls.lab.start()

@@ -6,18 +6,15 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
 
 import rospy
 import rostest
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
-from emulated_lab import EmulatedLab
-from live_view import Screen, find_button
+from calibration_client import NAMESPACE, PACKAGE, wait_for
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CalibrationReport, CalibrationSample, CalibrationStatus, CoilCurrents
 from true_parameters import expect_truth
+from viewed_lab import ViewedLabCase, find_button
 
 PLAN, MEASURE, HOLD_OUT, REFINE, VALIDATE, SAVE = "F2", "F3", "F5", "F7", "F8", "F9"
 POSES = 8  # that the panel plans by itself
@@ -25,17 +22,10 @@ HELD_OUT = 2
 PAUSE = 1.0  # [s] between two presses of a key that did nothing: buttons are disabled while a service runs
 
 
-class PanelByHand(unittest.TestCase):
+class PanelByHand(ViewedLabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.screen = Screen()
-        cls.addClassCleanup(cls.screen.stop)
-        cls.client = CalibrationClient()
-        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        cls.lab = EmulatedLab(cls.folder.name, commands=False, environment=environment, rviz=True, seed=5)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab(commands=False, seed=5)
         cls.latest = {}
         cls.samples = []
         cls.reports = []
@@ -47,8 +37,7 @@ class PanelByHand(unittest.TestCase):
             rospy.Subscriber(f"{NAMESPACE}/{topic}", kind, lambda message, name=topic: cls.keep(name, message))
         rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
         rospy.Subscriber(f"{NAMESPACE}/report", CalibrationReport, cls.reports.append)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        cls.start_lab()
         wait_for(lambda: find_button(cls.screen.pixels()), "the panel")
         wait_for(lambda: "wanted_pose" in cls.latest or "coil_currents" in cls.latest, "the streams")
 

@@ -6,14 +6,12 @@ import glob
 import os
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
 import yaml
-from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, program, wait_for
-from emulated_lab import EmulatedLab
+from calibration_client import NAMESPACE, PACKAGE, program, wait_for
+from emulated_lab import LabCase
 from recorder_links import wait_until_connected, wait_until_received
 
 TOLERANCE = 1e-9
@@ -31,14 +29,10 @@ STREAMS = ("joint_states", "measured_orientation", "measured_torque", "coil_curr
 SETUP = ("calibration_description", "calibration_config")
 
 
-class RecordedSession(unittest.TestCase):
+class RecordedSession(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.client = CalibrationClient()
-        cls.lab = EmulatedLab(cls.folder.name, seed=6, record=True)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab(seed=6, record=True)
         # A configuration that is not the shipped one: the recording must tell it.
         path = os.path.join(cls.lab.config, "calibration.yaml")
         with open(path, encoding="utf-8") as file:
@@ -46,8 +40,7 @@ class RecordedSession(unittest.TestCase):
         config["means"]["torque_stddev_floor"] = 2e-4
         with open(path, "w", encoding="utf-8") as file:
             yaml.safe_dump(config, file)
-        cls.lab.start()
-        rospy.wait_for_service(f"{NAMESPACE}/calibration/save")
+        cls.start_lab()
         wait_until_connected([f"{NAMESPACE}/{topic}" for topic in STREAMS + SETUP])
 
     def capture(self, duration, validation=False):

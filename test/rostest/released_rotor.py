@@ -4,8 +4,6 @@
 import math
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -13,7 +11,7 @@ import yaml
 from calibration_client import NAMESPACE, PACKAGE, program, wait_for
 from controller_client import LIMIT, Commands, Controller, parameters_of, target
 from driver_node import ERROR, OK
-from emulated_lab import EmulatedLab
+from emulated_lab import LabCase
 from geometry_msgs.msg import QuaternionStamped
 from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationReport
 
@@ -25,13 +23,10 @@ LARGEST_AGE = 1.0  # [s] of joint angles, likewise
 LOAD = [0.003, -0.004, 0.002]  # [N.m] of the shipped emulator
 
 
-class ReleasedRotor(unittest.TestCase):
+class ReleasedRotor(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.lab = EmulatedLab(cls.folder.name, commands=False, seed=4)
-        cls.addClassCleanup(cls.lab.stop)
+        cls.make_lab(commands=False, seed=4)
         cls.lab.change_emulator(friction={"viscous": FRICTION})
         cls.true_orientation = None
         rospy.Subscriber(f"{NAMESPACE}/lab_emulator/true_orientation", QuaternionStamped, cls.keep)

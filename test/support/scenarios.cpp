@@ -240,6 +240,15 @@ std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generat
   return samples;
 }
 
+std::vector<Sample> heldOutSession() {
+  Generator generator(4);
+  std::vector<Sample> samples = paperSession(paperTruth(), Tracker::kEveryPose, generator);
+  for (std::size_t n = 9; n < samples.size(); n += 10) {
+    samples[n].validation = true;
+  }
+  return samples;
+}
+
 std::vector<Sample> randomSession(const Actuator& truth, Generator& generator) {
   std::vector<Sample> samples = orientationSamples(truth,
                                                    randomPoses(10, kTilt, generator),

@@ -79,6 +79,9 @@ enum class Tracker { kFirstTenPoses, kEveryPose };
 /// component. Ids count from 1.
 std::vector<Sample> paperSession(const Actuator& truth, Tracker tracker, Generator& generator);
 
+/// That session with the tracker at every pose; every tenth sample is held out.
+std::vector<Sample> heldOutSession();
+
 /// The same numbers of samples at random poses, whether the coils reach a pole there or not.
 std::vector<Sample> randomSession(const Actuator& truth, Generator& generator);
 

@@ -1,0 +1,72 @@
+"""The emulated laboratory with rviz on a screen that nobody sees."""
+
+import os
+import subprocess
+
+from emulated_lab import LabCase
+
+SIZE = (1280, 720)
+FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
+
+
+class Screen:
+    """A virtual display, and pictures of it."""
+
+    def __init__(self):
+        read, write = os.pipe()
+        self._server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
+            pass_fds=(write,),
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(write)
+        with os.fdopen(read) as number:
+            self.display = ":" + number.readline().strip()
+
+    def pixels(self):
+        """Red, green and blue of every pixel."""
+        picture = subprocess.run(
+            ["import", "-display", self.display, "-window", "root", "-depth", "8", "rgb:-"],
+            check=True,
+            stdout=subprocess.PIPE,
+        ).stdout
+        return list(zip(picture[0::3], picture[1::3], picture[2::3]))
+
+    def click(self, x, y):
+        subprocess.run(
+            ["xdotool", "mousemove", str(x), str(y), "click", "1"],
+            check=True,
+            env={**os.environ, "DISPLAY": self.display},
+        )
+
+    def stop(self):
+        self._server.terminate()
+        self._server.wait()
+
+
+def is_button(red, green, blue):
+    return green > 100 and red < 0.5 * green and blue < 0.6 * green
+
+
+def find_button(pixels):
+    """Middle of the capture button, the only wide thing in its green; None when it is not there."""
+    width = SIZE[0]
+    rows = {}
+    for y in range(SIZE[1]):
+        line = [x for x in range(width) if is_button(*pixels[y * width + x])]
+        if len(line) > FEWEST_BUTTON_PIXELS:
+            rows[y] = sum(line) / len(line)
+    if not rows:
+        return None
+    return round(sum(rows.values()) / len(rows)), round(sum(rows) / len(rows))
+
+
+class ViewedLabCase(LabCase):
+    """Tests in one laboratory with rviz on `screen`."""
+
+    @classmethod
+    def make_lab(cls, **arguments):
+        cls.screen = Screen()
+        cls.addClassCleanup(cls.screen.stop)
+        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+        super().make_lab(environment=environment, rviz=True, **arguments)
