@@ -15,6 +15,7 @@ namespace {
 
 struct Options {
   std::string actuator;
+  std::optional<std::string> output;
   std::optional<double> tilt;
   std::size_t poses = 10;
   bool merge = false;
@@ -25,13 +26,14 @@ struct Options {
 class CommandLineTest : public ::testing::Test {
  protected:
   CommandLineTest() {
-    line_.addRequired("actuator", options_.actuator, "YAML", "actuator description");
+    line_.addRequiredInput("actuator", options_.actuator, "YAML", "actuator description");
     line_.add("tilt", options_.tilt, "RAD", "of the joints");
     line_.beginGroup("Plan");
     line_.add("poses", options_.poses, "N", "at most");
     line_.addSwitch("merge", options_.merge, "join the shards");
     line_.addForce(options_.overwrite);
-    line_.addOperands(options_.bags);
+    line_.addOutput("output", options_.output, "YAML", "to write");
+    line_.addInputs(options_.bags, "BAG");
   }
 
   bool parse(std::vector<const char*> words) {
@@ -47,6 +49,17 @@ class CommandLineTest : public ::testing::Test {
   CommandLine line_{"Usage: tool\n"};
   std::ostringstream printed_;
 };
+
+TEST_F(CommandLineTest, WhatIsWrittenIsNoFileThatIsRead) {
+  EXPECT_EQ(refusal({"--actuator", "a.yaml", "--output", "./a.yaml"}),
+            "--output: ./a.yaml is the file that --actuator reads; choose another name.");
+  EXPECT_EQ(refusal({"--actuator", "a.yaml", "one.bag", "--output", "one.bag"}),
+            "--output: one.bag is the file that BAG reads; choose another name.");
+  ASSERT_TRUE(parse({"--actuator", "a.yaml", "--output", "b.yaml"}));
+  EXPECT_NO_THROW(line_.requireSeparate("report", "report.yaml"));
+  EXPECT_EQ(errorMessage<ConfigError>([&] { line_.requireSeparate("report", "a.yaml"); }),
+            "--report: a.yaml is the file that --actuator reads; choose another name.");
+}
 
 TEST_F(CommandLineTest, FillsInWhatIsGiven) {
   ASSERT_TRUE(parse({"--actuator",
