@@ -18,6 +18,24 @@ std::string lostReason(const std::string& error) {
 
 }  // namespace
 
+/// The time in a beat that began at a time of the caller's clock: an answer may take as long as a
+/// command is in force.
+class CoilDriver::BeatClock {
+ public:
+  explicit BeatClock(double begin) : begin_(begin) {}
+
+  double begin() const { return begin_; }
+  double now() const {
+    return begin_ + std::chrono::duration<double>(Clock::now() - began_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double begin_;
+  Clock::time_point began_ = Clock::now();
+};
+
 CoilDriver::CoilDriver(const CurrentAmplifierOptions& options,
                        std::size_t coils,
                        ModbusTransport& transport)
@@ -28,6 +46,7 @@ CoilDriver::CoilDriver(const CurrentAmplifierOptions& options,
       supervisor_(options.supervision, coils) {}
 
 CoilDriver::Beat CoilDriver::beat(double now) {
+  const BeatClock clock(now);
   if (!link_.mayTry(now)) {
     forget();
     return {std::nullopt, lostReason(link_.lastError()), true};
@@ -37,15 +56,16 @@ CoilDriver::Beat CoilDriver::beat(double now) {
     if (!link_.isUp()) {
       connect();
     }
-    Beat result = exchange(now);
+    Beat result = exchange(clock);
     link_.success();
     return result;
   } catch (const TransportError& error) {
-    fail();
-    link_.failure(now, error.what());
+    fail(clock.now());
+    // What has failed took its time: the wait begins now.
+    link_.failure(clock.now(), error.what());
     return {std::nullopt, lostReason(error.what()), true};
   } catch (const Error& error) {
-    fail();
+    fail(clock.now());
     return {std::nullopt, error.what(), true};
   }
 }
@@ -57,13 +77,7 @@ void CoilDriver::connect() {
   setZero();
 }
 
-CoilDriver::Beat CoilDriver::exchange(double begin) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point began = Clock::now();
-  // An answer may take as long as a command is in force.
-  const auto now = [&] {
-    return begin + std::chrono::duration<double>(Clock::now() - began).count();
-  };
+CoilDriver::Beat CoilDriver::exchange(const BeatClock& clock) {
   Beat result;
   if (amplifier_.isTripped()) {
     forget();
@@ -71,12 +85,12 @@ CoilDriver::Beat CoilDriver::exchange(double begin) {
     result.zero_reason = "the amplifier has tripped";
     result.fault = true;
   } else {
-    follow(now(), result);
+    follow(clock.now(), result);
   }
-  last_beat_ = begin;
-  const double reading_began = now();
+  last_beat_ = clock.begin();
+  const double reading_began = clock.now();
   result.measured = measure(reading_began);
-  result.reading_time = now() - reading_began;
+  result.reading_time = clock.now() - reading_began;
   return result;
 }
 
@@ -110,8 +124,9 @@ void CoilDriver::forget() {
   supervisor_.setting(limiter_.stop());
 }
 
-void CoilDriver::fail() {
+void CoilDriver::fail(double now) {
   is_measured_ = false;
+  supervisor_.lose(now);
   forget();
   tryToDisable();
 }
@@ -127,16 +142,24 @@ void CoilDriver::setZero() {
 std::string CoilDriver::tryToDisable() {
   std::string failure;
   for (const auto way : {&CurrentAmplifier::switchOff, &CurrentAmplifier::zero}) {
-    try {
-      allowOneBeat();
-      transport_.open();
-      (amplifier_.*way)();
-    } catch (const Error& error) {
-      failure = error.what();
-      transport_.close();
-    }
+    allowOneBeat();
+    const std::string reason = tryTo(way);
+    // The link may have been dead already: a new one has what is left of the time.
+    const std::string again = reason.empty() ? reason : tryTo(way);
+    failure = again.empty() ? failure : reason;
   }
   return failure;
+}
+
+std::string CoilDriver::tryTo(void (CurrentAmplifier::*way)()) {
+  try {
+    transport_.open();
+    (amplifier_.*way)();
+    return {};
+  } catch (const Error& error) {
+    transport_.close();
+    return error.what();
+  }
 }
 
 std::string CoilDriver::stop(double now) {

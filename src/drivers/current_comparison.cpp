@@ -30,8 +30,10 @@ constexpr double kForgiven = 0.125;
 /// However long a beat took: a single measurement must not decide, nor two.
 constexpr double kLargestShare = 0.34;
 
-/// Of the beats that are an error: from here on it is likely that there will be one.
+/// Of the beats that are an error, or so long before there is one [s], whichever is later: from
+/// here on it is likely.
 constexpr double kSuspicious = 0.5;
+constexpr double kForesight = 0.1;
 
 /// Counts go on above their limit, so that all lags can be above it at the same time.
 constexpr double kHighestCount = 1.5;
@@ -73,7 +75,7 @@ double CurrentComparison::weightOf(double steady) const {
 }
 
 bool CurrentComparison::isSuspicious() const {
-  return most_ >= kSuspicious * beats_;
+  return most_ >= std::max(kSuspicious * beats_, beats_ - kForesight / period_);
 }
 
 void CurrentComparison::forgive() {

@@ -17,8 +17,11 @@ constexpr double kClockJump = 0.05;
 /// An amplifier that deviated so often does so again: somebody must look at it.
 constexpr int kMostFaults = 3;
 
-/// Watchdogs of amplifiers take longer [s].
+/// Watchdogs of amplifiers take longer from the last heartbeat on [s].
 constexpr double kOwnZero = 0.2;
+
+/// A link that is lost again so soon after it was lost with current is so because of it [s].
+constexpr double kLostAgain = 3.0;
 
 /// Zeros that confirm that there is no current, and how long they last at least [s].
 constexpr int kConfirmingZeros = 5;
@@ -28,7 +31,7 @@ constexpr double kConfirmingTime = 0.3;
 /// may be the reason why the owner is not heard [s].
 constexpr double kContestedSilence = 5.0;
 
-/// What was set flows no more so long after zero was set [s].
+/// What was set flows no more so long after next to nothing was set [s].
 constexpr double kLongestFlow = 0.3;
 /// Current after that is an error when there was so much of it [s], however rarely it comes. A
 /// second without takes little of it back.
@@ -54,7 +57,7 @@ CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t
     : limits_(limits),
       coils_(coils),
       comparison_(coils, limits.deviation, limits.deviating_beats, limits.beat_period),
-      zero_set_since_(coils) {
+      calm_(coils) {
   validate(limits);
 }
 
@@ -62,7 +65,7 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   const std::lock_guard<std::mutex> lock(mutex_);
   noticeClockJump(now);
   std::string reason = refusal(command, now);
-  if (command.caller == owner_) {
+  if (isOwner(command)) {
     owner_heard_at_ = now.steady;
   } else if (isOwnedByAnother(command, now.steady)) {
     contested_at_ = now.steady;
@@ -74,6 +77,7 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   command_ = command.currents;
   was_commanded_ = true;
   owner_ = command.caller;
+  owner_connection_ = command.connection;
   owner_heard_at_ = now.steady;
   last_stamp_ = command.stamp;
   zero_commanded_ = command.currents.isZero(0.0);
@@ -117,7 +121,7 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
            " s ahead of the wall clock: the clocks differ.";
   }
   if (isOwnedByAnother(command, now.steady)) {
-    return who + "does not count: " + owner_ +
+    return who + "does not count: " + (command.caller == owner_ ? "another " : "") + owner_ +
            " commands the coils, until nothing has come from there for " +
            withTwoDigits(limits_.watchdog) + " s, or " + withTwoDigits(kContestedSilence) +
            " s where others go on commanding.";
@@ -132,8 +136,10 @@ std::string CurrentSupervisor::refusal(const CoilCommand& command, const Instant
 // are safe, and those of somebody else's are not.
 bool CurrentSupervisor::isOwnedByAnother(const CoilCommand& command, double steady) const {
   const bool is_contested = contested_at_ && steady - *contested_at_ <= limits_.watchdog;
-  const double silence = is_contested ? kContestedSilence : limits_.watchdog;
-  return command.caller != owner_ && !owner_.empty() &&
+  // One of the same name may be the owner itself, whose connection was lost.
+  const bool is_namesake = command.caller == owner_;
+  const double silence = is_contested && !is_namesake ? kContestedSilence : limits_.watchdog;
+  return !isOwner(command) && !owner_.empty() &&
          steady <= std::max(expires_at_, owner_heard_at_ + silence);
 }
 
@@ -177,8 +183,14 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
     was_set_ = true;
   }
   for (std::size_t coil = 0; coil < coils_; ++coil) {
-    if (setpoints[static_cast<Eigen::Index>(coil)] != 0.0) {
-      zero_set_since_[coil].reset();
+    const double set = std::abs(setpoints[static_cast<Eigen::Index>(coil)]);
+    if (set > limits_.deviation) {
+      calm_[coil] = {};
+    } else {
+      calm_[coil].highest = std::max(calm_[coil].highest, set);
+    }
+    if (set > 0.0) {
+      calm_[coil].zero_since.reset();
     }
   }
 }
@@ -192,14 +204,33 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) 
   if (!deviating && strays_ >= kMostStrays) {
     deviating = stray;
   }
+  if (deviating && (fault_.empty() || is_loss_)) {
+    ++faults_;
+    fail(deviation(*deviating, measured[static_cast<Eigen::Index>(*deviating)]));
+    return;
+  }
   if (!fault_.empty()) {
     watchZero(steady);
     endFault();
+  }
+  if (maySustain()) {
+    fed_at_ = steady;
+  }
+}
+
+void CurrentSupervisor::lose(double steady) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (comparison_.setpoints().isZero(0.0)) {
     return;
   }
-  fault_at_ = steady;
-  if (deviating) {
-    fail(*deviating, measured[static_cast<Eigen::Index>(*deviating)]);
+  const bool is_again = lost_at_ && steady - *lost_at_ <= kLostAgain;
+  lost_at_ = steady;
+  if (is_again && fault_.empty()) {
+    fail("the amplifier did not answer in time, or not at all, twice within " +
+         withTwoDigits(kLostAgain) +
+         " s, each time while it had to set current. Command zero, and look after its link and "
+         "its supply; link/response_timeout is the time that it has");
+    is_loss_ = true;
   }
 }
 
@@ -223,12 +254,17 @@ std::optional<std::size_t> CurrentSupervisor::countStrays(const Eigen::VectorXd&
   std::optional<std::size_t> stray;
   for (std::size_t coil = 0; coil < coils_; ++coil) {
     const auto place = static_cast<Eigen::Index>(coil);
-    if (comparison_.setpoints()[place] != 0.0) {
+    if (std::abs(comparison_.setpoints()[place]) > limits_.deviation) {
       continue;
     }
-    std::optional<double>& since = zero_set_since_[coil];
-    since = since.value_or(steady);
-    if (steady - *since > kLongestFlow && std::abs(measured[place]) > limits_.deviation) {
+    Calm& calm = calm_[coil];
+    calm.since = calm.since.value_or(steady);
+    if (comparison_.setpoints()[place] == 0.0) {
+      calm.zero_since = calm.zero_since.value_or(steady);
+    }
+    const bool is_zero = calm.zero_since && steady - *calm.zero_since > kLongestFlow;
+    const double allowed = limits_.deviation + (is_zero ? 0.0 : calm.highest);
+    if (steady - *calm.since > kLongestFlow && std::abs(measured[place]) > allowed) {
       stray = coil;
     }
   }
@@ -238,20 +274,29 @@ std::optional<std::size_t> CurrentSupervisor::countStrays(const Eigen::VectorXd&
 
 bool CurrentSupervisor::mayBeat() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const bool is_quiet =
-      was_set_ || (measured_ && measured_->cwiseAbs().maxCoeff() <= limits_.deviation);
-  return fault_.empty() && !comparison_.isSuspicious() && is_quiet;
+  return maySustain();
 }
 
-void CurrentSupervisor::fail(std::size_t coil, double measured) {
-  ++faults_;
+bool CurrentSupervisor::maySustain() const {
+  const bool is_quiet =
+      was_set_ || (measured_ && measured_->cwiseAbs().maxCoeff() <= limits_.deviation);
+  const bool is_right = fault_.empty() || (is_loss_ && isZeroNow());
+  return is_right && is_quiet && !comparison_.isSuspicious();
+}
+
+void CurrentSupervisor::fail(const std::string& reason) {
   zero_beats_ = 0;
   obeyed_ = false;
   zero_commanded_ = false;
-  fault_ = "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
-           " A where " + withTwoDigits(comparison_.setpoints()[static_cast<Eigen::Index>(coil)]) +
-           " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
-           "Switch it off, look after it and its wires, then start the driver anew";
+  is_loss_ = false;
+  fault_ = reason;
+}
+
+std::string CurrentSupervisor::deviation(std::size_t coil, double measured) const {
+  return "coil " + std::to_string(numberOf(coil)) + " carries " + withTwoDigits(measured) +
+         " A where " + withTwoDigits(comparison_.setpoints()[static_cast<Eigen::Index>(coil)]) +
+         " A are set: the amplifier does not do what it acknowledges. Its heartbeat is withheld. "
+         "Switch it off, look after it and its wires, then start the driver anew";
 }
 
 void CurrentSupervisor::watchZero(double steady) {
@@ -261,14 +306,14 @@ void CurrentSupervisor::watchZero(double steady) {
     return;
   }
   ++zero_beats_;
-  obeyed_ = obeyed_ || (zero_beats_ == 1 && steady - fault_at_ <= kOwnZero);
+  obeyed_ = obeyed_ || (zero_beats_ == 1 && steady - fed_at_ <= kOwnZero);
 }
 
 // Whoever wants current must first have seen that there is a fault, and say so by a zero: a command
 // that goes on through it may be given blindly.
 void CurrentSupervisor::endFault() {
-  const bool has_ended = obeyed_ && zero_commanded_ && zero_beats_ >= limits_.deviating_beats;
-  if (has_ended && faults_ < kMostFaults) {
+  const bool is_bearable = is_loss_ || (obeyed_ && faults_ < kMostFaults);
+  if (is_bearable && zero_commanded_ && zero_beats_ >= limits_.deviating_beats) {
     fault_.clear();
     strays_ = 0.0;
     comparison_.forgive();

@@ -118,6 +118,30 @@ TEST(CurrentSupervisor, OnlyTheOwnerCommandsUntilItWasSilent) {
   EXPECT_NE(supervisor.offer(given("/owner", taken_over + 0.01), at(taken_over + 0.01)), "");
 }
 
+TEST(CurrentSupervisor, TwoOfOneNameAreToldApart) {
+  const int links[2] = {};
+  const auto from = [&](int which, double time, double current) {
+    CoilCommand command = given("/owner", time, current);
+    command.connection = &links[which];
+    return command;
+  };
+  CurrentSupervisor supervisor(limits(), 2);
+  double now = 10.0;
+  std::string refusal;
+  for (; now < 13.0; now += 0.02) {
+    EXPECT_EQ(supervisor.offer(from(0, now, 1.0), at(now)), "");
+    refusal = supervisor.offer(from(1, now + 0.01, -1.0), at(now + 0.01));
+    EXPECT_NE(refusal.find("another /owner commands the coils"), std::string::npos) << refusal;
+    EXPECT_EQ((*supervisor.command(now + 0.015))[0], 1.0);
+  }
+  // Its connection was lost, and it came back by a new one.
+  const double last = now - 0.02;
+  for (; !refusal.empty() && now < 20.0; now += 0.01) {
+    refusal = supervisor.offer(from(1, now, 1.0), at(now));
+  }
+  EXPECT_NEAR(now - last, 0.25, 0.03);
+}
+
 // Behind a flood of another one its commands come, but too late to count.
 TEST(CurrentSupervisor, AnOwnerWhoIsLateKeepsTheCoilsFromOthers) {
   CurrentSupervisor supervisor(limits(), 2);

@@ -79,6 +79,22 @@ TEST(SupervisedCurrents, CurrentThatComesRarelyBesideACommandedCoilIsAnErrorToo)
       << supervisor.fault();
 }
 
+// The same where next to nothing is set; and what lags behind it is none.
+TEST(SupervisedCurrents, CurrentThatComesRarelyWhereLittleIsSetIsAnErrorToo) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  std::vector<Flow> flows;
+  for (int n = 0; n < 20; ++n) {
+    flows.insert(flows.end(), {{0.001, 0.0, 36}, {0.001, 8.0, 4}});
+  }
+  EXPECT_NE(faultAfter(flows, shipped).find("coil 1 carries 8.00 A"), std::string::npos);
+  flows.clear();
+  for (int n = 0; n < 200; ++n) {
+    flows.insert(flows.end(), {{0.14, -0.14, 10}, {0.14, 0.14, 90}, {-0.14, 0.14, 10}});
+  }
+  EXPECT_EQ(faultAfter(flows, shipped), "");
+}
+
 TEST(SupervisedCurrents, TheHeartbeatIsWithheldBeforeADeviationIsSure) {
   SupervisorLimits shipped = limits();
   shipped.deviating_beats = 40;
@@ -129,7 +145,10 @@ TEST(SupervisedCurrents, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
 /// A supervisor in a fault, by a current in the second coil.
 class FaultOfCurrents : public ::testing::Test {
  protected:
-  FaultOfCurrents() { deviate(); }
+  FaultOfCurrents() {
+    observe(1, 0.0);
+    deviate();
+  }
 
   void deviate() { observe(4, 2.0); }
   void observe(int beats, double measured) {
@@ -224,6 +243,77 @@ TEST_F(FaultOfCurrents, StaysTheThirdTime) {
   command(0.0);
   observe(100, 0.0);
   EXPECT_NE(supervisor_.fault(), "");
+}
+
+// The heartbeat is withheld before the error: a watchdog of 0.25 s acts 0.15 s after it.
+TEST(SupervisedCurrents, AZeroByTheWatchdogEndsNoError) {
+  SupervisorLimits shipped = limits();
+  shipped.deviating_beats = 40;
+  CurrentSupervisor supervisor(shipped, 2);
+  double now = 10.0;
+  double fed = 0.0;
+  const auto beats = [&](double until, double measured) {
+    for (; now < until; now += 0.005) {
+      fed = supervisor.mayBeat() ? now : fed;
+      supervisor.setting(amperes(0.0));
+      supervisor.observe(amperes(measured), now);
+    }
+  };
+  beats(10.5, 0.0);
+  beats(10.65, 2.0);
+  EXPECT_EQ(supervisor.fault(), "");
+  EXPECT_LT(fed, 10.62);
+  beats(fed + 0.25, 2.0);
+  EXPECT_NE(supervisor.fault(), "");
+  ASSERT_EQ(supervisor.offer(given("/owner", now, 0.0), at(now)), "");
+  beats(now + 5.0, 0.0);
+  EXPECT_NE(supervisor.fault(), "");
+}
+
+TEST(SupervisedCurrents, ALinkThatIsLostAgainWithCurrentIsAnError) {
+  CurrentSupervisor supervisor(limits(), 2);
+  const auto lost = [&](double set, double now) {
+    supervisor.setting(amperes(set));
+    supervisor.lose(now);
+    supervisor.setting(amperes(0.0));
+    return supervisor.fault();
+  };
+  EXPECT_EQ(lost(1.0, 10.0), "");
+  EXPECT_EQ(lost(0.0, 10.5), "");
+  EXPECT_EQ(lost(1.0, 13.5), "");
+  const std::string fault = lost(1.0, 16.0);
+  EXPECT_NE(fault.find("twice within 3.00 s"), std::string::npos) << fault;
+  // It is over as soon as zero is measured and commanded, however late and often.
+  double now = 30.0;
+  const auto measured = [&](double current) {
+    for (int beat = 0; beat < 4; ++beat, now += 0.005) {
+      supervisor.observe(amperes(current), now);
+    }
+    return supervisor.fault();
+  };
+  EXPECT_NE(measured(0.0), "");
+  EXPECT_TRUE(supervisor.mayBeat());
+  ASSERT_EQ(supervisor.offer(given("/owner", now, 1.0), at(now)), "");
+  EXPECT_FALSE(supervisor.command(now));
+  EXPECT_NE(measured(0.0), "");
+  ASSERT_EQ(supervisor.offer(given("/owner", now, 0.0), at(now)), "");
+  EXPECT_EQ(measured(0.0), "");
+}
+
+TEST(SupervisedCurrents, CurrentDuringAnErrorOfTheLinkIsTheGraverOne) {
+  CurrentSupervisor supervisor(limits(), 2);
+  for (const double now : {10.0, 11.0}) {
+    supervisor.setting(amperes(1.0));
+    supervisor.lose(now);
+    supervisor.setting(amperes(0.0));
+  }
+  ASSERT_NE(supervisor.fault(), "");
+  for (double now = 12.0; now < 13.0; now += 0.005) {
+    supervisor.observe(amperes(2.0), now);
+  }
+  EXPECT_EQ(supervisor.faults(), 1);
+  EXPECT_NE(supervisor.fault().find("carries 2.00 A"), std::string::npos) << supervisor.fault();
+  EXPECT_FALSE(supervisor.mayBeat());
 }
 
 TEST(SupervisedCurrents, DuringSuchAnErrorNoCommandIsFollowed) {

@@ -55,16 +55,20 @@ class CoilDriver {
   const CurrentSupervisor& supervisor() const { return supervisor_; }
 
  private:
+  class BeatClock;
+
   void connect();
-  Beat exchange(double begin);
+  Beat exchange(const BeatClock& clock);
   void follow(double now, Beat& result);
   Heartbeat heartbeat() const;
   Eigen::VectorXd measure(double now);
   void forget();
-  void fail();
+  void fail(double now);
   void setZero();
   void allowOneBeat() { transport_.allow(options_.link.response_timeout); }
   std::string tryToDisable();
+  /// Returns why not.
+  std::string tryTo(void (CurrentAmplifier::*way)());
 
   CurrentAmplifierOptions options_;
   ModbusTransport& transport_;

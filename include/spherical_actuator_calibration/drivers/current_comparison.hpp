@@ -32,7 +32,8 @@ class CurrentComparison {
   /// These currents [A] were measured now, after the last setpoints were written. Returns the first
   /// coil that deviates, from 0.
   std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double steady);
-  /// Half the way to a coil that deviates: an honest amplifier does not come so far.
+  /// Half the way to a coil that deviates, or 0.1 s before it: an honest amplifier does not come so
+  /// far.
   bool isSuspicious() const;
   /// Counts anew.
   void forgive();

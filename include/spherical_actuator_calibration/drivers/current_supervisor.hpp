@@ -30,6 +30,8 @@ struct CoilCommand {
   /// When it was given, by the wall clock [s since 1970]; nothing: it does not say.
   std::optional<double> stamp;
   Eigen::VectorXd currents;  ///< [A], one per coil
+  /// The same for all that come by one connection: tells two of one name apart.
+  const void* connection = nullptr;
 };
 
 /// The same moment by two clocks.
@@ -75,12 +77,18 @@ class CurrentSupervisor {
   /// These currents [A] were measured after the last setpoints were written, and are held against
   /// what was set: see CurrentComparison. `steady`: when [s].
   void observe(const Eigen::VectorXd& measured, double steady);
+  /// The link was lost, or the answers came too late, after what was set last, so that it was not
+  /// measured. Twice within 3 s with current it is an error: each time there was some for as long
+  /// as answers may take, and nobody saw it. It ends as the other one does, whenever zero is
+  /// measured.
+  void lose(double steady);
   /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
   /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
   /// watchdog acts. It ends when zero was measured in all coils for `deviating_beats` beats in a
-  /// row, the first of them within 0.2 s, and the last command that was accepted since it began is
-  /// zero: then it was the amplifier that obeyed, and not its watchdog that acted, after which it
-  /// would have current again with the next heartbeat. The third one stays.
+  /// row, the first of them within 0.2 s of the last heartbeat, and the last command that was
+  /// accepted since it began is zero: then it was the amplifier that obeyed, and not its watchdog
+  /// that acted, after which it would have current again with the next heartbeat. The third one
+  /// stays.
   std::string fault() const;
   /// Whether the amplifier may have its heartbeat: nothing is wrong, nor likely to be; and before
   /// anything was commanded nothing flows, so that a driver that starts revives no current which
@@ -103,7 +111,12 @@ class CurrentSupervisor {
   void countZeros(const Eigen::VectorXd& measured, double steady);
   std::optional<std::size_t> countStrays(const Eigen::VectorXd& measured, double steady);
   bool isZeroNow() const { return zeros_ > 0; }
-  void fail(std::size_t coil, double measured);
+  bool isOwner(const CoilCommand& command) const {
+    return command.caller == owner_ && command.connection == owner_connection_;
+  }
+  bool maySustain() const;
+  void fail(const std::string& reason);
+  std::string deviation(std::size_t coil, double measured) const;
   void watchZero(double steady);
   void endFault();
 
@@ -113,8 +126,9 @@ class CurrentSupervisor {
   bool closed_ = false;
   std::optional<Eigen::VectorXd> command_;
   bool was_commanded_ = false;
-  double expires_at_ = 0.0;             ///< the last command, by the steady clock
-  std::string owner_;                   ///< who gave it
+  double expires_at_ = 0.0;  ///< the last command, by the steady clock
+  std::string owner_;        ///< who gave it
+  const void* owner_connection_ = nullptr;
   double owner_heard_at_ = 0.0;         ///< also by what did not count
   std::optional<double> contested_at_;  ///< last command of another one that was refused for it
   std::optional<double> last_stamp_;    ///< its stamp
@@ -125,16 +139,23 @@ class CurrentSupervisor {
   double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
   bool was_set_ = false;  ///< anything but zero
-  /// Per coil, by the steady clock [s]; nothing: not zero is set, or nothing was measured since.
-  std::vector<std::optional<double>> zero_set_since_;
+  /// Since when no more than the tolerance is set in a coil.
+  struct Calm {
+    std::optional<double> since;  ///< by the steady clock [s]; nothing: more, or not yet measured
+    double highest = 0.0;         ///< |setpoint| since then [A]
+    std::optional<double> zero_since;  ///< likewise; nothing: not exactly zero is set
+  };
+  std::vector<Calm> calm_;               ///< per coil
   std::optional<double> last_observed_;  ///< likewise
-  /// Current in coils long after zero was set there, less what was forgiven [s].
+  /// Current in calm coils, less what was forgiven [s].
   double strays_ = 0.0;
   std::string fault_;
-  int faults_ = 0;
-  double fault_at_ = 0.0;  ///< by the steady clock [s]
-  bool obeyed_ = false;    ///< zero was measured before the amplifier's watchdog can have acted
-  int zero_beats_ = 0;     ///< in a row, since the fault
+  bool is_loss_ = false;  ///< it is one of the link
+  int faults_ = 0;        ///< others
+  double fed_at_ = 0.0;   ///< last measurement that allowed a heartbeat, by the steady clock [s]
+  std::optional<double> lost_at_;  ///< with current, by the steady clock [s]
+  bool obeyed_ = false;  ///< zero was measured before the amplifier's watchdog can have acted
+  int zero_beats_ = 0;   ///< in a row, since the fault
   bool zero_commanded_ = false;  ///< by the last command that was accepted since the fault
 };
 

@@ -37,9 +37,10 @@ Instant instantNow() {
   return {steadySeconds(), wallStamp().toSec()};
 }
 
-CoilCommand commandFromRos(const msg::CoilCurrents& message, const std::string& sender) {
+CoilCommand commandFromRos(const msg::CoilCurrents& message, const MessageSender& sender) {
   CoilCommand command;
-  command.caller = sender;
+  command.caller = sender.name;
+  command.connection = sender.connection;
   if (!message.header.stamp.isZero()) {
     command.stamp = message.header.stamp.toSec();
   }
@@ -97,7 +98,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       handle,
       "coil_command",
       kWaitingCommands,
-      [this](const msg::CoilCurrents::ConstPtr& message, const std::string& sender) {
+      [this](const msg::CoilCurrents::ConstPtr& message, const MessageSender& sender) {
         receive(*message, sender);
       },
       [this](const std::string& reason) { commands_.refuse(reason); },
@@ -159,7 +160,7 @@ std::string CoilDriverNode::tryToStop() {
   }
 }
 
-void CoilDriverNode::receive(const msg::CoilCurrents& message, const std::string& sender) {
+void CoilDriverNode::receive(const msg::CoilCurrents& message, const MessageSender& sender) {
   const std::string refusal = driver_.offer(commandFromRos(message, sender), instantNow());
   if (!refusal.empty()) {
     commands_.refuse(refusal);

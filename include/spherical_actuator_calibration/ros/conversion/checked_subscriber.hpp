@@ -18,11 +18,18 @@
 
 namespace sac {
 
+/// Who sent a message.
+struct MessageSender {
+  std::string name;  ///< of the node, as it says
+  /// The same for all messages that came by one connection: tells two of one name apart.
+  const void* connection = nullptr;
+};
+
 /// Subscribes to messages of other nodes so that none of them can end this one: lengths in them are
 /// held against their bytes (CheckedStream), and what `receive` throws is told to `refuse`.
 ///
 /// receive(const boost::shared_ptr<const Message>&) takes a message, with a second argument, a
-/// const std::string&, also the name of the node that sent it; refuse(const std::string&) takes the
+/// const MessageSender&, also who sent it; refuse(const std::string&) takes the
 /// reason why one is not used, printable: "it …", or the sentence of the exception.
 template <typename Message, typename Receive, typename Refuse>
 ros::Subscriber subscribeChecked(ros::NodeHandle node,
@@ -41,8 +48,9 @@ ros::Subscriber subscribeChecked(ros::NodeHandle node,
     }
     try {
       const Pointer message(checked, &checked->message);
-      if constexpr (std::is_invocable_v<Receive, Pointer, std::string>) {
-        receive(message, event.getPublisherName());
+      if constexpr (std::is_invocable_v<Receive, Pointer, MessageSender>) {
+        receive(message,
+                MessageSender{event.getPublisherName(), event.getConnectionHeaderPtr().get()});
       } else {
         receive(message);
       }

@@ -22,6 +22,8 @@
 
 namespace sac {
 
+struct MessageSender;
+
 /// Reads the private parameters of a node (config/coil_driver.yaml). Throws ConfigError that names
 /// the key.
 CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& private_node);
@@ -48,7 +50,7 @@ class CoilDriverNode {
   bool stop();
 
  private:
-  void receive(const msg::CoilCurrents& message, const std::string& sender);
+  void receive(const msg::CoilCurrents& message, const MessageSender& sender);
   void beat();
   void tell(const CoilDriver::Beat& beat);
   std::string tryToStop();
