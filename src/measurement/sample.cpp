@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kRotationTolerance = 1e-6;
 
+/// The first that a stamp of ROS cannot hold: 2^32 s.
+constexpr Stamp kEndOfTime = (Stamp{1} << 32U) * 1'000'000'000;
+
 /// Checks the fields of one sample; messages name it. Words are made of what is wrong alone: most
 /// samples are right, and there are many.
 class SampleCheck {
@@ -56,6 +59,10 @@ class SampleCheck {
   std::uint32_t id_;
 };
 
+bool isTime(Stamp stamp) {
+  return stamp >= 0 && stamp < kEndOfTime;
+}
+
 bool isRotation(const Eigen::Matrix3d& R) {
   const double deviation = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   return deviation <= kRotationTolerance && R.determinant() > 0.0;
@@ -65,6 +72,8 @@ bool isRotation(const Eigen::Matrix3d& R) {
 
 void validate(const Sample& sample, std::size_t coils) {
   const SampleCheck check(sample);
+  check.require(isTime(sample.stamp), "stamp is no time.");
+  check.require(isTime(sample.dwell), "dwell is no time.");
   check.require(sample.joint_position.allFinite(), "joint_position is not finite.");
   for (Eigen::Index k = 0; k < sample.joint_stddev.size(); ++k) {
     check.requireUncertainty(sample.joint_stddev[k], "joint_stddev");

@@ -10,7 +10,15 @@
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
 
+#include "spherical_actuator_calibration/base/error.hpp"
+
 namespace sac {
+
+/// A row holds what it cannot hold; what() has no full stop.
+class RowDefect : public DataError {
+ public:
+  using DataError::DataError;
+};
 
 /// Writes rows: values go to the parameters of an SQL statement one after the other.
 class RowWriter {
@@ -86,7 +94,14 @@ class RowReader {
     return value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
   }
   std::int64_t integer() { return column().getInt64(); }
-  std::uint32_t count() { return static_cast<std::uint32_t>(integer()); }
+  /// Throws RowDefect when it is none, or too large.
+  std::uint32_t count() {
+    const std::int64_t value = integer();
+    if (value < 0 || value > std::numeric_limits<std::uint32_t>::max()) {
+      throw RowDefect(std::to_string(value) + " stands where a number of 32 bits is wanted");
+    }
+    return static_cast<std::uint32_t>(value);
+  }
   bool flag() { return integer() != 0; }
   std::string text() { return column().getString(); }
   /// Bytes of a BLOB.

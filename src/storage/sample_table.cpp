@@ -1,7 +1,9 @@
 #include "sample_table.hpp"
 
 #include <cstddef>
+#include <limits>
 #include <map>
+#include <string>
 
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -9,15 +11,27 @@
 namespace sac::sample_table {
 namespace {
 
+/// More coils no actuator has.
+constexpr std::uint32_t kMostCoils = 10'000;
+
 /// Currents of the samples in use.
 std::map<std::uint32_t, std::vector<double>> currents(const SQLite::Database& database) {
-  RowReader row(database,
-                "SELECT sample, current FROM sample_currents JOIN samples ON samples.id = sample "
-                "WHERE removal IS NULL ORDER BY sample, coil");
+  RowReader row(
+      database,
+      "SELECT sample, coil, current FROM sample_currents JOIN samples ON samples.id = sample "
+      "WHERE removal IS NULL ORDER BY sample, coil");
   std::map<std::uint32_t, std::vector<double>> result;
   while (row.next()) {
     const std::uint32_t sample = row.count();
-    result[sample].push_back(row.number());
+    std::vector<double>& values = result[sample];
+    const std::uint32_t coil = row.count();
+    if (coil != numberOf(values.size()) || coil > kMostCoils) {
+      throw RowDefect("Sample " + std::to_string(sample) +
+                      ": its currents are not those of coils 1, 2, 3 and so on: coil " +
+                      std::to_string(coil) + " stands where coil " +
+                      std::to_string(numberOf(values.size())) + " is due");
+    }
+    values.push_back(row.number());
   }
   return result;
 }
@@ -140,9 +154,13 @@ std::size_t clear(const SQLite::Database& database, const std::string& date) {
 }
 
 std::uint32_t nextId(const SQLite::Database& database) {
-  RowReader row(database, "SELECT coalesce(max(id), 0) + 1 FROM samples");
+  RowReader row(database, "SELECT coalesce(max(id), 0) FROM samples");
   row.next();
-  return row.count();
+  const std::uint32_t last = row.count();
+  if (last == std::numeric_limits<std::uint32_t>::max()) {
+    throw RowDefect("the last number of a sample is taken");
+  }
+  return last + 1;
 }
 
 }  // namespace sac::sample_table

@@ -55,6 +55,16 @@ struct SessionDatabase::Tables {
   std::string software;
 
   const SQLite::Database& database() const { return connection.database(); }
+
+  /// What `read` makes of rows; those that hold something else are named with the file.
+  template <typename Read>
+  auto rows(Read read) const {
+    try {
+      return connection.read(kNotRead, read);
+    } catch (const RowDefect& defect) {
+      throwDamaged(connection.path(), defect.what());
+    }
+  }
 };
 
 SessionDatabase::SessionDatabase(const std::string& path, const SessionIdentity& identity)
@@ -81,8 +91,7 @@ void SessionDatabase::confirmSample(std::uint32_t id) {
 }
 
 std::vector<Sample> SessionDatabase::samplesInUse() const {
-  return tables_->connection.read(kNotRead,
-                                  [this] { return sample_table::inUse(tables_->database()); });
+  return tables_->rows([this] { return sample_table::inUse(tables_->database()); });
 }
 
 bool SessionDatabase::removeSample(std::uint32_t id, const std::string& date) {
@@ -102,8 +111,7 @@ std::size_t SessionDatabase::clearSamples(const std::string& date) {
 }
 
 std::uint32_t SessionDatabase::nextSampleId() const {
-  return tables_->connection.read(kNotRead,
-                                  [this] { return sample_table::nextId(tables_->database()); });
+  return tables_->rows([this] { return sample_table::nextId(tables_->database()); });
 }
 
 void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {

@@ -63,6 +63,15 @@ TEST(SampleValidation, NamesTheFieldThatIsNotFinite) {
   }
 }
 
+TEST(SampleValidation, StampsAreTimesOfRos) {
+  constexpr Stamp kEnd = 4'294'967'296'000'000'000;
+  for (const Stamp bad : {Stamp{-5}, kEnd, std::numeric_limits<Stamp>::max()}) {
+    EXPECT_EQ(messageAfter([bad](Sample& s) { s.stamp = bad; }), "Sample 7: stamp is no time.");
+    EXPECT_EQ(messageAfter([bad](Sample& s) { s.dwell = bad; }), "Sample 7: dwell is no time.");
+  }
+  EXPECT_EQ(messageAfter([](Sample& s) { s.stamp = kEnd - 1; }), "no exception");
+}
+
 TEST(SampleValidation, RefusesNegativeUncertainty) {
   EXPECT_EQ(messageAfter([](Sample& s) { s.joint_stddev.y() = -1e-9; }),
             "Sample 7: joint_stddev is negative.");

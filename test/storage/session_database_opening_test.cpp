@@ -159,6 +159,34 @@ TEST_F(OpeningTest, WhatThisPackageDoesNotMakeIsRefused) {
   }
 }
 
+TEST_F(OpeningTest, RowsThatHoldNoSampleAreTold) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"UPDATE samples SET id = 4294967301 WHERE id = 20", "4294967301 stands where"},
+      {"UPDATE samples SET measurements = -1 WHERE id = 20", "-1 stands where"},
+      {"UPDATE sample_currents SET coil = 30 WHERE sample = 7 AND coil = 3",
+       "Sample 7: its currents"},
+      {"DELETE FROM sample_currents WHERE sample = 7 AND coil = 1", "Sample 7: its currents"},
+  };
+  for (const auto& [change, words] : cases) {
+    std::filesystem::remove(path());
+    make();
+    database_examples::change(path(), change);
+    const std::string message = errorMessage<DataError>([&] {
+      SessionDatabase database(path(), identity());
+      database.samplesInUse();
+    });
+    EXPECT_NE(message.find(words), std::string::npos) << change << ": " << message;
+  }
+}
+
+TEST_F(OpeningTest, TheLastNumberOfASampleIsFollowedByNone) {
+  make();
+  database_examples::change(path(), "UPDATE samples SET id = 4294967295 WHERE id = 20");
+  SessionDatabase database(path(), identity());
+  EXPECT_NE(errorMessage<DataError>([&] { database.nextSampleId(); }).find("the last number"),
+            std::string::npos);
+}
+
 TEST_F(OpeningTest, AnEmptyFileBecomesADatabase) {
   // What is left when the process ends before the first transaction.
   folder_.write("session.db", "");
