@@ -5,12 +5,13 @@
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 int main(int argc, char** argv) {
-  bool zero_confirmed = false;
+  bool may_flow = false;
   const int status = sac::runNode(
       argc,
       argv,
       "coil_driver",
-      [&zero_confirmed](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+      [&may_flow](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+        may_flow = true;
         const sac::CurrentAmplifierOptions options = sac::loadCurrentAmplifierOptions(private_node);
         sac::handleFatalExceptions();
         sac::limitMemory(options.memory_limit);
@@ -20,8 +21,8 @@ int main(int argc, char** argv) {
                                         options,
                                         sac::makeTransport(options.link));
         sac::spinUntilTermination();
-        zero_confirmed = coil_driver.stop();
+        may_flow = !coil_driver.stop();
       });
   // Whoever started this program must not take it for done while current may flow.
-  return status == 0 && (!zero_confirmed || sac::failedFatally()) ? 1 : status;
+  return status == 0 && (may_flow || sac::failedFatally()) ? 1 : status;
 }

@@ -212,6 +212,7 @@ void print(const char* name, const StageSummary& stage) {
 }
 
 void study(const Options& options) {
+  requireNewFile(options.output_path, options.overwrite);
   const StudyRecord record = options.merge ? merge(options) : run(options);
   print("sequence", summarizeSequence(record.trials));
   print("refinement", summarizeRefinement(record.trials));

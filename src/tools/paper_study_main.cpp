@@ -342,6 +342,7 @@ class Study {
 };
 
 void writeStudy(const Options& options) {
+  requireNewFile(options.output_path, options.overwrite);
   PaperStudyOptions study;
   study.nominal = loadActuator(options.nominal_path);
   study.truth = loadActuator(options.truth_path);

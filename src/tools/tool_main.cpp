@@ -27,6 +27,14 @@ bool isOutputWritten() {
   return std::cout.good() && is_flushed && std::ferror(stdout) == 0;
 }
 
+/// In a folder such as /tmp, whose sticky bit keeps others from replacing a file.
+bool isOfSomebodyElse(const struct stat& entry, const fs::path& folder) {
+  struct stat own = {};
+  const uid_t user = ::geteuid();
+  return ::stat(folder.c_str(), &own) == 0 && (own.st_mode & S_ISVTX) != 0 && user != 0 &&
+         user != entry.st_uid && user != own.st_uid;
+}
+
 }  // namespace
 
 int runTool(const char* name, const std::function<int()>& body) {
@@ -63,16 +71,18 @@ void requireNewFile(const std::string& path, OverwritePolicy policy) {
     return;
   }
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && policy == OverwritePolicy::kRefuse) {
+  struct stat entry = {};
+  const bool is_there = ::lstat(path.c_str(), &entry) == 0;
+  if (!is_there && errno == ENAMETOOLONG) {
+    throw DataError(path + ": cannot be written: its name is too long; choose another.");
+  }
+  // A link that leads nowhere is there, too.
+  if (is_there && policy == OverwritePolicy::kRefuse) {
     throw DataError(path + ": the file exists already; choose another name or give --force.");
   }
+  const fs::file_status status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw DataError(path + ": this is not a regular file; choose another name.");
-  }
-  struct stat ignored = {};
-  if (::lstat(path.c_str(), &ignored) != 0 && errno == ENAMETOOLONG) {
-    throw DataError(path + ": cannot be written: its name is too long; choose another.");
   }
   const fs::path folder = fs::absolute(path, error).parent_path();
   if (error || ::access(folder.c_str(), W_OK | X_OK) != 0) {
@@ -80,6 +90,11 @@ void requireNewFile(const std::string& path, OverwritePolicy policy) {
                     (fs::is_directory(folder, error) ? "its folder takes no files"
                                                      : "there is no folder " + folder.string()) +
                     ".");
+  }
+  if (is_there && isOfSomebodyElse(entry, folder)) {
+    throw DataError(path +
+                    ": cannot be written: it is somebody else's, in a folder where only the " +
+                    "owner replaces a file; choose another name.");
   }
 }
 

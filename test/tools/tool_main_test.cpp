@@ -1,6 +1,7 @@
 #include "tool_main.hpp"
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -46,6 +47,19 @@ TEST_F(ToolMain, NamesThatAreTooLongAreToldFirst) {
   EXPECT_EQ(
       errorMessage<DataError>([&] { requireNewFile(longest + "x", OverwritePolicy::kReplace); }),
       longest + "x: cannot be written: its name is too long; choose another.");
+}
+
+TEST_F(ToolMain, OutputsThatCannotBeWrittenAreToldFirst) {
+  std::filesystem::create_symlink("nowhere", folder_.path("link"));
+  EXPECT_NE(errorMessage<DataError>([&] {
+              requireNewFile(folder_.path("link"), OverwritePolicy::kRefuse);
+            }).find("exists already"),
+            std::string::npos);
+  EXPECT_NO_THROW(requireNewFile(folder_.path("link"), OverwritePolicy::kReplace));
+  EXPECT_NE(errorMessage<DataError>([&] {
+              requireNewFile(folder_.path("missing/file"), OverwritePolicy::kReplace);
+            }).find("there is no folder"),
+            std::string::npos);
 }
 
 TEST_F(ToolMain, FilesThatMayNotGrowAreAnError) {

@@ -1,9 +1,12 @@
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 
+#include <cstdio>
 #include <exception>
+#include <string>
 
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/master.h>
 #include <ros/names.h>
 #include <ros/service_manager.h>
 
@@ -22,6 +25,24 @@ void withdrawLoggerServices() {
   }
 }
 
+// roscpp waits for it by itself, but for no signal. False when one came first.
+bool waitForMaster() {
+  constexpr double kPeriod = 0.1;  // [s]
+  bool is_told = false;
+  while (!ros::master::check()) {
+    if (!is_told) {
+      ROS_WARN_STREAM("No ROS master answers at " << ros::master::getURI()
+                                                  << " yet: roslaunch or roscore starts one.");
+      is_told = true;
+    }
+    if (terminationRequested()) {
+      return false;
+    }
+    ros::WallDuration(kPeriod).sleep();
+  }
+  return true;
+}
+
 }  // namespace
 
 int runNode(int argc,
@@ -29,8 +50,22 @@ int runNode(int argc,
             const char* name,
             const std::function<void(const ros::NodeHandle& node,
                                      const ros::NodeHandle& private_node)>& body) {
+  for (int n = 1; n < argc; ++n) {
+    const std::string word = argv[n];
+    if (word == "--help" || word == "-h") {
+      std::printf(
+          "Usage: %s [_parameter:=value...] [topic:=name...] [__ns:=namespace]\n\n"
+          "A node: its parameters, topics and services are in doc/interfaces.md, and launch/ "
+          "starts it with\nthose of config/.\n",
+          name);
+      return 0;
+    }
+  }
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
   handleTerminationSignals();
+  if (!waitForMaster()) {
+    return 0;
+  }
   // The last handle to go ends ROS, and with it the console that errors are told on.
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
