@@ -37,7 +37,9 @@ class RobotDescription {
                         " attributes, where URDF knows a handful: take out what does not belong.");
     }
     require(xml_.Parse(text.c_str(), text.size()));
-    understand(urdf::parseURDF(text));
+    // What is no XML, such as a bare ampersand, the two readers take for different things: understood
+    // is what will be written.
+    understand(urdf::parseURDF(this->text()));
   }
 
   const urdf::Joint& joint(const std::string& name) const {
