@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "torque_scale.hpp"
 
 namespace sac {
@@ -25,7 +26,7 @@ constexpr double kFlatPrecision = 1e-6;  // of continuous values, so that the sy
 /// Observations of one stream of one case, linearised.
 struct Linearization {
   std::vector<LinearizedObservation> observations;
-  std::vector<Eigen::LLT<Eigen::Matrix3d>> noise;
+  std::vector<Eigen::Matrix3d> whitening;
   double log_noise = 0.0;  ///< Σ ½ log det
 };
 
@@ -134,7 +135,7 @@ class Fit {
     const ObservationEvaluator evaluator(problem, config_.estimation);
     const ModelPoint point = evaluator.at(x);
     out.observations.resize(problem.observations.size());
-    out.noise.clear();
+    out.whitening.clear();
     out.log_noise = 0.0;
     const double largest_torque = largestTorquePerAmpere(mended.actuator);
     for (std::size_t n = 0; n < problem.observations.size(); ++n) {
@@ -150,8 +151,8 @@ class Fit {
                                    ? allowance_.orientation
                                    : allowance_.torque * largest_torque * sample.current.norm();
       noise.diagonal().array() += allowance * allowance;
-      out.noise.emplace_back(noise);
-      out.log_noise += out.noise.back().matrixLLT().diagonal().array().log().sum();
+      out.whitening.push_back(whiteningOf(noise));
+      out.log_noise -= out.whitening.back().diagonal().array().log().sum();
     }
   }
 
@@ -186,7 +187,7 @@ class Fit {
   }
 
   double squaredMisfit(std::size_t n) const {
-    return linear_.noise[n].matrixL().solve(linear_.observations[n].residual).squaredNorm();
+    return (linear_.whitening[n] * linear_.observations[n].residual).squaredNorm();
   }
 
   /// One Gauss–Newton step, shortened until it helps. False: none helped.
@@ -210,53 +211,29 @@ class Fit {
   Eigen::VectorXd step(const PosteriorFit& fit) const {
     const Eigen::Index size = fit.x.size();
     const Eigen::Index total = size + fit.values.size();
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(total, total);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(total);
-    information.diagonal().head(size) = precision_;
-    information.diagonal().tail(fit.values.size()).setConstant(kFlatPrecision);
-    gradient.head(size) = precision_.cwiseProduct(fit.x);
-    std::vector<Eigen::Index> columns;
-    Eigen::Matrix3Xd jacobian;
+    Eigen::VectorXd precision(total);
+    precision << precision_, Eigen::VectorXd::Constant(fit.values.size(), kFlatPrecision);
+    InformationSum sum(Eigen::MatrixXd(precision.asDiagonal()));
+    const ChosenCoordinates coordinates = ChosenCoordinates::all(size);
+    const double variance = fit.scale * fit.scale;
+    WhitenedObservation whitened;
+    whitened.jacobian.resize(3, total);
     for (std::size_t n = 0; n < linear_.observations.size(); ++n) {
-      gather(n, size, columns, jacobian);
-      const double factor =
-          weight(squaredMisfit(n) / (fit.scale * fit.scale)) / (fit.scale * fit.scale);
-      const auto count = static_cast<Eigen::Index>(columns.size());
-      const Eigen::Vector3d residual =
-          linear_.noise[n].matrixL().solve(linear_.observations[n].residual);
-      linear_.noise[n].matrixL().solveInPlace(jacobian);
-      for (Eigen::Index a = 0; a < count; ++a) {
-        const Eigen::Index row = columns[static_cast<std::size_t>(a)];
-        gradient[row] += factor * jacobian.col(a).dot(residual);
-        for (Eigen::Index b = 0; b <= a; ++b) {
-          information(row, columns[static_cast<std::size_t>(b)]) +=
-              factor * jacobian.col(a).dot(jacobian.col(b));
-        }
-      }
+      whiten(linear_.observations[n], linear_.whitening[n], coordinates, whitened);
+      appendValues(n, size, whitened);
+      sum.add(whitened, weight(whitened.residual.squaredNorm() / variance) / variance);
     }
-    return -Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(information).solve(gradient);
+    Eigen::VectorXd gradient = sum.gradient();
+    gradient.head(size) += precision_.cwiseProduct(fit.x);
+    return -sum.information().llt().solve(gradient);
   }
 
-  /// Columns of an observation that are not zero.
-  void gather(std::size_t n,
-              Eigen::Index size,
-              std::vector<Eigen::Index>& columns,
-              Eigen::Matrix3Xd& jacobian) const {
-    columns.clear();
-    const LinearizedObservation& linear = linear_.observations[n];
-    for (const Eigen::Index column : linear.columns) {
-      if (!linear.jacobian.col(column).isZero(0.0)) {
-        columns.push_back(column);
-      }
-    }
-    const auto coordinates = static_cast<Eigen::Index>(columns.size());
-    jacobian.resize(3, coordinates + d_values_[n].cols());
-    for (Eigen::Index a = 0; a < coordinates; ++a) {
-      jacobian.col(a) = linear.jacobian.col(columns[static_cast<std::size_t>(a)]);
-    }
+  /// The continuous values stand behind the coordinates.
+  void appendValues(std::size_t n, Eigen::Index size, WhitenedObservation& whitened) const {
     for (Eigen::Index v = 0; v < d_values_[n].cols(); ++v) {
-      jacobian.col(coordinates + v) = d_values_[n].col(v);
-      columns.push_back(size + v);
+      whitened.jacobian.col(static_cast<Eigen::Index>(whitened.columns.size())) =
+          linear_.whitening[n] * d_values_[n].col(v);
+      whitened.columns.push_back(size + v);
     }
   }
 
