@@ -127,6 +127,19 @@ class CheckGuide(unittest.TestCase):
             ['doc/architecture.md: "Add a stream" does not name config/recorded.yaml, which names its sample.'],
         )
 
+    def test_names_a_cycle_in_quotes_that_a_recipe_has_forgotten(self):
+        self.replace("doc/architecture.md", "### Add a coil", "### Add a cycle\n\n- `src/base/`\n\n### Add a coil")
+        self.write("src/actuator/coil.cpp", 'const char* kColumns[] = {"cycle", "coil"};\n')
+        self.write("src/actuator/phase.cpp", 'const char* kPhase = "motion";\n')
+        self.assertEqual(self.complaints(), [])
+        for line in ("WHERE cycles.cycle = 'motion'", 'request.cycle = "refine";', '"--cycles", "motion"', 'run("refine")'):
+            with self.subTest(line):
+                self.write("scripts/run", line + "\n")
+                self.assertEqual(
+                    self.complaints(),
+                    ['doc/architecture.md: "Add a cycle" does not name scripts/run, which names its sample.'],
+                )
+
     def test_names_a_topic_that_is_spelt_otherwise(self):
         self.write("src/base/angle.cpp", 'const char* kTopics[] = {"measured_angle", "tracker/pose", "capture"};\n')
         self.write(
