@@ -1,8 +1,9 @@
 """What a guided session is asked for, checked in one place."""
 
-import argparse
 import dataclasses
 import typing
+
+from spherical_actuator_calibration.command_line import parser
 
 
 class OptionError(Exception):
@@ -114,13 +115,13 @@ def _add_how_it_is_measured(add, default):
 def parse(arguments):
     """Options of a command line. Raises OptionError; prints help and exits for --help."""
     default = Options()
-    parser = argparse.ArgumentParser(
-        prog="guided_session",
-        description="Leads through a whole calibration: poses, excitations, cycles, validation, saving. "
+    command_line = parser(
+        "guided_session",
+        "Leads through a whole calibration: poses, excitations, cycles, validation, saving.\n"
         "Started again, it goes on where the session stands.",
     )
-    _add_what_is_measured(parser.add_argument, default)
-    _add_how_it_is_measured(parser.add_argument, default)
-    values = vars(parser.parse_args(arguments))
+    _add_what_is_measured(command_line.add_argument, default)
+    _add_how_it_is_measured(command_line.add_argument, default)
+    values = vars(command_line.parse_args(arguments))
     del values["yes"]
     return Options(**values)
