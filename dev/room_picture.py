@@ -10,6 +10,9 @@ END = "```\n<!-- end of the drawing -->\n"
 LIBRARY = re.compile(r"^\s*add_library_of_rooms\((\w+)([^)]*)\)", re.MULTILINE)
 FOLDER = re.compile(r"^\s*add_subdirectory\(([\w/]+)\)", re.MULTILINE)
 ROOM = re.compile(r"^add_room\(([\w/]+)\s+LIBRARY\s+(\w+)", re.MULTILINE)
+NODE = re.compile(r"^\s*add_node\((\w+)\s+([^)]*)\)", re.MULTILINE)
+TOOL = re.compile(r"^\s*add_tool\((\w+)\s+(?:SOURCES([^)]*?))?LIBRARIES([^)]*)\)", re.MULTILINE)
+SHARED = re.compile(r"^\s*add_library\((\w+) STATIC([^)]*)\)", re.MULTILINE)
 INCLUDE = re.compile(rf'^\s*#\s*include\s*"{PACKAGE}/([\w/]+)/\w+\.hpp"', re.MULTILINE)
 
 
@@ -37,6 +40,30 @@ def libraries(root):
         for room, library in ROOM.findall(text):
             found[library].rooms.append(room)
     return list(found.values())
+
+
+class Program:
+    """Sources in src/nodes or src/tools, as folder/name without ending, and the libraries of rooms that they link."""
+
+    def __init__(self, name, folder, sources, used):
+        self.name = name
+        self.units = [f"{folder}/{source.removesuffix('.cpp')}" for source in sources.split()]
+        self.uses = [word for word in used.split() if word.startswith("sac_")]
+
+
+def programs(root):
+    """All programs, and what the tools share."""
+    texts = {}
+    for folder in ("nodes", "tools"):
+        path = root / "src" / folder / "CMakeLists.txt"
+        texts[folder] = path.read_text(encoding="utf-8") if path.exists() else ""
+    found = [Program(name, "nodes", f"{name}_main", used) for name, used in NODE.findall(texts["nodes"])]
+    for name, sources, used in TOOL.findall(texts["tools"]):
+        found.append(Program(name, "tools", f"{name}_main {sources}", used))
+    for name, sources in SHARED.findall(texts["tools"]):
+        used = re.search(rf"^target_link_libraries\({name} PUBLIC([^)]*)\)", texts["tools"], re.MULTILINE)
+        found.append(Program(name, "tools", sources, used.group(1) if used else ""))
+    return found
 
 
 def included_rooms(root, room, rooms):

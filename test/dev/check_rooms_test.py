@@ -36,6 +36,20 @@ class CheckRooms(unittest.TestCase):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
 
+    def write_libraries(self):
+        """Of base, control and storage, which links base alone; of a node and a tool that link storage."""
+        rooms = {"base": "sac_core", "control": "sac_control", "storage": "sac_storage"}
+        self.write("src/CMakeLists.txt", "add_library_of_rooms(sac_core EXPORTED USES Eigen3::Eigen)\n"
+                   "add_library_of_rooms(sac_control USES sac_core)\nadd_library_of_rooms(sac_storage USES sac_core)\n"
+                   + "".join(f"add_subdirectory({room})\n" for room in rooms))  # fmt: skip
+        for room, library in rooms.items():
+            self.write(f"src/{room}/CMakeLists.txt", f"add_room({room} LIBRARY {library}\n  SOURCES\n    rest.cpp)\n")
+        self.write("src/nodes/CMakeLists.txt", "if(DATABASE)\n  add_node(turner sac_storage)\nendif()\n")
+        self.write("src/tools/CMakeLists.txt", "add_library(tool_words STATIC words.cpp)\n"
+                   "target_link_libraries(tool_words PUBLIC sac_core)\n"
+                   "add_tool(rest_of\n  SOURCES rest.cpp\n  LIBRARIES sac_control)\n"
+                   "add_tool(turn SOURCES turn_options.cpp LIBRARIES sac_storage)\n")  # fmt: skip
+
     def complaints(self):
         command = [ROOT / "dev" / "check_rooms", self.root]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -57,17 +71,40 @@ class CheckRooms(unittest.TestCase):
         self.expect_one(f"src/base/wire.cpp: base must not include {INCLUDE}/actuator/coil.hpp: actuator comes after it")
 
     def test_names_a_room_whose_library_is_not_linked(self):
-        rooms = {"base": "sac_core", "control": "sac_control", "storage": "sac_storage"}
-        self.write("src/CMakeLists.txt", "add_library_of_rooms(sac_core EXPORTED USES Eigen3::Eigen)\n"
-                   "add_library_of_rooms(sac_control USES sac_core)\nadd_library_of_rooms(sac_storage USES sac_core)\n"
-                   + "".join(f"add_subdirectory({room})\n" for room in rooms))  # fmt: skip
-        for room, library in rooms.items():
-            self.write(f"src/{room}/CMakeLists.txt", f"add_room({room} LIBRARY {library}\n  SOURCES\n    rest.cpp)\n")
+        self.write_libraries()
         self.write("src/storage/table.cpp", include("base/angle.hpp"))
         self.assertEqual(self.complaints(), [])
         self.write(f"{INCLUDE}/control/motion.hpp", "enum class Motion { kUp };\n")
         self.write("src/storage/table.cpp", include("control/motion.hpp"))
         self.expect_one("src/storage/table.cpp: includes", "sac_storage does not link sac_control")
+
+    def test_names_a_program_that_does_not_link_what_it_includes(self):
+        self.write_libraries()
+        self.write(f"{INCLUDE}/control/motion.hpp", "enum class Motion { kUp };\n")
+        main = include("control/motion.hpp") + "int main() {}\n"
+        for source, program in (
+            ("src/nodes/turner_main.cpp", "turner"),
+            ("src/tools/turn_main.cpp", "turn"),
+            ("src/tools/turn_options.hpp", "turn"),
+            ("src/tools/words.cpp", "tool_words"),
+        ):
+            with self.subTest(source):
+                self.write(source, main)
+                self.expect_one(f"{source}: includes {INCLUDE}/control/motion.hpp: {program} does not link sac_control.")
+                (self.root / source).unlink()
+        self.write("src/tools/rest.cpp", main)
+        self.assertEqual(self.complaints(), [])
+
+    def test_names_a_source_that_no_program_is_made_of(self):
+        self.write_libraries()
+        self.write("src/tools/left_over.cpp", "int a();\n")
+        self.expect_one("src/tools/left_over.cpp: no program of src/tools/CMakeLists.txt is made of it.")
+
+    def test_names_an_include_that_the_rules_would_not_see(self):
+        for line in ("#include HEADER", "/**/ #include <ros/ros.h>", "#import <ros/ros.h>", "%:include <ros/ros.h>"):
+            with self.subTest(line):
+                self.write("src/base/angle.cpp", f"#define HEADER <ros/ros.h>\n{line}\n")
+                self.expect_one(f"src/base/angle.cpp: {line}: an include stands in a line of its own")
 
     def test_names_an_internal_header_of_a_later_room(self):
         self.write("src/actuator/winding.hpp", "")
