@@ -19,6 +19,12 @@ void tellStrongestCoil(const sac::Actuator& design, const ActuatorParameters& me
     ROS_ERROR("The parameters in force belong to another actuator: %s.", message.actuator.c_str());
     return;
   }
+  if (!actuator->hasTorqueModel()) {
+    ROS_WARN("revision %u (%s): an actuator without poles and coils exerts no torque.",
+             message.revision,
+             message.source.c_str());
+    return;
+  }
   const Eigen::Matrix3Xd torque = sac::torquePerAmpere(sac::TorqueCurve(*actuator->torque_curve),
                                                        sac::torqueGeometry(*actuator),
                                                        Eigen::Matrix3d::Identity());

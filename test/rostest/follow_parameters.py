@@ -17,7 +17,10 @@ import yaml
 from calibration_client import NAMESPACE, PACKAGE, wait_for
 from spherical_actuator_calibration.msg import ActuatorParameters, CoilAxis, PoleAxis
 
-DESCRIPTION = pathlib.Path(__file__).resolve().parents[2] / "config" / "pm_spherical_8x24.yaml"
+CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
+DESCRIPTION = CONFIG / "pm_spherical_8x24.yaml"
+POSITIONER = CONFIG / "examples" / "two_axis_positioner" / "actuator.yaml"
+NO_TORQUE = re.compile(r"revision (\d+) (\(\w+\)): an actuator without poles and coils exerts no torque")
 LINE = re.compile(r"revision (\d+) \((\w+)\): coil (\d+) exerts ([\d.]+) N\*m/A")
 
 
@@ -47,23 +50,25 @@ def parameters(actuator, revision, gains=()):
     for joint, described in zip(message.joints, actuator["joints"]):
         joint.axis.x, joint.axis.y, joint.axis.z = described["axis"]
         joint.offset = described["offset"]
-    message.poles = [PoleAxis(gain=1.0, **pole) for pole in actuator["poles"]]
-    message.coils = [CoilAxis(gain=1.0, **coil) for coil in actuator["coils"]]
+    message.poles = [PoleAxis(gain=1.0, **pole) for pole in actuator.get("poles", ())]
+    message.coils = [CoilAxis(gain=1.0, **coil) for coil in actuator.get("coils", ())]
     for coil, gain in dict(gains).items():
         message.coils[coil].gain = gain
     return message
 
 
 class FollowParameters(unittest.TestCase):
-    def setUp(self):
-        self.actuator = yaml.safe_load(DESCRIPTION.read_text())["actuator"]
+    def follow(self, description):
+        """Starts the node with a description, whose nominal parameters are in force."""
+        self.actuator = yaml.safe_load(description.read_text())["actuator"]
         self.publisher = rospy.Publisher(f"{NAMESPACE}/parameters", ActuatorParameters, queue_size=1, latch=True)
         self.publisher.publish(parameters(self.actuator, 0))
-        self.told = []
+        self.said = []
         self.node = subprocess.Popen(
-            [rospy.get_param("/follow_parameters_program"), DESCRIPTION],
+            [rospy.get_param("/follow_parameters_program"), description],
             env={**os.environ, "ROS_NAMESPACE": NAMESPACE, "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"},
             stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
             text=True,
         )
         threading.Thread(target=self._read, daemon=True).start()
@@ -72,14 +77,19 @@ class FollowParameters(unittest.TestCase):
 
     def _read(self):
         for line in self.node.stdout:
-            self.told += LINE.findall(line)
+            self.said.append(line)
 
-    def _line(self, revision):
-        return wait_for(
-            lambda: next((line for line in self.told if line[0] == str(revision)), None), f"revision {revision}"
-        )
+    def _line(self, revision, pattern=LINE):
+        """What the pattern finds in what is said of a revision."""
+
+        def found():
+            of_all = (parts for line in list(self.said) for parts in pattern.findall(line))
+            return next((parts for parts in of_all if parts[0] == str(revision)), None)
+
+        return wait_for(found, f"revision {revision}")
 
     def test_tells_the_strongest_coil_of_each_revision(self):
+        self.follow(DESCRIPTION)
         strengths = [torque_at_home(self.actuator, coil) for coil in self.actuator["coils"]]
         _, source, _, strength = self._line(0)
         self.assertEqual(source, "nominal")
@@ -89,6 +99,12 @@ class FollowParameters(unittest.TestCase):
         _, _, coil, strength = self._line(1)
         self.assertEqual(int(coil), 7)
         self.assertAlmostEqual(float(strength), 3.0 * strengths[6], delta=1e-8)
+
+    def test_says_that_an_actuator_without_coils_exerts_no_torque(self):
+        self.follow(POSITIONER)
+        self._line(0, NO_TORQUE)
+        self.publisher.publish(parameters(self.actuator, 1))
+        self._line(1, NO_TORQUE)
 
 
 if __name__ == "__main__":
