@@ -37,9 +37,15 @@ class RobotDescription {
                         " attributes, where URDF knows a handful: take out what does not belong.");
     }
     require(xml_.Parse(text.c_str(), text.size()));
-    // What is no XML, such as a bare ampersand, the two readers take for different things: understood
-    // is what will be written.
-    understand(urdf::parseURDF(this->text()));
+    // What is no XML, such as a bare ampersand, the two readers take for different things:
+    // understood is what will be written, and that must stay what it is.
+    const std::string written = this->text();
+    tinyxml2::XMLDocument again;
+    require(again.Parse(written.c_str(), written.size()));
+    if (textOf(again) != written) {
+      throw ConfigError(path_ + ": cannot be read as XML: written again it is something else.");
+    }
+    understand(urdf::parseURDF(written));
   }
 
   const urdf::Joint& joint(const std::string& name) const {
@@ -62,17 +68,19 @@ class RobotDescription {
     return *joint;
   }
 
-  std::string text() const {
-    tinyxml2::XMLPrinter printer;
-    xml_.Print(&printer);
-    return printer.CStr();
-  }
+  std::string text() const { return textOf(xml_); }
 
   [[noreturn]] void fail(const std::string& joint, const std::string& sentence) const {
     throw ConfigError(path_ + ": joint \"" + joint + "\": " + sentence);
   }
 
  private:
+  static std::string textOf(const tinyxml2::XMLDocument& xml) {
+    tinyxml2::XMLPrinter printer;
+    xml.Print(&printer);
+    return printer.CStr();
+  }
+
   void require(tinyxml2::XMLError error) const {
     if (error != tinyxml2::XML_SUCCESS) {
       throw ConfigError(path_ + ": cannot be read as XML: " + xml_.ErrorStr() + ".");
