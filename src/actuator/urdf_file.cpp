@@ -88,7 +88,7 @@ class RobotDescription {
   }
 
   void understand(urdf::ModelInterfaceSharedPtr model) {
-    if (!model) {
+    if (!model || xml_.RootElement() == nullptr) {
       throw ConfigError(path_ + ": this is not a robot description (URDF); check_urdf tells why.");
     }
     model_ = std::move(model);
