@@ -15,6 +15,49 @@ void requireVersion(const BagFields& fields) {
   }
 }
 
+/// The messages of one connection in a chunk, as the file lists them.
+class IndexRecord {
+ public:
+  IndexRecord(const FileBytes& file, std::uint64_t position)
+      : record_(recordOfFile(file, position, kLargestChunk)) {
+    const BagFields fields = record_.fields();
+    fields.requireOp(BagOp::kIndexData);
+    requireVersion(fields);
+    connection_ = fields.number<std::uint32_t>("conn");
+    if (record_.data().size() != fields.number<std::uint32_t>("count") * kEntry) {
+      throw BagDefect("an index has not the length that it says");
+    }
+  }
+
+  std::uint32_t connection() const { return connection_; }
+  std::size_t count() const { return record_.data().size() / kEntry; }
+  std::uint64_t end() const { return record_.end; }
+
+  /// All but those that rosbag::View never hands out.
+  template <typename Visitor>
+  void visit(const Visitor& visitor) const {
+    const std::uint64_t first = rankOf(ros::TIME_MIN);
+    const std::uint64_t last = rankOf(ros::TIME_MAX);
+    const std::string_view data = record_.data();
+    for (std::size_t at = 0; at < data.size(); at += kEntry) {
+      BagEntry entry;
+      entry.time.sec = numberAt<std::uint32_t>(data, at);
+      entry.time.nsec = numberAt<std::uint32_t>(data, at + kNumber);
+      entry.offset = numberAt<std::uint32_t>(data, at + 2 * kNumber);
+      if (rankOf(entry.time) >= first && rankOf(entry.time) <= last) {
+        visitor(entry);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNumber = sizeof(std::uint32_t);
+  static constexpr std::size_t kEntry = 3 * kNumber;
+
+  FileRecord record_;
+  std::uint32_t connection_ = 0;
+};
+
 class IndexReader {
  public:
   explicit IndexReader(const FileBytes& file) : file_(file) {}
@@ -76,7 +119,11 @@ class IndexReader {
       }
       const auto records = fields.number<std::uint32_t>("count");
       verifyCounts(info.data(), records);
-      index_.chunks.push_back({chunk, records, partsOf(chunk, records)});
+      const FileRecord header = headerOfFile(file_, chunk, kLargestChunk);
+      const BagFields chunk_fields = header.fields();
+      chunk_fields.requireOp(BagOp::kChunk);
+      const std::uint64_t size = header.end - chunk + chunk_fields.number<std::uint32_t>("size");
+      index_.chunks.push_back({chunk, header.end, size, records, partsOf(header.end, records)});
       position = info.end;
     }
   }
@@ -102,18 +149,25 @@ class IndexReader {
     return connection;
   }
 
-  std::vector<ChunkPart> partsOf(std::uint64_t chunk, std::uint32_t records) const {
-    const FileRecord header = headerOfFile(file_, chunk, kLargestChunk);
-    header.fields().requireOp(BagOp::kChunk);
-    std::vector<ChunkPart> parts;
-    for (const auto& [connection, entries] : readEntries(file_, header.end, records)) {
-      if (!entries.empty()) {
-        const auto by_time = [](const BagEntry& a, const BagEntry& b) { return a.time < b.time; };
-        const auto [first, last] = std::minmax_element(entries.begin(), entries.end(), by_time);
-        parts.push_back({known(connection), first->time, last->time});
-      }
+  /// By the index records that begin at a position.
+  std::vector<ChunkPart> partsOf(std::uint64_t position, std::uint32_t records) const {
+    std::map<std::uint32_t, ChunkPart> parts;
+    for (std::uint32_t n = 0; n < records; ++n) {
+      const IndexRecord record(file_, position);
+      record.visit([&](const BagEntry& entry) {
+        const auto first = ChunkPart{record.connection(), entry.time, entry.time};
+        ChunkPart& part = parts.try_emplace(record.connection(), first).first->second;
+        part.begin = rankOf(entry.time) < rankOf(part.begin) ? entry.time : part.begin;
+        part.end = rankOf(part.end) < rankOf(entry.time) ? entry.time : part.end;
+      });
+      position = record.end();
     }
-    return parts;
+    std::vector<ChunkPart> listed;
+    for (const auto& [connection, part] : parts) {
+      known(connection);
+      listed.push_back(part);
+    }
+    return listed;
   }
 
   const FileBytes& file_;
@@ -126,32 +180,14 @@ BagIndex readBagIndex(const FileBytes& file) {
   return IndexReader(file).read();
 }
 
-std::map<std::uint32_t, std::vector<BagEntry>> readEntries(const FileBytes& file,
-                                                           std::uint64_t position,
-                                                           std::uint32_t records) {
-  constexpr std::size_t kNumber = sizeof(std::uint32_t);
-  constexpr std::size_t kEntry = 3 * kNumber;
-  std::map<std::uint32_t, std::vector<BagEntry>> result;
+BagEntries readEntries(const FileBytes& file, std::uint64_t position, std::uint32_t records) {
+  BagEntries result;
   for (std::uint32_t n = 0; n < records; ++n) {
-    const FileRecord record = recordOfFile(file, position, kLargestChunk);
-    const BagFields fields = record.fields();
-    fields.requireOp(BagOp::kIndexData);
-    requireVersion(fields);
-    std::vector<BagEntry>& entries = result[fields.number<std::uint32_t>("conn")];
-    const std::string_view data = record.data();
-    if (data.size() != fields.number<std::uint32_t>("count") * kEntry) {
-      throw BagDefect("an index has not the length that it says");
-    }
-    for (std::size_t at = 0; at < data.size(); at += kEntry) {
-      BagEntry entry;
-      entry.time.sec = numberAt<std::uint32_t>(data, at);
-      entry.time.nsec = numberAt<std::uint32_t>(data, at + kNumber);
-      entry.offset = numberAt<std::uint32_t>(data, at + 2 * kNumber);
-      if (entry.time >= ros::TIME_MIN && entry.time <= ros::TIME_MAX) {
-        entries.push_back(entry);
-      }
-    }
-    position = record.end;
+    const IndexRecord record(file, position);
+    std::vector<BagEntry>& entries = result[record.connection()];
+    entries.reserve(entries.size() + record.count());
+    record.visit([&](const BagEntry& entry) { entries.push_back(entry); });
+    position = record.end();
   }
   return result;
 }

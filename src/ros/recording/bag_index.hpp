@@ -19,6 +19,13 @@ struct BagConnection {
   std::string md5sum;    ///< of the message definition
 };
 
+/// A stamp as a number: stamps and their numbers have the same order. To compare those of ros::Time
+/// takes a call.
+inline std::uint64_t rankOf(const ros::Time& time) {
+  constexpr unsigned kSecondBits = 32;
+  return std::uint64_t{time.sec} << kSecondBits | time.nsec;
+}
+
 /// Where a message is within a chunk that is unpacked, and when it was recorded.
 struct BagEntry {
   ros::Time time;
@@ -34,6 +41,8 @@ struct ChunkPart {
 
 struct BagChunk {
   std::uint64_t position = 0;       ///< in the file
+  std::uint64_t end = 0;            ///< in the file
+  std::uint64_t size = 0;           ///< as it is packed, and unpacked beside it [byte]
   std::uint32_t index_records = 0;  ///< that follow it
   std::vector<ChunkPart> parts;
 };
@@ -49,10 +58,11 @@ struct BagIndex {
 /// Throws BagDefect when something does not fit.
 BagIndex readBagIndex(const FileBytes& file);
 
+/// Messages by the number of their connection.
+using BagEntries = std::map<std::uint32_t, std::vector<BagEntry>>;
+
 /// Messages of each connection by the index records that begin at a position, in the order in which
 /// they stand there; what rosbag::View never hands out (times of zero) is left out.
-std::map<std::uint32_t, std::vector<BagEntry>> readEntries(const FileBytes& file,
-                                                           std::uint64_t position,
-                                                           std::uint32_t records);
+BagEntries readEntries(const FileBytes& file, std::uint64_t position, std::uint32_t records);
 
 }  // namespace sac

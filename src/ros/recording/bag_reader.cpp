@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <map>
-#include <optional>
 #include <tuple>
+#include <utility>
 
 namespace sac {
 
@@ -12,8 +13,8 @@ namespace sac {
 struct BagReader::Part {
   Chunk* chunk = nullptr;
   std::uint32_t connection = 0;
-  ros::Time time;                 ///< of the next message
-  std::vector<BagEntry> entries;  ///< sorted by time; empty until the first of them is read
+  std::uint64_t rank = 0;         ///< of the time of the next message
+  std::vector<BagEntry> entries;  ///< sorted by time; empty until the chunk is loaded
   std::size_t next = 0;
 };
 
@@ -22,17 +23,31 @@ struct BagReader::Chunk {
   const BagChunk* place = nullptr;
   std::size_t order = 0;  ///< in its bag
   std::vector<std::unique_ptr<Part>> parts;
-  std::optional<UnpackedChunk> unpacked;
+  std::size_t open_parts = 0;  ///< of which messages are still to be read
+  bool is_begun = false;       ///< to be loaded, or was loaded
+  bool is_unpacked = false;
+  std::string records;
+
+  std::uint64_t firstRank() const {
+    std::uint64_t first = parts.front()->rank;
+    for (const auto& part : parts) {
+      first = std::min(first, part->rank);
+    }
+    return first;
+  }
 
   void readParts() {
-    const FileRecord header = headerOfFile(file->bytes, place->position, kLargestChunk);
-    auto entries = readEntries(file->bytes, header.end, place->index_records);
+    BagEntries entries = readEntries(file->bytes, place->end, place->index_records);
     for (const auto& part : parts) {
       part->entries = std::move(entries[part->connection]);
-      std::stable_sort(part->entries.begin(),
-                       part->entries.end(),
-                       [](const BagEntry& a, const BagEntry& b) { return a.time < b.time; });
-      if (part->entries.empty() || part->entries.front().time != part->time) {
+      const auto is_before = [](const BagEntry& a, const BagEntry& b) {
+        return rankOf(a.time) < rankOf(b.time);
+      };
+      // Mostly they are in order; then no memory is needed to sort them.
+      if (!std::is_sorted(part->entries.begin(), part->entries.end(), is_before)) {
+        std::stable_sort(part->entries.begin(), part->entries.end(), is_before);
+      }
+      if (part->entries.empty() || rankOf(part->entries.front().time) != part->rank) {
         throw BagDefect("its index changed while it was being read");
       }
     }
@@ -42,10 +57,11 @@ struct BagReader::Chunk {
 /// The messages of one connection.
 struct BagReader::Stream {
   const BagConnection* connection = nullptr;
+  MessageRecords records;
   std::vector<Part*> parts;  ///< a heap: the one with the next message comes first
 
   static bool isLater(const Part* a, const Part* b) {
-    return std::tie(a->time, a->chunk->order) > std::tie(b->time, b->chunk->order);
+    return std::tie(a->rank, a->chunk->order) > std::tie(b->rank, b->chunk->order);
   }
 
   void add(Part* part) {
@@ -53,16 +69,17 @@ struct BagReader::Stream {
     std::push_heap(parts.begin(), parts.end(), isLater);
   }
 
-  void advance() {
+  /// To the next message. Returns whether that was the last one of its part.
+  bool advance() {
     Part& part = *parts.front();
     const bool is_over = ++part.next == part.entries.size();
     if (!is_over) {
-      part.time = part.entries[part.next].time;
+      part.rank = rankOf(part.entries[part.next].time);
       const auto comes_before = [&](std::size_t n) {
         return n < parts.size() && isLater(&part, parts[n]);
       };
       if (!comes_before(1) && !comes_before(2)) {
-        return;
+        return false;
       }
     }
     std::pop_heap(parts.begin(), parts.end(), isLater);
@@ -72,20 +89,24 @@ struct BagReader::Stream {
     } else {
       std::push_heap(parts.begin(), parts.end(), isLater);
     }
+    return is_over;
   }
 };
 
 BagReader::BagReader(const BagGroup& bags,
                      const std::vector<std::string>& topics,
                      std::size_t most_unpacked)
-    : most_unpacked_(most_unpacked) {
+    : most_unpacked_(most_unpacked), loader_(most_unpacked) {
   for (const BagFile* file : bags) {
     addBag(*file, topics);
   }
   for (const auto& stream : streams_) {
-    running_.push_back(stream.get());
+    running_.push_back({stream->parts.front()->rank, stream.get()});
   }
   sort();
+  std::stable_sort(to_load_.begin(), to_load_.end(), [](const Chunk* a, const Chunk* b) {
+    return a->firstRank() > b->firstRank();
+  });
 }
 
 BagReader::~BagReader() = default;
@@ -93,21 +114,27 @@ BagReader::~BagReader() = default;
 void BagReader::addBag(const BagFile& file, const std::vector<std::string>& topics) {
   std::map<std::uint32_t, std::unique_ptr<Stream>> streams;
   for (const BagChunk& place : file.index.chunks) {
-    auto chunk = std::make_unique<Chunk>(Chunk{&file, &place, chunks_.size(), {}, {}});
+    auto chunk =
+        std::make_unique<Chunk>(Chunk{&file, &place, chunks_.size(), {}, 0, false, false, {}});
     for (const auto& [number, begin, end] : place.parts) {
       const BagConnection& connection = file.index.connections.at(number);
       if (std::find(topics.begin(), topics.end(), connection.topic) == topics.end()) {
         continue;
       }
-      chunk->parts.push_back(std::make_unique<Part>(Part{chunk.get(), number, begin, {}, 0}));
+      chunk->parts.push_back(
+          std::make_unique<Part>(Part{chunk.get(), number, rankOf(begin), {}, 0}));
       std::unique_ptr<Stream>& stream = streams[number];
       if (!stream) {
-        stream = std::make_unique<Stream>(Stream{&connection, {}});
+        stream = std::make_unique<Stream>(Stream{&connection, MessageRecords(number), {}});
       }
       stream->add(chunk->parts.back().get());
       const bool is_first = begin_.isZero();
       begin_ = is_first ? begin : std::min(begin_, begin);
       end_ = is_first ? end : std::max(end_, end);
+    }
+    if (!chunk->parts.empty()) {
+      chunk->open_parts = chunk->parts.size();
+      to_load_.push_back(chunk.get());
     }
     chunks_.push_back(std::move(chunk));
   }
@@ -118,68 +145,112 @@ void BagReader::addBag(const BagFile& file, const std::vector<std::string>& topi
 
 /// As rosbag::View does before each message: it decides which of the same time comes first.
 void BagReader::sort() {
-  std::sort(running_.begin(), running_.end(), [](const Stream* a, const Stream* b) {
-    return a->parts.front()->time > b->parts.front()->time;
-  });
+  std::sort(running_.begin(), running_.end(), std::greater<>());
+}
+
+/// The same where all but the last are sorted. std::sort inserts one after the other where they are
+/// few; of these only the last one moves.
+void BagReader::sortLast() {
+  constexpr std::size_t kFew = 16;
+  if (running_.size() > kFew) {
+    sort();
+    return;
+  }
+  if (running_.empty()) {
+    return;
+  }
+  const Running last = running_.back();
+  auto place = running_.end() - 1;
+  for (; place != running_.begin() && last > *(place - 1); --place) {
+    *place = *(place - 1);
+  }
+  *place = last;
 }
 
 bool BagReader::next(BagMessage& message) {
   if (has_begun_) {
-    running_.back()->advance();
-    if (running_.back()->parts.empty()) {
-      running_.pop_back();
-    }
-    sort();
+    advance();
   }
   has_begun_ = !running_.empty();
   if (!has_begun_) {
     return false;
   }
-  Part& part = *running_.back()->parts.front();
-  message.connection = running_.back()->connection;
-  message.time = part.time;
+  Stream& stream = *running_.back().stream;
+  Part& part = *stream.parts.front();
   try {
-    read(part, message);
+    makeReady(*part.chunk);
+    if (part.entries.empty()) {
+      part.chunk->readParts();
+    }
+    const BagEntry& entry = part.entries[part.next];
+    message.connection = stream.connection;
+    message.time = entry.time;
+    message.data = stream.records.messageAt(part.chunk->records, entry.offset);
   } catch (const std::exception& error) {
     throw unreadableBag(part.chunk->file->path, error);
   }
   return true;
 }
 
-void BagReader::read(Part& part, BagMessage& message) {
-  Chunk& chunk = *part.chunk;
-  if (unpacked_.empty() || unpacked_.front() != &chunk) {
-    unpack(chunk);
+void BagReader::advance() {
+  Stream& stream = *running_.back().stream;
+  Chunk& chunk = *stream.parts.front()->chunk;
+  if (stream.advance() && --chunk.open_parts == 0) {
+    release(chunk);
   }
-  if (part.entries.empty()) {
-    chunk.readParts();
+  if (stream.parts.empty()) {
+    running_.pop_back();
+  } else {
+    running_.back().rank = stream.parts.front()->rank;
   }
-  const BagRecord record = recordAt(chunk.unpacked->records(), part.entries[part.next].offset);
-  record.fields.requireOp(BagOp::kMessageData);
-  if (record.fields.number<std::uint32_t>("conn") != part.connection) {
-    throw BagDefect("its index points to a message of another connection");
-  }
-  message.data = record.data;
+  sortLast();
 }
 
-void BagReader::unpack(Chunk& chunk) {
-  if (chunk.unpacked) {
-    unpacked_.splice(
-        unpacked_.begin(), unpacked_, std::find(unpacked_.begin(), unpacked_.end(), &chunk));
+/// Unpacked, and the one that was used last.
+void BagReader::makeReady(Chunk& chunk) {
+  if (!unpacked_.empty() && unpacked_.front() == &chunk) {
     return;
   }
-  chunk.unpacked.emplace(recordOfFile(chunk.file->bytes, chunk.place->position, kLargestChunk));
+  if (chunk.is_unpacked) {
+    unpacked_.splice(
+        unpacked_.begin(), unpacked_, std::find(unpacked_.begin(), unpacked_.end(), &chunk));
+  } else {
+    load(chunk);
+  }
+}
+
+void BagReader::load(Chunk& chunk) {
+  chunk.records = loader_.load(*chunk.file, *chunk.place);
+  chunk.is_begun = true;
+  chunk.is_unpacked = true;
   unpacked_.push_front(&chunk);
-  std::size_t bytes = 0;
-  for (auto it = unpacked_.begin(); it != unpacked_.end();) {
-    bytes += (*it)->unpacked->records().size();
-    if (bytes > most_unpacked_ && *it != &chunk) {
-      (*it)->unpacked.reset();
-      it = unpacked_.erase(it);
-    } else {
-      ++it;
+  keepFew();
+  while (loader_.hasRoom() && !to_load_.empty()) {
+    Chunk& next = *to_load_.back();
+    to_load_.pop_back();
+    if (!next.is_begun) {
+      next.is_begun = true;
+      loader_.begin(*next.file, *next.place);
     }
   }
+}
+
+/// Of those that are unpacked: the chunk at hand, and what there is room for.
+void BagReader::keepFew() {
+  std::size_t bytes = 0;
+  for (auto it = unpacked_.begin(); it != unpacked_.end();) {
+    Chunk& chunk = **it++;
+    bytes += chunk.records.size();
+    if (bytes > most_unpacked_ && &chunk != unpacked_.front()) {
+      release(chunk);
+    }
+  }
+}
+
+void BagReader::release(Chunk& chunk) {
+  chunk.is_unpacked = false;
+  unpacked_.remove(&chunk);
+  loader_.reuse(std::exchange(chunk.records, {}));
 }
 
 }  // namespace sac

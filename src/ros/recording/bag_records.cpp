@@ -57,10 +57,35 @@ void BagFields::requireOp(BagOp op) const {
   }
 }
 
-BagRecord recordAt(std::string_view bytes, std::size_t offset) {
-  const std::string_view header = counted(bytes, offset);
-  const std::string_view data = counted(bytes, offset);
-  return {BagFields(header), data, offset};
+std::string_view MessageRecords::messageAt(std::string_view chunk, std::size_t offset) {
+  const std::string_view header = counted(chunk, offset);
+  const std::string_view message = counted(chunk, offset);
+  if (!isAsBefore(header)) {
+    verify(header);
+  }
+  return message;
+}
+
+bool MessageRecords::isAsBefore(std::string_view header) const {
+  if (header.size() != verified_.size() || header.empty()) {
+    return false;
+  }
+  const std::size_t after = time_offset_ + time_size_;
+  return std::memcmp(header.data(), verified_.data(), time_offset_) == 0 &&
+         std::memcmp(header.data() + after, verified_.data() + after, header.size() - after) == 0;
+}
+
+void MessageRecords::verify(std::string_view header) {
+  verified_.clear();
+  const BagFields fields(header);
+  fields.requireOp(BagOp::kMessageData);
+  if (fields.number<std::uint32_t>("conn") != connection_) {
+    throw BagDefect("its index points to a message of another connection");
+  }
+  const std::string_view time = fields.text("time");
+  time_offset_ = time.empty() ? 0 : static_cast<std::size_t>(time.data() - header.data());
+  time_size_ = time.size();
+  verified_ = header;
 }
 
 }  // namespace sac

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <boost/container/small_vector.hpp>
+#include <boost/endian/conversion.hpp>
 
 namespace sac {
 
@@ -34,12 +35,8 @@ template <typename Number>
 Number numberAt(std::string_view bytes, std::size_t offset) {
   static_assert(std::is_unsigned_v<Number>);
   Number number = 0;
-  for (std::size_t n = sizeof(Number); n > 0; --n) {
-    constexpr unsigned kBitsPerByte = 8;
-    const auto byte = static_cast<std::uint8_t>(bytes[offset + n - 1]);
-    number = static_cast<Number>((std::uint64_t{number} << kBitsPerByte) | byte);
-  }
-  return number;
+  std::memcpy(&number, bytes.data() + offset, sizeof number);
+  return boost::endian::little_to_native(number);
 }
 
 /// Fields "name=value" of the header of one record, in the bytes that they were parsed from.
@@ -67,14 +64,24 @@ class BagFields {
   boost::container::small_vector<std::pair<std::string_view, std::string_view>, 8> fields_;
 };
 
-/// A record within bytes that are in memory.
-struct BagRecord {
-  BagFields fields;
-  std::string_view data;
-  std::size_t end;  ///< offset of what follows
-};
+/// Finds the messages of one connection in a chunk. Headers of them differ in the value of their
+/// time alone: one that is as the one before in all other bytes is not taken apart again.
+class MessageRecords {
+ public:
+  explicit MessageRecords(std::uint32_t connection) : connection_(connection) {}
 
-/// The record at an offset. Throws BagDefect unless all of it is there.
-BagRecord recordAt(std::string_view bytes, std::size_t offset);
+  /// The message, serialised, of the record at an offset of an unpacked chunk. Throws BagDefect
+  /// unless it is whole, and of this connection.
+  std::string_view messageAt(std::string_view chunk, std::size_t offset);
+
+ private:
+  bool isAsBefore(std::string_view header) const;
+  void verify(std::string_view header);
+
+  std::uint32_t connection_;
+  std::string verified_;         ///< the header that was taken apart last
+  std::size_t time_offset_ = 0;  ///< in it
+  std::size_t time_size_ = 0;
+};
 
 }  // namespace sac

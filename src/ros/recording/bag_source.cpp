@@ -5,8 +5,6 @@
 #include <system_error>
 #include <utility>
 
-#include <rosbag/chunked_file.h>
-#include <rosbag/stream.h>
 #include <sys/stat.h>
 
 #include <fcntl.h>
@@ -62,10 +60,16 @@ void FileBytes::close() const {
 }
 
 std::string FileBytes::at(std::uint64_t position, std::size_t size) const {
+  std::string bytes;
+  read(position, size, bytes);
+  return bytes;
+}
+
+void FileBytes::read(std::uint64_t position, std::size_t size, std::string& bytes) const {
   if (position > size_ || size > size_ - position) {
     throw BagDefect("it ends before what it says that it holds");
   }
-  std::string bytes(size, '\0');
+  bytes.resize(size);
   std::size_t done = 0;
   while (done < size) {
     const ssize_t count =
@@ -75,7 +79,6 @@ std::string FileBytes::at(std::uint64_t position, std::size_t size) const {
     }
     done += static_cast<std::size_t>(std::max<ssize_t>(count, 0));
   }
-  return bytes;
 }
 
 BagFields FileRecord::fields() const {
@@ -96,18 +99,19 @@ FileRecord headerOfFile(const FileBytes& file, std::uint64_t position, std::size
   return {file.at(position, size.header + 2 * kLengthSize), size.header, position + size.whole()};
 }
 
-UnpackedChunk::UnpackedChunk(FileRecord chunk) {
-  const BagFields fields = chunk.fields();
+void Unpacker::unpack(const FileBytes& file, std::uint64_t position, std::string& records) {
+  const FileRecord header = headerOfFile(file, position, kLargestChunk);
+  const BagFields fields = header.fields();
   fields.requireOp(BagOp::kChunk);
   const std::size_t size = fields.number<std::uint32_t>("size");
   const std::string compression(fields.text("compression"));
-  const std::size_t packed_size = chunk.data().size();
+  const std::uint64_t begin = position + header.bytes.size();
+  const std::size_t packed_size = header.end - begin;
   if (compression == "none") {
     if (packed_size != size) {
       throw BagDefect("a chunk has not the size that it says");
     }
-    first_ = chunk.bytes.size() - packed_size;
-    bytes_ = std::move(chunk.bytes);
+    file.read(begin, size, records);
     return;
   }
   if (size > kLargestChunk) {
@@ -118,18 +122,20 @@ UnpackedChunk::UnpackedChunk(FileRecord chunk) {
   if (!is_bz2 && compression != "lz4") {
     throw BagDefect("a chunk is compressed in an unknown way");
   }
-  // What no byte is unpacked into stays zero, and is no record.
-  bytes_.assign(size, '\0');
-  const auto bytes_at = [](std::string& text, std::size_t offset) {
-    void* const bytes = text.data() + offset;
+  file.read(begin, packed_size, packed_);
+  if (is_bz2) {
+    // What no byte is unpacked into stays zero, and is no record. LZ4 fills all, or is refused.
+    records.clear();
+  }
+  records.resize(size);
+  const auto bytes_of = [](std::string& text) {
+    void* const bytes = text.data();
     return static_cast<std::uint8_t*>(bytes);
   };
-  rosbag::ChunkedFile unused;  // the streams want one; it stays closed
-  rosbag::StreamFactory(&unused)
-      .getStream(is_bz2 ? rosbag::compression::BZ2 : rosbag::compression::LZ4)
-      ->decompress(bytes_at(bytes_, 0),
+  streams_.getStream(is_bz2 ? rosbag::compression::BZ2 : rosbag::compression::LZ4)
+      ->decompress(bytes_of(records),
                    static_cast<unsigned>(size),
-                   bytes_at(chunk.bytes, chunk.bytes.size() - packed_size),
+                   bytes_of(packed_),
                    static_cast<unsigned>(packed_size));
 }
 

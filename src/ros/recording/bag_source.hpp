@@ -5,6 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include <rosbag/chunked_file.h>
+#include <rosbag/stream.h>
+
 #include "bag_records.hpp"
 
 namespace sac {
@@ -25,6 +28,8 @@ class FileBytes {
 
   /// Throws BagDefect unless all of them are there.
   std::string at(std::uint64_t position, std::size_t size) const;
+  /// The same into a buffer that is used again.
+  void read(std::uint64_t position, std::size_t size, std::string& bytes) const;
 
  private:
   void close() const;
@@ -50,17 +55,19 @@ FileRecord recordOfFile(const FileBytes& file, std::uint64_t position, std::size
 /// The same without its data: of a record that is not read yet.
 FileRecord headerOfFile(const FileBytes& file, std::uint64_t position, std::size_t largest);
 
-/// The records that a chunk holds.
-class UnpackedChunk {
+/// Unpacks chunks, with memory that is used again.
+class Unpacker {
  public:
-  /// Throws BagDefect, or what rosbag throws, when it cannot be unpacked.
-  explicit UnpackedChunk(FileRecord chunk);
+  Unpacker() : streams_(&unused_) {}
 
-  std::string_view records() const { return std::string_view(bytes_).substr(first_); }
+  /// Makes `records` those of the chunk at a position. Throws BagDefect, or what rosbag throws,
+  /// when it cannot be unpacked.
+  void unpack(const FileBytes& file, std::uint64_t position, std::string& records);
 
  private:
-  std::string bytes_;
-  std::size_t first_ = 0;
+  rosbag::ChunkedFile unused_;  ///< the streams want one; it stays closed
+  rosbag::StreamFactory streams_;
+  std::string packed_;
 };
 
 }  // namespace sac

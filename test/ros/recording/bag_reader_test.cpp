@@ -1,5 +1,6 @@
 #include "bag_reader.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <stdexcept>
@@ -125,6 +126,95 @@ TEST_F(BagReaderTest, BagsSideBySideAreReadAsOne) {
     bags.push_back(record("part_" + std::to_string(n) + ".bag", recording));
   }
   EXPECT_TRUE(byReader(bags) == byView(bags));
+}
+
+TEST_F(BagReaderTest, AChunkLoadedAheadIsToldWhenItsTurnComes) {
+  const std::string bag = record("session.bag", {rosbag::compression::LZ4});
+  const auto bags = openBags({bag});
+  const BagIndex& index = bags.front()->index;
+  ASSERT_GT(index.chunks.size(), 4U);
+  std::string bytes = contentOf(bag);
+  const std::uint64_t position = index.chunks[3].position;
+  const FileRecord header = headerOfFile(bags.front()->bytes, position, kLargestChunk);
+  bytes[position + header.bytes.size() + 100] ^= 1;  // in what is packed
+  const auto damaged = openBags({folder_.write("damaged.bag", bytes)});
+  BagReader reader({damaged.front().get()}, wanted_topics);
+  const std::vector<Handed> whole = byReader({bag});
+  std::size_t handed = 0;
+  BagMessage message;
+  const std::string told = errorMessage<DataError>([&] {
+    for (; reader.next(message); ++handed) {
+      EXPECT_EQ(message.data, std::get<2>(whole.at(handed)));
+    }
+  });
+  EXPECT_NE(told.find("damaged.bag: cannot be read as a bag"), std::string::npos) << told;
+  ros::Time damage = ros::TIME_MAX;
+  for (const ChunkPart& part : index.chunks[3].parts) {
+    damage = std::min(damage, part.begin);
+  }
+  ASSERT_LT(handed, whole.size());
+  EXPECT_GE(std::get<0>(whole[handed]), damage.toNSec());
+  EXPECT_GT(handed, 0U);
+}
+
+TEST_F(BagReaderTest, AReaderMayEndWhileAChunkIsLoaded) {
+  const auto bags = openBags({record("session.bag", {rosbag::compression::LZ4})});
+  for (int n = 0; n < 20; ++n) {
+    BagReader reader({bags.front().get()}, wanted_topics);
+    BagMessage message;
+    EXPECT_TRUE(reader.next(message));
+  }
+}
+
+/// Appends a number of four bytes, lowest first.
+void append(std::string& bytes, std::size_t number) {
+  for (unsigned bits = 0; bits < 32; bits += 8) {
+    bytes.push_back(static_cast<char>(number >> bits & 0xFFU));
+  }
+}
+
+/// A record of a message of connection 7.
+std::string messageRecord(const std::string& time) {
+  std::string header;
+  for (const std::string& field :
+       {std::string("conn=\7\0\0\0", 9), "time=" + time, std::string("op=\2")}) {
+    append(header, field.size());
+    header += field;
+  }
+  std::string bytes;
+  append(bytes, header.size());
+  bytes += header;
+  append(bytes, 5);
+  return bytes + "hello";
+}
+
+/// What is found, or what is wrong.
+std::string found(MessageRecords& records, const std::string& chunk, std::size_t offset) {
+  try {
+    return std::string(records.messageAt(chunk, offset));
+  } catch (const BagDefect& defect) {
+    return std::string("defect: ") + defect.what();
+  }
+}
+
+TEST(MessageRecords, ARecordAfterAnotherIsJudgedAsIfItWereTheFirst) {
+  const std::string first = messageRecord("12345678");
+  const std::string second = messageRecord("abcd=fgh");
+  std::size_t defects = 0;
+  for (std::size_t bit = 0; bit < 8 * second.size(); ++bit) {
+    std::string wrong = second;
+    wrong[bit / 8] = static_cast<char>(wrong[bit / 8] ^ (1 << bit % 8));
+    MessageRecords fresh(7);
+    MessageRecords used(7);
+    ASSERT_EQ(found(used, first + wrong, 0), "hello");
+    const std::string expected = found(fresh, first + wrong, first.size());
+    EXPECT_EQ(found(used, first + wrong, first.size()), expected) << "bit " << bit;
+    // What is wrong leaves no trace either.
+    EXPECT_EQ(found(used, first + wrong, 0), "hello");
+    EXPECT_EQ(found(used, first + wrong, first.size()), expected) << "bit " << bit;
+    defects += expected.rfind("defect: ", 0) == 0 ? 1 : 0;
+  }
+  EXPECT_GT(defects, 100U);
 }
 
 TEST_F(BagReaderTest, AnIndexThatPointsElsewhereIsTold) {
