@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
+#include "support/resident_memory.hpp"
 
 namespace sac::benchmarks {
 namespace {
@@ -40,8 +41,8 @@ void iterate(benchmark::State& state, Cycle cycle) {
   input.active.assign(problem.observations.size(), true);
   input.free = selectCoordinates(space, scenario.samples, scenario.request, options);
   input.start = scenario.state.belief.x;
-  const std::vector<Eigen::Matrix3d> whitening(problem.observations.size(),
-                                               Eigen::Matrix3d::Identity());
+  const std::vector<Whitening> whitening(problem.observations.size(),
+                                         Whitening(Eigen::Matrix3d::Identity()));
   input.whitening = &whitening;
 
   LeastSquaresResult result;
@@ -61,8 +62,12 @@ void iterate(benchmark::State& state, Cycle cycle) {
 /// covariance, uncertainty over the workspace, report.
 void runWholeCycle(benchmark::State& state, const CycleScenario& scenario) {
   CycleOutcome outcome;
-  for (auto _ : state) {
+  const auto run = [&] {
     outcome = runCycle(scenario.model, scenario.samples, scenario.state, scenario.request, {});
+  };
+  state.counters["bytes_a_sample"] = peakBeside(run) / static_cast<double>(scenario.samples.size());
+  for (auto _ : state) {
+    run();
   }
   tell(state, scenario, outcome.report.success, outcome.report.iterations, outcome.state.belief.x);
 }
@@ -101,10 +106,16 @@ BENCHMARK_CAPTURE(iterate, coil, Cycle::kCoil)->Arg(4)->Unit(benchmark::kMillise
 BENCHMARK_CAPTURE(iterate, refine, Cycle::kRefine)->Arg(132)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(runWholeCycle, refine, Cycle::kRefine)
     ->Arg(132)
-    ->Arg(kMany / 10)
-    ->Arg(kMany)
+    ->RangeMultiplier(10)
+    ->Range(100, 10 * kMany)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(refineManyCoils)->Arg(24)->Arg(96)->Arg(400)->Unit(benchmark::kMillisecond);
+BENCHMARK(refineManyCoils)
+    ->Arg(24)
+    ->Arg(48)
+    ->Arg(96)
+    ->Arg(200)
+    ->Arg(400)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(statusManyCoils)->Arg(24)->Arg(400)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(runWholeCycle, joint, Cycle::kJoint)
     ->Arg(30)

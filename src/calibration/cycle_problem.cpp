@@ -80,6 +80,7 @@ std::vector<Observation> selectObservations(const std::vector<Sample>& samples,
       observations.push_back({n, Quantity::kTorque});
     }
   }
+  observations.shrink_to_fit();
   return observations;
 }
 

@@ -41,7 +41,9 @@ class ScannedModel {
   struct Scanned {
     Eigen::Vector3d nominal;  ///< rotor frame for poles, stator frame for coils
     double cos_reach;         ///< of the angle to a partner beyond which it changes nothing
-    std::vector<std::uint32_t> torques;  ///< indices of observations
+    std::vector<std::uint32_t> torques;      ///< indices of observations; then some of them
+    std::size_t all = 0;                     ///< number of all
+    std::vector<Eigen::Vector3d> residuals;  ///< of torques, whitened
   };
 
   double weight(std::size_t pole, std::size_t coil, double current) const {
@@ -50,12 +52,12 @@ class ScannedModel {
            nominal.poles[pole].gain * effects_.strength(pole, coil);
   }
   Scanned scanned(const Eigen::Vector3d& nominal, double within) const {
-    return {nominal, std::cos(std::min(kPi, curve_.supportEnd() + within)), {}};
+    return {nominal, std::cos(std::min(kPi, curve_.supportEnd() + within)), {}, 0, {}};
   }
   void list(std::size_t observation);
   Eigen::Matrix3d rotorStator(std::size_t observation) const;
-  ScannedTorque torque(std::size_t observation, const Eigen::Matrix3d& to_rotor) const;
-  const std::vector<Excitation>& excitations(std::size_t observation) const {
+  ScannedTorque torque(const Scanned& axis, std::size_t k, const Eigen::Matrix3d& to_rotor) const;
+  Excitations excitations(std::size_t observation) const {
     return observations_.evaluator().excitations(observation);
   }
   Eigen::Vector3d torqueOf(const ScannedPartner& partner, const Eigen::Vector3d& pole_rotor) const {
@@ -68,7 +70,6 @@ class ScannedModel {
   EffectsAt effects_;
   TorqueCurve curve_;
   JointGeometry joints_;
-  std::vector<Eigen::Vector3d> residuals_;  ///< whitened
   std::vector<Eigen::Vector3d> poles_rotor_;
   std::vector<Eigen::Vector3d> coils_stator_;
   std::vector<Scanned> scanned_poles_;
@@ -116,8 +117,7 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
       space_(problem.model->space()),
       effects_(space_, x),
       curve_(curveAt(*problem.model, effects_)),
-      joints_(jointGeometry(space_.actuatorAt(x))),
-      residuals_(observations.residuals(x)) {
+      joints_(jointGeometry(space_.actuatorAt(x))) {
   for (std::size_t i = 0; i < space_.poles(); ++i) {
     const Eigen::Index at = space_.pole(i);
     poles_rotor_.emplace_back(space_.poleChart(i).axis(x[at], x[at + 1]));
@@ -131,6 +131,21 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     if (problem.observations[n].quantity == Quantity::kTorque) {
       list(n);
+    }
+  }
+  // Of so many torques each other list would cost as much as the samples.
+  for (std::vector<Scanned>* axes : {&scanned_poles_, &scanned_coils_}) {
+    for (Scanned& axis : *axes) {
+      axis.all = axis.torques.size();
+      axis.torques = spread(axis.torques, kMostTorques);
+    }
+  }
+  const std::vector<Eigen::Vector3d> residuals = observations.residuals(x);
+  for (std::vector<Scanned>* axes : {&scanned_poles_, &scanned_coils_}) {
+    for (Scanned& axis : *axes) {
+      for (const std::size_t n : axis.torques) {
+        axis.residuals.push_back(residuals[n]);
+      }
     }
   }
 }
@@ -165,18 +180,20 @@ void ScannedModel::list(std::size_t observation) {
 }
 
 /// As far as it does not depend on which axis is scanned.
-ScannedTorque ScannedModel::torque(std::size_t observation, const Eigen::Matrix3d& to_rotor) const {
-  const Eigen::Matrix3d& W = observations_.whitening()[observation];
-  return {W.partialPivLu().solve(residuals_[observation]), to_rotor, W, {}};
+ScannedTorque ScannedModel::torque(const Scanned& axis,
+                                   std::size_t k,
+                                   const Eigen::Matrix3d& to_rotor) const {
+  const Eigen::Matrix3d W = observations_.whitening()[axis.torques[k]];
+  return {W.partialPivLu().solve(axis.residuals[k]), to_rotor, W, {}};
 }
 
 ScannedTorques ScannedModel::torquesOfPole(std::size_t pole) const {
   const Scanned& own = scanned_poles_[pole];
-  const std::vector<std::uint32_t> chosen = spread(own.torques, kMostTorques);
-  ScannedTorques result{{}, standsFor(own.torques.size(), chosen.size())};
-  for (const std::size_t n : chosen) {
+  ScannedTorques result{{}, standsFor(own.all, own.torques.size())};
+  for (std::size_t k = 0; k < own.torques.size(); ++k) {
+    const std::size_t n = own.torques[k];
     const Eigen::Matrix3d R_rotor_stator = rotorStator(n);
-    ScannedTorque scanned = torque(n, Eigen::Matrix3d::Identity());
+    ScannedTorque scanned = torque(own, k, Eigen::Matrix3d::Identity());
     for (const Excitation& excitation : excitations(n)) {
       const ScannedPartner partner{R_rotor_stator * coils_stator_[excitation.coil],
                                    weight(pole, excitation.coil, excitation.current)};
@@ -192,15 +209,16 @@ ScannedTorques ScannedModel::torquesOfPole(std::size_t pole) const {
 
 ScannedTorques ScannedModel::torquesOfCoil(std::size_t coil) const {
   const Scanned& own = scanned_coils_[coil];
-  const std::vector<std::uint32_t> chosen = spread(own.torques, kMostTorques);
-  ScannedTorques result{{}, standsFor(own.torques.size(), chosen.size())};
-  for (const std::size_t n : chosen) {
+  ScannedTorques result{{}, standsFor(own.all, own.torques.size())};
+  for (std::size_t k = 0; k < own.torques.size(); ++k) {
+    const std::size_t n = own.torques[k];
     const Eigen::Matrix3d R_rotor_stator = rotorStator(n);
-    ScannedTorque scanned = torque(n, R_rotor_stator);
+    ScannedTorque scanned = torque(own, k, R_rotor_stator);
     const ScannedPartner self{R_rotor_stator * coils_stator_[coil], 1.0};
     const Eigen::Vector3d nominal = R_rotor_stator * own.nominal;
-    const auto excitation =
-        std::find_if(excitations(n).begin(), excitations(n).end(), [coil](const Excitation& each) {
+    const Excitations excited = excitations(n);
+    const auto* const excitation =
+        std::find_if(excited.begin(), excited.end(), [coil](const Excitation& each) {
           return each.coil == coil;
         });
     for (std::size_t i = 0; i < poles_rotor_.size(); ++i) {

@@ -35,6 +35,7 @@ class Conclusion {
   void run() {
     judgeMisfit();
     findCovariance();
+    observations_.forgetPass();  // what is listed takes as much
     listResiduals();
     listErrors();
   }
@@ -243,7 +244,7 @@ Eigen::Matrix3d Conclusion::sharedWithHeld(std::size_t observation,
                                            const Eigen::Matrix3d& noise) const {
   using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   const Rows J = linear.jacobian(Eigen::all, solution_.estimated);
-  const Eigen::Matrix3d& W = observations_.whitening()[observation];
+  const Eigen::Matrix3d W = observations_.whitening()[observation];
   const Rows weighed = observations_.shared().shares[observation]
                            ? Rows(weighed_.at(observation))
                            : Rows(noise * W.transpose() * W * J);

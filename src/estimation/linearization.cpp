@@ -11,18 +11,23 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
                                            const EstimationOptions& options)
     : problem_(problem),
       options_(options),
-      excitations_(problem.observations.size()),
       uncertain_(static_cast<std::size_t>(problem.prior.covariance.rows())) {
   for (std::size_t p = 0; p < uncertain_.size(); ++p) {
     const auto diagonal = static_cast<Eigen::Index>(p);
     uncertain_[p] = problem.prior.covariance(diagonal, diagonal) > 0.0;
   }
-  for (std::size_t n = 0; n < problem.observations.size(); ++n) {
-    if (problem.observations[n].quantity == Quantity::kTorque) {
-      excitations_[n] = excitedCoils((*problem.samples)[problem.observations[n].sample],
-                                     options.current_threshold);
+  first_excitation_.reserve(problem.observations.size() + 1);
+  first_excitation_.push_back(0);
+  for (const Observation& observation : problem.observations) {
+    if (observation.quantity == Quantity::kTorque) {
+      for (const Excitation& excitation :
+           excitedCoils((*problem.samples)[observation.sample], options.current_threshold)) {
+        excitations_.push_back(excitation);
+      }
     }
+    first_excitation_.push_back(static_cast<std::uint32_t>(excitations_.size()));
   }
+  excitations_.shrink_to_fit();
 }
 
 Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
@@ -37,7 +42,7 @@ Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
   const Sample& sample = (*problem_.samples)[what.sample];
   return what.quantity == Quantity::kOrientation
              ? point.orientationResidual(sample, jacobian)
-             : point.torqueResidual(sample, excitations_[observation], jacobian);
+             : point.torqueResidual(sample, excitations(observation), jacobian);
 }
 
 void ObservationEvaluator::linearize(std::size_t observation,
@@ -58,7 +63,7 @@ void ObservationEvaluator::linearize(std::size_t observation,
     }
   };
   take(0, is_torque ? space.coil(0) : space.pole(0));
-  for (const Excitation& excitation : excitations_[observation]) {
+  for (const Excitation& excitation : excitations(observation)) {
     take(space.coil(excitation.coil), space.coil(excitation.coil) + ParameterSpace::kPerAxis);
   }
   take(space.effect(), space.size());

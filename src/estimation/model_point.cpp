@@ -51,8 +51,7 @@ struct ModelPoint::Parts {
 
   Eigen::Matrix3d nominalTurn(const Eigen::Vector3d& reading) const;
   Eigen::Vector3d corrected(const Eigen::Vector3d& reading, const Eigen::Matrix3Xd& columns) const;
-  CoilTerms coilTerms(const std::vector<Excitation>& excitations,
-                      const Eigen::Matrix3d& R_rotor_stator) const;
+  CoilTerms coilTerms(Excitations excitations, const Eigen::Matrix3d& R_rotor_stator) const;
   Eigen::Vector3d pairTorques(const CoilTerms& terms) const;
   Eigen::Vector3d linearizePairTorques(CoilTerms& terms,
                                        ResidualJacobian& jacobian,
@@ -114,7 +113,7 @@ Eigen::Vector3d ModelPoint::Parts::corrected(const Eigen::Vector3d& reading,
   return columns.cols() == 0 ? nominal : Eigen::Vector3d(nominal + columns * effects.values());
 }
 
-CoilTerms ModelPoint::Parts::coilTerms(const std::vector<Excitation>& excitations,
+CoilTerms ModelPoint::Parts::coilTerms(Excitations excitations,
                                        const Eigen::Matrix3d& R_rotor_stator) const {
   CoilTerms terms(excitations.size());
   for (std::size_t e = 0; e < excitations.size(); ++e) {
@@ -211,7 +210,7 @@ Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
 }
 
 Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
-                                           const std::vector<Excitation>& excitations,
+                                           Excitations excitations,
                                            ResidualJacobian* jacobian) const {
   const Parts& at = *parts_;
   const Eigen::Matrix3Xd d_reading = at.effects.readingColumns(sample.joint_position);

@@ -86,7 +86,7 @@ ObservedInformation Collector::run() {
 void Collector::addObservation(std::size_t observation, Sums& sums) {
   const ObservationEvaluator& evaluator = observations_.evaluator();
   evaluator.linearize(observation, point_, linear_);
-  const Eigen::Matrix3d& W = observations_.whitening()[observation];
+  const Eigen::Matrix3d W = observations_.whitening()[observation];
   whiten(linear_, W, every_, whitened_);
   if (evaluator.heldCovariance(linear_, held_).isZero(0.0)) {
     sums.by_noise.add(whitened_);
@@ -133,7 +133,7 @@ Eigen::MatrixXd Collector::weighDwell(const std::vector<std::size_t>& dwell, con
     }
     const ObservationEvaluator& evaluator = observations_.evaluator();
     evaluator.linearize(n, point_, linear_);
-    const Eigen::Matrix3d& W = observations_.whitening()[n];
+    const Eigen::Matrix3d W = observations_.whitening()[n];
     const SharedLoading& G = observations_.shared().loading[n];
     const Eigen::Matrix3d own_noise = evaluator.ownNoise(n, linear_);
     Eigen::MatrixXd& weighed = weighed_[n];

@@ -8,7 +8,7 @@ WeightedObservations::WeightedObservations(const EstimationProblem& problem,
                                            const EstimationOptions& options)
     : evaluator_(problem, options),
       shared_(groupByDwell(problem, options)),
-      whitening_(problem.observations.size(), Eigen::Matrix3d::Zero()),
+      whitening_(problem.observations.size()),
       active_(problem.observations.size(), true) {}
 
 template <typename Prepare>
@@ -60,12 +60,12 @@ bool WeightedObservations::weigh(std::size_t observation,
   const bool shares = shared_.shares[observation];
   const Eigen::Matrix3d noise =
       shares ? evaluator_.ownNoise(observation, linear) : evaluator_.noise(observation, linear);
-  const Eigen::Matrix3d before = std::exchange(
-      whitening_[observation], whiteningOf(noise + evaluator_.heldCovariance(linear, held)));
-  bool changed = !whitening_[observation].isApprox(before, kNoticeable);
+  const Eigen::Matrix3d before = whitening_[observation];
+  const Eigen::Matrix3d W = whiteningOf(noise + evaluator_.heldCovariance(linear, held));
+  whitening_[observation] = W;
+  bool changed = !W.isApprox(before, kNoticeable);
   if (shares) {
-    const SharedLoading loading =
-        whitening_[observation] * evaluator_.sharedErrors(observation, linear);
+    const SharedLoading loading = W * evaluator_.sharedErrors(observation, linear);
     changed = changed || !loading.isApprox(shared_.loading[observation], kNoticeable);
     shared_.loading[observation] = loading;
   }

@@ -30,7 +30,7 @@ class WeightedObservations {
   /// whether one changed noticeably.
   bool updateWeights(const Eigen::VectorXd& x, const std::vector<bool>& held);
   /// W per observation: of what it does not share.
-  const std::vector<Eigen::Matrix3d>& whitening() const { return whitening_; }
+  const std::vector<Whitening>& whitening() const { return whitening_; }
   const SharedErrorModel& shared() const { return shared_; }
 
   const std::vector<bool>& active() const { return active_; }
@@ -41,7 +41,7 @@ class WeightedObservations {
 
   /// What calls have changed so far.
   struct Setting {
-    std::vector<Eigen::Matrix3d> whitening;
+    std::vector<Whitening> whitening;
     std::vector<SharedLoading> loading;
     std::vector<bool> active;
   };
@@ -73,6 +73,8 @@ class WeightedObservations {
 
   /// Sum over the active observations at x, in all coordinates. Valid until anything changes.
   const InformationSum& sum(const Eigen::VectorXd& x) const;
+  /// Gives back the memory of what is known at the last point.
+  void forgetPass() const { last_ = {}; }
 
  private:
   /// Of one pass over all observations at one point.
@@ -107,7 +109,7 @@ class WeightedObservations {
 
   ObservationEvaluator evaluator_;
   SharedErrorModel shared_;
-  std::vector<Eigen::Matrix3d> whitening_;
+  std::vector<Whitening> whitening_;
   std::vector<bool> active_;
   Eigen::VectorXd weighed_at_;      ///< the coordinates that the weights belong to, or none
   std::vector<bool> weighed_with_;  ///< the same of the held ones

@@ -32,7 +32,8 @@ class LeastSquares : public ::testing::Test {
     problem_.observations = selectObservations(samples_, request, options_);
     problem_.free = selectCoordinates(model_.space(), samples_, request, options_);
     problem_.prior = nominalState(model_.space(), {}).belief;
-    whitening_.assign(problem_.observations.size(), 2000.0 * Eigen::Matrix3d::Identity());
+    whitening_.assign(problem_.observations.size(),
+                      Whitening(2000.0 * Eigen::Matrix3d::Identity()));
     evaluator_ = std::make_unique<ObservationEvaluator>(problem_, options_);
     input_.evaluator = evaluator_.get();
     input_.whitening = &whitening_;
@@ -87,7 +88,7 @@ class LeastSquares : public ::testing::Test {
   EstimationOptions options_;
   std::vector<Sample> samples_;
   EstimationProblem problem_;
-  std::vector<Eigen::Matrix3d> whitening_;
+  std::vector<Whitening> whitening_;
   std::unique_ptr<ObservationEvaluator> evaluator_;
   LeastSquaresInput input_;
 };

@@ -43,7 +43,7 @@ class ObservationCost final : public Cost {
       : Cost(input, 3), observation_(observation) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const Eigen::Matrix3d& W = (*input_.whitening)[observation_];
+    const Eigen::Matrix3d W = (*input_.whitening)[observation_];
     LinearizedObservation linear;
     const ModelPoint point = input_.evaluator->at(coordinatesAt(input_, blocks[0]));
     input_.evaluator->linearize(observation_, point, linear);

@@ -36,11 +36,11 @@ struct LinearPrior {
 /// One nonlinear least-squares solution over chosen observations and coordinates.
 struct LeastSquaresInput {
   const ObservationEvaluator* evaluator = nullptr;
-  const std::vector<Eigen::Matrix3d>* whitening = nullptr;  ///< W per observation
-  const SharedErrorModel* shared = nullptr;                 ///< nothing: no errors are shared
-  std::vector<bool> active;                                 ///< per observation
-  std::vector<Eigen::Index> free;                           ///< coordinates to find, ascending
-  Eigen::VectorXd start;                                    ///< all coordinates
+  const std::vector<Whitening>* whitening = nullptr;  ///< W per observation
+  const SharedErrorModel* shared = nullptr;           ///< nothing: no errors are shared
+  std::vector<bool> active;                           ///< per observation
+  std::vector<Eigen::Index> free;                     ///< coordinates to find, ascending
+  Eigen::VectorXd start;                              ///< all coordinates
   /// Of the active observations at the start, in all coordinates, where it is known already and the
   /// loss is squared; nothing: it is summed up.
   const InformationSum* at_start = nullptr;

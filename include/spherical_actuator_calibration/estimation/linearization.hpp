@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,8 +23,9 @@ class ObservationEvaluator {
   /// Keeps references: the problem must outlive the evaluator.
   ObservationEvaluator(const EstimationProblem& problem, const EstimationOptions& options);
 
-  const std::vector<Excitation>& excitations(std::size_t observation) const {
-    return excitations_[observation];
+  Excitations excitations(std::size_t observation) const {
+    const std::size_t first = first_excitation_[observation];
+    return {excitations_.data() + first, first_excitation_[observation + 1] - first};
   }
 
   /// The model at coordinates, for the calls below.
@@ -66,8 +68,9 @@ class ObservationEvaluator {
 
   const EstimationProblem& problem_;
   const EstimationOptions& options_;
-  std::vector<std::vector<Excitation>> excitations_;
-  std::vector<bool> uncertain_;  ///< per coordinate: its prior variance is not zero
+  std::vector<Excitation> excitations_;          ///< of all observations, one after the other
+  std::vector<std::uint32_t> first_excitation_;  ///< per observation, and where the last one ends
+  std::vector<bool> uncertain_;                  ///< per coordinate: its prior variance is not zero
 };
 
 }  // namespace sac

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,23 @@
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 
 namespace sac {
+
+/// Excitations of one sample, wherever they are kept: they must outlive this.
+class Excitations {
+ public:
+  Excitations(const std::vector<Excitation>& kept)  // NOLINT(google-explicit-constructor)
+      : Excitations(kept.data(), kept.size()) {}
+  Excitations(const Excitation* first, std::size_t count) : first_(first), count_(count) {}
+
+  const Excitation* begin() const { return first_; }
+  const Excitation* end() const { return first_ + count_; }
+  std::size_t size() const { return count_; }
+  const Excitation& operator[](std::size_t n) const { return first_[n]; }
+
+ private:
+  const Excitation* first_;
+  std::size_t count_;
+};
 
 /// A model at one point x of its coordinates: what depends on them alone (joint axes, poles and
 /// coils with their derivatives, effects, the torque curve) is worked out once for all samples.
@@ -21,7 +39,7 @@ class ModelPoint {
                                       ResidualJacobian* jacobian = nullptr) const;
   /// See CalibrationModel::torqueResidual(), with its precondition.
   Eigen::Vector3d torqueResidual(const Sample& sample,
-                                 const std::vector<Excitation>& excitations,
+                                 Excitations excitations,
                                  ResidualJacobian* jacobian = nullptr) const;
 
  private:

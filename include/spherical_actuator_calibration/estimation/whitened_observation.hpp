@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -29,8 +30,29 @@ class ChosenCoordinates {
   Eigen::Index size_;
 };
 
-/// W with WᵀW = S⁻¹ for the covariance S of an observation.
+/// W with WᵀW = S⁻¹ for the covariance S of an observation, lower triangular.
 Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance);
+
+/// W of an observation that is kept for long: the numbers of its triangle alone.
+class Whitening {
+ public:
+  Whitening() = default;
+  /// Precondition: lower triangular.
+  Whitening(const Eigen::Matrix3d& W)  // NOLINT(google-explicit-constructor)
+      : lower_{W(0, 0), W(1, 0), W(1, 1), W(2, 0), W(2, 1), W(2, 2)} {}
+
+  operator Eigen::Matrix3d() const {  // NOLINT(google-explicit-constructor)
+    Eigen::Matrix3d W;
+    W << lower_[0], 0.0, 0.0, lower_[1], lower_[2], 0.0, lower_[3], lower_[4], lower_[5];
+    return W;
+  }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& residual) const {
+    return Eigen::Matrix3d(*this) * residual;
+  }
+
+ private:
+  std::array<double, 6> lower_ = {};  ///< row by row
+};
 
 /// One observation in units of its noise, linearised in chosen coordinates: W r(x + δ) ≈ residual +
 /// Σ jacobian.col(k) δ[columns[k]].
