@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Runs all benchmarks of a build folder in one go and prints their ratios beside the aims.
+"""Runs all benchmarks of a build folder in one go, prints their ratios beside the aims, and writes them into the pages.
 
-run_benchmarks.py BUILD_DIR. Both sides of a ratio are medians of processor time of the same run on one
-thread. Google Benchmark's own report stays in BUILD_DIR/benchmark/*.json.
+run_benchmarks.py BUILD_DIR. Both sides of a ratio are medians of the same run: of processor time on one thread, for
+recordings of time that passes, since they are read by two. Google Benchmark's own report stays in
+BUILD_DIR/benchmark/*.json.
 """
 
 import os
@@ -21,6 +22,8 @@ import time
 
 import numpy as np
 
+import growth
+import pages
 import paper_iteration
 import scipy_refinement
 
@@ -30,13 +33,17 @@ READING_AIM = 2.0
 PASS_AIM = 6.0
 NUMPY_AIM = 50.0
 SCIPY_AIM = 10.0
+CERES_AIM = 1.2
+COIL_EXPONENT_AIM = 1.2
+MEMORY_AIM = 150.0  # [byte] a sample, beside the samples
 CONTROL_PERIOD = 1e-3  # [s]
 CONTROL_AIM = 20.0  # cycles in a period: 50 microseconds each
 REFINEMENT_SAMPLES = 132
 SAME_RESULT = 1e-10  # [rad]
 SAME_REFINEMENT = 1e-9  # [rad]
 CYCLES = {"joint": 30, "poles": 30, "coil": 4}  # samples
-ACTUATOR = pathlib.Path(__file__).resolve().parent.parent / "config" / "pm_spherical_8x24.yaml"
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+ACTUATOR = SOURCE / "config" / "pm_spherical_8x24.yaml"
 PROGRAMS = pathlib.Path("devel", "lib", "spherical_actuator_calibration")
 LONG_SESSION = ("--main-coil-poses", "120", "--coil-poses", "16")
 MEMORY_ROWS = {
@@ -48,26 +55,48 @@ UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 class Report:
-    """Lines of the closing table; remembers nothing but what it printed."""
+    """Sections of rows: a name, a figure, and the aim with its verdict where there is one."""
 
     def __init__(self):
-        self.lines = []
+        self.sections = []
+
+    def heading(self, text):
+        self.sections.append((text, []))
+
+    def figure(self, name, text, aim=""):
+        self.sections[-1][1].append((name.strip(), text.strip(), aim))
 
     def ratio(self, name, value, aim):
         """A ratio of which more is better."""
         verdict = "reached" if value >= aim else f"missed by {100.0 * (1.0 - value / aim):.0f} %"
-        self.lines.append(f"{name:<66} {value:>9.2f}   at least {aim:g}: {verdict}")
+        self.figure(name, f"{value:.2f}", f"at least {aim:g}: {verdict}")
 
-    def figure(self, name, text):
-        """A figure without an aim."""
-        self.lines.append(f"{name:<66} {text:>9}")
+    def at_most(self, name, value, aim):
+        """A figure of which less is better."""
+        verdict = "reached" if value <= aim else f"missed by {100.0 * (value / aim - 1.0):.0f} %"
+        self.figure(name, f"{value:.3g}", f"at most {aim:g}: {verdict}")
 
-    def heading(self, text):
-        self.lines.append(f"\n{text}")
+    def text(self):
+        """For the terminal."""
+        lines = []
+        for heading, rows in self.sections:
+            lines += ["", heading, *(f"{name:<70} {figure:>12}   {aim}".rstrip() for name, figure, aim in rows)]
+        return "\n".join(lines)
+
+    def aims(self):
+        """Everything with an aim, in one table."""
+        rows = [(f"{heading}: {row[0]}", *row[1:]) for heading, section in self.sections for row in section if row[2]]
+        return pages.table(("what", "measured", "aim"), rows)
+
+    def tables(self):
+        """Everything, a table for each section."""
+        return "\n\n".join(
+            f"### {heading}\n\n{pages.table(('what', 'measured', 'aim'), rows)}" for heading, rows in self.sections
+        )
 
 
 def run_google_benchmark(program, *arguments):
-    """Median processor time [s] of one call, by name of the benchmark."""
+    """Medians by name of the benchmark: "cpu_time" and "real_time" [s] of one call, and its counters."""
     output = program.with_suffix(".json")
     subprocess.run(
         [
@@ -85,11 +114,15 @@ def run_google_benchmark(program, *arguments):
     failed = [entry["name"] for entry in entries if entry.get("error_occurred")]
     if failed:
         raise SystemExit(f"run_benchmarks: {', '.join(failed)} failed.")
-    return {
-        entry["run_name"]: entry["cpu_time"] * UNITS[entry["time_unit"]]
-        for entry in entries
-        if entry["aggregate_name"] == "median"
-    }
+    medians = {entry["run_name"]: entry for entry in entries if entry["aggregate_name"] == "median"}
+    for entry in medians.values():
+        for clock in ("cpu_time", "real_time"):
+            entry[clock] *= UNITS[entry["time_unit"]]
+    return medians
+
+
+def by_clock(medians, clock):
+    return {name: entry[clock] for name, entry in medians.items()}
 
 
 def numpy_time(cycle, scenario):
@@ -167,6 +200,34 @@ def compare_with_scipy(times, scenario, report):
     report.figure("    100000 samples take so many times as long as 10000", f"{ratio:.1f}")
 
 
+def compare_with_ceres(times, report):
+    report.heading("The same refinement against Ceres with the same Jacobians, from the same start")
+    solvers = {name.split("/")[1]: time for name, time in times.items() if name.startswith("ceresRefine/")}
+    fastest = min(solvers, key=solvers.get)
+    own = times[f"iterate/refine/{REFINEMENT_SAMPLES}"]
+    report.ratio(f"iteration against the fastest, {fastest}, times faster", solvers[fastest] / own, CERES_AIM)
+    for solver, seconds in sorted(solvers.items(), key=lambda entry: entry[1]):
+        report.figure(f"{solver} [ms]", f"{1e3 * seconds:.3g}")
+
+
+def list_growth(times, memory_a_sample, report):
+    report.heading("Growth of a whole refinement")
+    samples = [point for point in growth.series(times, "runWholeCycle/refine") if point[0] != REFINEMENT_SAMPLES]
+    coils = growth.series(times, "refineManyCoils")
+    for count, seconds in samples:
+        report.figure(f"24 coils, {count} samples [ms]", f"{1e3 * seconds:.3g}")
+    for count, seconds in coils:
+        report.figure(f"{count} coils, 4000 samples [ms]", f"{1e3 * seconds:.3g}")
+    report.figure("exponent of the number of samples", f"{growth.fitted(samples)[0]:.2f}")
+    report.at_most("exponent of the number of coils", growth.fitted(coils)[0], COIL_EXPONENT_AIM)
+    report.at_most(
+        "memory beside 100000 samples [byte each]",
+        memory_a_sample,
+        MEMORY_AIM,
+    )
+    growth.draw([(samples, "samples, of 24 coils"), (coils, "coils, 4000 samples")], SOURCE / "doc/images/growth.svg")
+
+
 def list_control(times, report):
     report.heading("One cycle of the orientation controller, 8 poles and 24 coils, against its period of 1 ms")
     for name in ("within_limits", "at_the_limits"):
@@ -198,6 +259,17 @@ def peak_memory(*command):
     return 1024.0 * usage.ru_maxrss
 
 
+def memory_beside(program, name):
+    """Memory in use [byte] beside each sample. Large blocks go back at once, and are not seen when they are free."""
+    output = subprocess.run(
+        [program, f"--benchmark_filter={name}$", "--benchmark_format=json"],
+        check=True,
+        capture_output=True,
+        env={**os.environ, "MALLOC_MMAP_THRESHOLD_": "65536"},
+    ).stdout
+    return json.loads(output)["benchmarks"][0]["bytes_a_sample"]
+
+
 def record(build, name, *options):
     """A recording of an emulated session in the build folder."""
     bag = build / "benchmark" / name
@@ -216,7 +288,7 @@ def record(build, name, *options):
 def measure_reading(build, report):
     bags = (record(build, "session.bag"), record(build, "long_session.bag", *LONG_SESSION))
     program = build / "benchmark" / "recording_benchmark"
-    times = run_google_benchmark(program, ACTUATOR, bags[0])
+    times = by_clock(run_google_benchmark(program, ACTUATOR, bags[0]), "real_time")
     report.heading("Reading a recording, against a bare rosbag::View pass over the same messages")
     report.ratio(
         "rate of a pass of the package's reader",
@@ -248,15 +320,20 @@ def main():
     scenarios = json.loads(scenario_file.read_text())
 
     report = Report()
-    times = run_google_benchmark(programs / "calibration_benchmark")
+    provenance = pages.provenance(SOURCE)  # before the pages change
+    times = by_clock(run_google_benchmark(programs / "calibration_benchmark"), "cpu_time")
     compare_costs(times, report)
     compare_with_numpy(times, scenarios, report)
     compare_with_scipy(times, scenarios["refine"], report)
+    compare_with_ceres(times, report)
+    list_growth(times, memory_beside(programs / "calibration_benchmark", "runWholeCycle/refine/100000"), report)
     list_large_cycles(times, report)
     list_control(times, report)
     list_plans(programs / "planning_benchmark", report)
     measure_reading(build, report)
-    print("\n".join(report.lines))
+    print(report.text())
+    pages.write(SOURCE / "README.md", f"{provenance}\n\n{report.aims()}")
+    pages.write(SOURCE / "doc/performance.md", f"{provenance}\n\n{report.tables()}")
     return 0
 
 
