@@ -215,9 +215,9 @@ def list_growth(times, memory_a_sample, report):
     samples = [point for point in growth.series(times, "runWholeCycle/refine") if point[0] != REFINEMENT_SAMPLES]
     coils = growth.series(times, "refineManyCoils")
     for count, seconds in samples:
-        report.figure(f"24 coils, {count} samples [ms]", f"{1e3 * seconds:.3g}")
+        report.figure(f"24 coils, {count} samples [ms]", f"{1e3 * seconds:.4g}")
     for count, seconds in coils:
-        report.figure(f"{count} coils, 4000 samples [ms]", f"{1e3 * seconds:.3g}")
+        report.figure(f"{count} coils, 4000 samples [ms]", f"{1e3 * seconds:.4g}")
     report.figure("exponent of the number of samples", f"{growth.fitted(samples)[0]:.2f}")
     report.at_most("exponent of the number of coils", growth.fitted(coils)[0], COIL_EXPONENT_AIM)
     report.at_most(

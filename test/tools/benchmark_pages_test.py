@@ -58,6 +58,11 @@ class Pages(unittest.TestCase):
             with self.assertRaises(ValueError):
                 pages.replaced(page, "new")
 
+    def test_has_its_place_in_the_pages_that_are_there(self):
+        for page in ("README.md", "doc/performance.md"):
+            text = (SOURCE / page).read_text(encoding="utf-8")
+            self.assertIn("Measured on ", text.partition(pages.BEGIN)[2].partition(pages.END)[0], page)
+
     def test_makes_a_table(self):
         self.assertEqual(pages.table(("what", "figure"), [("reading", "6")]),
                          "| what | figure |\n| --- | --- |\n| reading | 6 |")
