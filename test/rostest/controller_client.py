@@ -8,6 +8,7 @@ import yaml
 from calibration_client import NAMESPACE, wait_for
 from driver_node import DriverNode
 from geometry_msgs.msg import QuaternionStamped
+from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import ActuatorParameters, CoilAxis, CoilCurrents, PoleAxis
 from std_srvs.srv import SetBool
 
@@ -74,6 +75,7 @@ class Controller(DriverNode):
         rospy.set_param(f"{NAMESPACE}/actuator", description())
         super().__init__("orientation_controller", {"diagnostic_period": 0.05, **parameters})
         self.targets = rospy.Publisher(f"{NAMESPACE}/orientation_target", QuaternionStamped, queue_size=10)
+        self.joint_targets = rospy.Publisher(f"{NAMESPACE}/joint_target", JointState, queue_size=10)
 
     def enable(self, value=True):
         name = self.name + "/enable"
@@ -86,3 +88,8 @@ class Controller(DriverNode):
     def send(self, message):
         wait_for(lambda: self.targets.get_num_connections() > 0, "the controller to listen")
         self.targets.publish(message)
+
+    def send_joints(self, **joints):
+        """A target by names and angles [rad]."""
+        wait_for(lambda: self.joint_targets.get_num_connections() > 0, "the controller to listen")
+        self.joint_targets.publish(JointState(name=list(joints), position=list(joints.values())))

@@ -51,6 +51,7 @@ GOOD = {
     "tracker/pose": PoseStamped,
     "ft_sensor/wrench": WrenchStamped,
     "orientation_target": QuaternionStamped,
+    "joint_target": lambda: JointState(name=list(NAMES), position=[0.1, 0.2, 0.3]),
     "parameters": lambda: ActuatorParameters(actuator="pm_spherical_8x24", poles=[PoleAxis()]),
     "report": lambda: CalibrationReport(estimates=[ParameterEstimate()], residuals=[SampleResidual()]),
     "status": CalibrationStatus,
@@ -188,6 +189,7 @@ FRAMED = ["measured_orientation", "measured_torque", "tracker/pose", "ft_sensor/
 FRAMED += ["samples"]
 TURNED = ["measured_orientation", "tracker/pose", "orientation_target"]
 MEASURED = ["coil_currents", "coil_command"]
+ANGLES = ["joint_states", "joint_target"]
 TF = ["/tf", "/tf_static"]
 MESSAGES = {
     "lying lengths": (ALL, lying_lengths),
@@ -205,19 +207,19 @@ MESSAGES = {
     "a long frame": (STAMPED, of_frame("x" * 100000)),
     "frame that is no text": (FRAMED, not_text),
     "wrong frame": (FRAMED, of_frame("kitchen")),
-    "NaN": (FRAMED + MEASURED + ["joint_states"], numbers(math.nan)),
-    "infinity": (FRAMED + MEASURED + ["joint_states"], numbers(-math.inf)),
-    "1e308": (FRAMED + MEASURED + ["joint_states"], numbers(1e308)),
-    "5e-324": (FRAMED + MEASURED + ["joint_states"], numbers(5e-324)),
+    "NaN": (FRAMED + MEASURED + ANGLES, numbers(math.nan)),
+    "infinity": (FRAMED + MEASURED + ANGLES, numbers(-math.inf)),
+    "1e308": (FRAMED + MEASURED + ANGLES, numbers(1e308)),
+    "5e-324": (FRAMED + MEASURED + ANGLES, numbers(5e-324)),
     "quaternion of zeros": (TURNED, quaternions(0.0, 0.0, 0.0, 0.0)),
     "quaternion of length 1000": (TURNED, quaternions(0.0, 0.0, 0.0, 1000.0)),
-    "no names": (["joint_states"], joints(name=[])),
-    "no positions": (["joint_states"], joints(position=[])),
-    "names of others": (["joint_states"], joints(name=["elbow", "wrist", "thumb"])),
-    "one name three times": (["joint_states"], joints(name=["joint_1"] * 3)),
-    "escapes for names": (["joint_states"], joints(name=[ESCAPES] * 3)),
-    "many names": (["joint_states"], joints(name=[""] * 100000)),
-    "many positions": (["joint_states"], joints(position=[0.0] * 100000)),
+    "no names": (ANGLES, joints(name=[])),
+    "no positions": (ANGLES, joints(position=[])),
+    "names of others": (ANGLES, joints(name=["elbow", "wrist", "thumb"])),
+    "one name three times": (ANGLES, joints(name=["joint_1"] * 3)),
+    "escapes for names": (ANGLES, joints(name=[ESCAPES] * 3)),
+    "many names": (ANGLES, joints(name=[""] * 100000)),
+    "many positions": (ANGLES, joints(position=[0.0] * 100000)),
     "no currents": (MEASURED, currents([])),
     "many currents": (MEASURED, currents([0.0] * 100000)),
     "currents of 1e9 A": (MEASURED, currents([1e9] * COILS)),

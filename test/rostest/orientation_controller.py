@@ -87,6 +87,26 @@ class OrientationController(unittest.TestCase):
         self.assertTrue(controller.enable(False).success)
         wait_for(self.commands.ended_with_zero, "zero")
 
+    def test_turns_to_joint_angles_by_all_that_was_identified(self):
+        parameters = parameters_of(description())
+        for joint in parameters.joints:
+            joint.harmonics = [0.02, 0.0, 0.0, 0.01]
+        self.publisher.publish(parameters)
+        self.joints.position = [0.1, 0.05, 0.3]
+        controller = self.start()
+        controller.wait_until_enabled()
+
+        def error():
+            return float(controller.value("control", "tracking error [mrad]"))
+
+        controller.send_joints(joint_1=0.1, joint_2=0.05, joint_3=0.35)
+        wait_for(lambda: error() > 40.0, "a target elsewhere")
+        # By axes and offsets alone it would be 40 mrad aside.
+        controller.send_joints(joint_3=0.3, joint_2=0.05, joint_1=0.1)
+        wait_for(lambda: error() < 0.1, "the target where the rotor is")
+        controller.send_joints(joint_1=0.1, joint_2=0.05)
+        wait_for(lambda: "joint_target" in controller.value("control", "last refusal"), "the refusal")
+
     def test_refuses_to_start_without_fresh_joint_angles(self):
         controller = self.start(largest_age=LARGEST_AGE)
         controller.wait_until_enabled()

@@ -48,6 +48,10 @@ class OrientationController {
   /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
   /// outside the workspace, or cannot be reached straight within it, and during a motion plan.
   void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
+  /// Orientation R_stator_rotor at raw joint sensor angles `q` [rad], by the parameters in force.
+  Eigen::Matrix3d orientationAt(const Eigen::Vector3d& q) const {
+    return rotorOrientation(joints_, q);
+  }
 
   /// Takes hold of the rotor where it is. Throws DataError with the reason why that cannot be.
   void enable(Stamp now);

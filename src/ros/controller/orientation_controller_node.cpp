@@ -56,6 +56,7 @@ OrientationControllerNode::OrientationControllerNode(
     : design_(design),
       options_(options),
       joint_reader_(jointNames(design)),
+      target_reader_(jointNames(design)),
       controller_(design, options.controller),
       diagnostics_(node, private_node, design),
       control_(1, &joint_queue_) {
@@ -77,6 +78,13 @@ OrientationControllerNode::OrientationControllerNode(
         receiveTarget(*message);
       },
       tellRefusal("orientation_target"),
+      at_once));
+  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+      handle,
+      "joint_target",
+      kQueueLength,
+      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJointTarget(*message); },
+      tellRefusal("joint_target"),
       at_once));
   motion_publisher_ = private_handle.advertise<msg::MotionStatus>("motion_status", 10, true);
   services_ = {
@@ -166,9 +174,29 @@ void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionSta
         message.header.stamp.isZero() ? stampFromRos(ros::Time::now()) : target.stamp;
     controller_.setTarget(stamp, target.q_stator_rotor.normalized().toRotationMatrix());
   } catch (const Error& error) {
-    last_refusal_ = "orientation_target: " + printable(error.what());
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
+    refuseTarget("orientation_target", error);
   }
+}
+
+// The orientation is that of the moment: parameters that come later do not move the target.
+void OrientationControllerNode::receiveJointTarget(const sensor_msgs::JointState& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    const std::optional<JointMeasurement> target = target_reader_.read(message);
+    if (!target) {
+      throw DataError("a joint is missing.");
+    }
+    const Stamp stamp =
+        message.header.stamp.isZero() ? stampFromRos(ros::Time::now()) : target->stamp;
+    controller_.setTarget(stamp, controller_.orientationAt(target->position));
+  } catch (const Error& error) {
+    refuseTarget("joint_target", error);
+  }
+}
+
+void OrientationControllerNode::refuseTarget(const std::string& topic, const Error& reason) {
+  last_refusal_ = topic + ": " + printable(reason.what());
+  ROS_WARN_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
 }
 
 bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
@@ -179,7 +207,7 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
       controller_.enable(stampFromRos(ros::Time::now()));
       // So that a stop in the very first cycle is told as well.
       was_active_ = true;
-      response.message = "The coils hold the rotor, and turn it to orientation_target.";
+      response.message = "The coils hold the rotor, and turn it to its targets.";
     } else {
       controller_.disable();
       commandEnd();

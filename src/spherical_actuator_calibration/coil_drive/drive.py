@@ -6,7 +6,7 @@ from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import ActuatorParameters
 from std_srvs.srv import SetBool
 
-from .rotations import quaternion_of, rotation_exp, rotation_of, rotor_orientation
+from .rotations import quaternion_of, rotation_exp, rotation_of
 
 TARGET_RATE = 100.0  # [Hz]
 STALE = 0.5  # [s]
@@ -26,6 +26,7 @@ class CoilDrive:
         self._joints_time = None
         self.parameters = None
         self._targets = rospy.Publisher(f"{ns}/orientation_target", QuaternionStamped, queue_size=1)
+        self._joint_targets = rospy.Publisher(f"{ns}/joint_target", JointState, queue_size=1)
         self._subscribers = [
             rospy.Subscriber(f"{ns}/joint_states", JointState, self._keep_joints),
             rospy.Subscriber(f"{ns}/parameters", ActuatorParameters, self._keep_parameters),
@@ -95,16 +96,26 @@ class CoilDrive:
         target.x, target.y, target.z, target.w = quaternion_of(rotation)
         self._targets.publish(message)
 
-    def orientation_at(self, joints):
-        """By the parameters in force."""
-        return rotor_orientation(self.parameters.joints, joints)
+    def send_joints(self, joints):
+        """Where the joint sensors read these angles [rad]: the controller knows the kinematics in force."""
+        message = JointState(name=self._names, position=list(joints))
+        message.header.stamp = rospy.Time.now()
+        self._joint_targets.publish(message)
 
     def turn_to(self, rotation, duration):
         """Sends a target again and again for so long [s]."""
+        self._repeat(self.send, rotation, duration)
+
+    def turn_to_joints(self, joints, duration):
+        """Likewise."""
+        self._repeat(self.send_joints, joints, duration)
+
+    @staticmethod
+    def _repeat(send, target, duration):
         rate = rospy.Rate(5.0)
         end = rospy.get_time() + duration
         while rospy.get_time() < end:
-            self.send(rotation)
+            send(target)
             rate.sleep()
 
     def track(self, speed, duration, observe):

@@ -50,12 +50,3 @@ def rotation_of(quaternion):
     v = numpy.array([quaternion.x, quaternion.y, quaternion.z])
     w = quaternion.w
     return (w * w - v @ v) * numpy.eye(3) + 2.0 * numpy.outer(v, v) + 2.0 * w * skew(v)
-
-
-def rotor_orientation(joints, q):
-    """Rotor to stator, where the joint sensors read q [rad], by the joints of a parameters message."""
-    rotation = numpy.eye(3)
-    for joint, angle in zip(joints, q):
-        axis = numpy.array([joint.axis.x, joint.axis.y, joint.axis.z])
-        rotation = rotation @ rotation_exp((angle + joint.offset) * axis)
-    return rotation

@@ -20,6 +20,7 @@
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/FollowMotion.h"
 #include "spherical_actuator_calibration/MotionStatus.h"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/control/control_timing.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
@@ -30,8 +31,9 @@
 
 namespace sac {
 
-/// Turns the rotor to the orientations of the topic `orientation_target`: `joint_states` and the
-/// latched `parameters` in, `coil_command` out. No command goes out before the private service
+/// Turns the rotor to the orientations of the topic `orientation_target`, or to where the joint
+/// sensors would read the angles of `joint_target`: `joint_states` and the latched `parameters` in,
+/// `coil_command` out. No command goes out before the private service
 /// `enable` is called with true, nor after a safe stop (OrientationController tells when) until it
 /// is called again; the coil driver's watchdog guards against the death of this node.
 ///
@@ -56,6 +58,9 @@ class OrientationControllerNode {
   void receiveParameters(const msg::ActuatorParameters& message);
   void receiveJoints(const sensor_msgs::JointState& message);
   void receiveTarget(const geometry_msgs::QuaternionStamped& message);
+  void receiveJointTarget(const sensor_msgs::JointState& message);
+  /// Of the topic that it came by. Precondition: mutex_ is held.
+  void refuseTarget(const std::string& topic, const Error& reason);
   bool enable(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool followMotion(msg::FollowMotion::Request& request, msg::FollowMotion::Response& response);
   bool endMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -79,6 +84,7 @@ class OrientationControllerNode {
   JointStateReader joint_reader_;  ///< of the thread of the joint readings
 
   std::mutex mutex_;  ///< of all below, up to the publisher
+  JointStateReader target_reader_;
   msg::CoilCurrents message_;
   OrientationController controller_;
   ControlTiming timing_;
