@@ -120,6 +120,7 @@ void HandGuide::listen() {
 
 void HandGuide::refresh() {
   guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
+  measurement_.judgeBy(model_.currentRule());
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
     take(*answer);
   }

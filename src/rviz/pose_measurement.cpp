@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <utility>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -14,11 +15,12 @@ namespace {
 constexpr double kSettling = 0.3;
 /// In which coils must carry their current [s].
 constexpr double kPatience = 10.0;
-/// A current may miss its command by so much [A], or by that share of it.
-constexpr double kTolerance = 0.05;
-constexpr double kToleranceShare = 0.1;
 
 }  // namespace
+
+bool CurrentRule::allows(double measured, double commanded) const {
+  return std::abs(measured - commanded) <= std::max(tolerance, share * std::abs(commanded));
+}
 
 void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current, double now) {
   patterns_ = std::move(patterns);
@@ -29,6 +31,16 @@ void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current,
   samples_ = 0;
   current_ = current;
   outcome_.clear();
+  if (patterns_.size() > 1 && !(std::abs(current) >= rule_.least)) {
+    char text[96];
+    std::snprintf(text,
+                  sizeof(text),
+                  "%.3g A are too little to tell a coil from one that is off: take %.3g A or more.",
+                  std::abs(current),
+                  rule_.least);
+    end(text);
+    return;
+  }
   beginPattern(now);
 }
 
@@ -117,10 +129,9 @@ void PoseMeasurement::end(const std::string& reason) {
 }
 
 bool PoseMeasurement::carries(const std::vector<double>& measured) const {
-  const double tolerance = std::max(kTolerance, kToleranceShare * std::abs(current()));
   for (std::size_t j = 0; j < measured.size(); ++j) {
     const double wanted = numberOf(j) == coil() ? current() : 0.0;
-    if (!(std::abs(measured[j] - wanted) <= tolerance)) {
+    if (!rule_.allows(measured[j], wanted)) {
       return false;
     }
   }

@@ -7,6 +7,15 @@
 
 namespace sac {
 
+/// When a coil carries what is commanded, as the calibration node says (CalibrationStatus).
+struct CurrentRule {
+  double tolerance = 0.0;  ///< [A]
+  double share = 0.0;      ///< of the command, where that is more [1]
+  double least = 0.0;      ///< to excite a coil with [A]
+
+  bool allows(double measured, double commanded) const;
+};
+
 /// What a capture gave.
 struct CaptureOutcome {
   bool success = false;
@@ -25,8 +34,10 @@ class PoseMeasurement {
   /// What is to be done now.
   enum class Action { kNothing, kCapture, kRemove, kEnd };
 
+  void judgeBy(const CurrentRule& rule) { rule_ = rule; }
+
   /// `patterns`: coils counted from 1, in turn; 0: none, which comes first in any case. `current`
-  /// [A] in each.
+  /// [A] in each; it ends at once where that is too little.
   void begin(std::vector<std::uint32_t> patterns, double current, double now);
   bool isRunning() const { return place_ < patterns_.size(); }
 
@@ -51,6 +62,7 @@ class PoseMeasurement {
   void beginPattern(double now);
   void advance(double now);
 
+  CurrentRule rule_;
   std::vector<std::uint32_t> patterns_;
   std::size_t place_ = 0;
   double current_ = 0.0;

@@ -17,6 +17,13 @@ std::vector<double> second() {
   return {0.01, 1.98, 0.0};
 }
 
+/// By what the calibration node tells.
+PoseMeasurement judged() {
+  PoseMeasurement measurement;
+  measurement.judgeBy({0.04, 0.1, 0.09});
+  return measurement;
+}
+
 CaptureOutcome sample(std::uint32_t id, std::uint64_t rest) {
   return {true, "", id, rest};
 }
@@ -32,7 +39,7 @@ void measure(PoseMeasurement& measurement,
 }
 
 TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.step(zero(), 0.0), Action::kNothing);
@@ -54,7 +61,7 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
 }
 
 TEST(PoseMeasurement, EndsWhereACoilDoesNotCarryItsCurrent) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   EXPECT_EQ(measurement.step({}, 1.0), Action::kNothing);
   measure(measurement, zero(), sample(1, 7), 2.0);
@@ -63,8 +70,24 @@ TEST(PoseMeasurement, EndsWhereACoilDoesNotCarryItsCurrent) {
   EXPECT_EQ(measurement.outcome(), "Coil 2 does not carry its current: look at the coil driver.");
 }
 
+TEST(PoseMeasurement, TakesACurrentThatTheNodeWouldTellFromNone) {
+  PoseMeasurement measurement = judged();
+  measurement.begin({0, 2}, 0.05, 0.0);
+  EXPECT_FALSE(measurement.isRunning());
+  EXPECT_EQ(measurement.outcome(),
+            "0.05 A are too little to tell a coil from one that is off: take 0.09 A or more.");
+  measurement.begin({0}, 0.05, 0.0);
+  EXPECT_TRUE(measurement.isRunning());
+  measurement.begin({0, 2}, -0.09, 0.0);
+  measure(measurement, zero(), sample(1, 7), 1.0);
+  measurement.step({0.0, -0.04, 0.0}, 3.0);
+  EXPECT_EQ(measurement.step({0.0, -0.04, 0.0}, 4.0), Action::kNothing);
+  measurement.step({0.0, -0.06, 0.0}, 5.0);
+  EXPECT_EQ(measurement.step({0.0, -0.06, 0.0}, 6.0), Action::kCapture);
+}
+
 TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   measurement.step(zero(), 0.0);
   ASSERT_EQ(measurement.step(zero(), 1.0), Action::kCapture);
@@ -74,7 +97,7 @@ TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
 }
 
 TEST(PoseMeasurement, AnswersThatNobodyAskedForChangeNothing) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   measurement.captured(sample(9, 7), 0.1);
   EXPECT_EQ(measurement.coil(), 0U);
@@ -84,7 +107,7 @@ TEST(PoseMeasurement, AnswersThatNobodyAskedForChangeNothing) {
 }
 
 TEST(PoseMeasurement, BeginsWithoutCurrentInAnyCase) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({2}, 2.0, 0.0);
   EXPECT_EQ(measurement.coil(), 0U);
   measure(measurement, zero(), sample(1, 7), 1.0);
@@ -92,7 +115,7 @@ TEST(PoseMeasurement, BeginsWithoutCurrentInAnyCase) {
 }
 
 TEST(PoseMeasurement, ATorqueOfAnotherRestGoesAndItsZeroIsMeasuredAnew) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   measure(measurement, zero(), sample(1, 7), 1.0);
   measure(measurement, second(), sample(2, 8), 2.0);
@@ -109,7 +132,7 @@ TEST(PoseMeasurement, ATorqueOfAnotherRestGoesAndItsZeroIsMeasuredAnew) {
 }
 
 TEST(PoseMeasurement, EndsWhereASampleCannotBeRemoved) {
-  PoseMeasurement measurement;
+  PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   measure(measurement, zero(), sample(1, 7), 1.0);
   measure(measurement, second(), sample(2, 8), 2.0);

@@ -15,6 +15,7 @@ from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 
 TOLERANCE = 0.05  # [rad] of one pose
+STATUS = SimpleNamespace(current_tolerance=0.04, current_tolerance_share=0.1, least_current=0.09)
 
 
 class ExcitedCoils(unittest.TestCase):
@@ -46,6 +47,32 @@ class Excitation(unittest.TestCase):
         self.assertEqual(bench._command, [1.5, 0.0, -1.5, 0.0])
         bench.excite((), 0.0)
         self.assertEqual(bench._command, [0.0] * 4)
+
+    def test_is_there_when_the_node_would_tell_it_from_none(self):
+        bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
+        bench._coils, bench._lock = 2, threading.Lock()
+        for current, measured, is_there in (
+            (0.05, (0.0, 0.0), False),
+            (0.09, (0.05, 0.0), True),
+            (0.09, (0.09, 0.05), False),
+            (2.0, (1.81, 0.03), True),
+            (2.0, (1.79, 0.0), False),
+            (2.0, (2.0, 0.05), False),
+        ):
+            bench.excite((1,), current)
+            bench._currents = measured
+            self.assertEqual(bench.is_excited(STATUS), is_there, (current, measured))
+
+    def test_with_less_than_the_node_tells_from_none_is_refused(self):
+        guided = session.Session.__new__(session.Session)
+        guided._options, guided._calibration = Options(), SimpleNamespace(status=lambda: STATUS)
+        poses = [Pose((0.0, 0.0, 0.0), ((1,),))]
+        guided._current = 0.05
+        with self.assertRaisesRegex(RuntimeError, "take 0.09 A or more"):
+            guided._require_current(poses)
+        guided._require_current([Pose((0.0, 0.0, 0.0), ())])
+        guided._current = 0.09
+        guided._require_current(poses)
 
 
 class MissingPatterns(unittest.TestCase):
@@ -195,7 +222,7 @@ class Coils:
         if not pattern and self._clock[0] >= self._cured_at:
             self._needs_zero = False
 
-    def is_excited(self):
+    def is_excited(self, _status):
         return self._clock[0] >= self._cured_at and not self._needs_zero and self._pattern == (3,)
 
     @staticmethod
@@ -217,6 +244,7 @@ class WaitingForCurrent(unittest.TestCase):
         guided._current = guided._options.current
         guided._terminal = Terminal(screen)
         guided._laboratory = Coils(clock, cured_at, needs_zero)
+        guided._calibration = SimpleNamespace(status=lambda: STATUS)
         fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
         with mock.patch.object(session, "rospy", fake):
             try:
@@ -284,8 +312,12 @@ class Bench:
         return TOLERANCE
 
     @staticmethod
-    def is_excited():
+    def is_excited(_status):
         return True
+
+    @staticmethod
+    def status():
+        return STATUS
 
 
 class CapturingAPose(unittest.TestCase):

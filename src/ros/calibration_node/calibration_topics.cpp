@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
@@ -83,6 +84,10 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.refined = static_cast<std::uint8_t>(progress.refined);
   fillCoverage(progress, message);
   message.current_threshold = estimation.current_threshold;
+  const CurrentTolerance tolerance = currentTolerance(estimation.current_threshold);
+  message.current_tolerance = tolerance.absolute;
+  message.current_tolerance_share = tolerance.share;
+  message.least_current = leastExcitation(estimation.current_threshold);
   message.pose_tolerance = kPoseTolerance;
   for (const CycleRequest& request : progress.next_cycles) {
     message.next_cycles.push_back(cycleText(request));

@@ -8,9 +8,10 @@ from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
+from .progress import carries
+
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
-CURRENT_ERROR = 0.1  # share by which a current may miss its command
 STALE = 1.0  # [s] without joint angles
 
 
@@ -72,14 +73,12 @@ class Laboratory:
             for coil in pattern:
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
 
-    def is_excited(self):
-        """Whether the measured currents are those commanded."""
+    def is_excited(self, status):
+        """Whether the measured currents are those commanded, by what the node's status allows."""
         with self._lock:
             if self._currents is None or len(self._currents) != self._coils:
                 return False
-            largest = max(map(abs, self._command))
-            tolerance = max(0.05, CURRENT_ERROR * largest)
-            return all(abs(a - b) <= tolerance for a, b in zip(self._currents, self._command))
+            return all(carries(status, *pair) for pair in zip(self._currents, self._command))
 
     def driver_complaint(self):
         """What the coil driver says is wrong; empty when it says nothing."""

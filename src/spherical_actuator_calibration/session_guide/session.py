@@ -61,10 +61,13 @@ class Session:
             self._laboratory.release()
 
     def _require_current(self, poses):
-        threshold = self._calibration.status().current_threshold
+        least = self._calibration.status().least_current
         excited = [pattern for pose in poses for pattern in pose.excitations]
-        if excited and self._current < threshold:
-            raise RuntimeError(f"--current: {self._current} A is below {threshold} A, where a coil counts as off.")
+        if excited and self._current < least:
+            raise RuntimeError(
+                f"--current: {self._current:g} A are too little to tell a coil from one that is off: "
+                f"take {least:g} A or more."
+            )
         total = max((len(pattern) for pattern in excited), default=0) * self._current
         if total > self._options.total_current:
             raise RuntimeError(f"--total-current: a pattern of the plan needs {total:.1f} A.")
@@ -208,7 +211,7 @@ class Session:
     def _has_current(self):
         """Whether the coils carry what is commanded, soon."""
         end = rospy.get_time() + SLOW
-        while not self._laboratory.is_excited():
+        while not self._laboratory.is_excited(self._calibration.status()):
             if rospy.get_time() > end:
                 return False
             rospy.sleep(POLL)

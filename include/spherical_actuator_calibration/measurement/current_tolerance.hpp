@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace sac {
+
+/// How near a measured current is to the one commanded where the coil carries it. Panel and guided
+/// session have it from the message CalibrationStatus.
+struct CurrentTolerance {
+  double absolute = 0.0;  ///< [A]
+  double share = 0.0;     ///< of the command, where that is more [1]
+
+  bool allows(double measured, double commanded) const {
+    return std::abs(measured - commanded) <= std::max(absolute, share * std::abs(commanded));
+  }
+};
+
+/// Of a coil that counts as excited from `threshold` [A] on: what is off by it counts as off. A
+/// tenth is what amplifiers miss, and the measured current is what estimates take.
+inline CurrentTolerance currentTolerance(double threshold) {
+  return {0.8 * threshold, 0.1};
+}
+
+/// The least command [A] that leaves a coil excited wherever the tolerance lets its current be.
+inline double leastExcitation(double threshold) {
+  return threshold + currentTolerance(threshold).absolute;
+}
+
+}  // namespace sac
