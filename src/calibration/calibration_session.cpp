@@ -163,9 +163,10 @@ std::vector<std::string> CalibrationSession::openParameters() const {
     }
   }
   std::vector<std::string> open;
-  for (const ParameterEstimate& parameter : parameters()) {
-    if (!parameter.observable && asked.count(parameter.name) > 0) {
-      open.push_back(parameter.name);
+  const ParameterSpace& space = model_.space();
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    if (!state_.identified[static_cast<std::size_t>(p)] && asked.count(space.name(p)) > 0) {
+      open.push_back(space.name(p));
     }
   }
   return open;

@@ -20,6 +20,12 @@ bool allOf(const std::vector<bool>& identified, Eigen::Index first, Eigen::Index
 
 }  // namespace
 
+bool SessionProgress::isAllIdentified() const {
+  const auto is_identified = [](const Coverage& part) { return part.identified; };
+  return joint.identified && std::all_of(poles.begin(), poles.end(), is_identified) &&
+         std::all_of(coils.begin(), coils.end(), is_identified);
+}
+
 ProgressCounter::ProgressCounter(const CalibrationModel& model,
                                  const CalibrationState& state,
                                  const EstimationOptions& options)

@@ -140,6 +140,8 @@ void LiveSession::restore(std::uint32_t number, const std::string& date) {
 SessionProgress LiveSession::progress() const {
   SessionProgress progress = counter_->progress();
   progress.refined = revision_.refined;
+  // A session without a cycle leaves nothing open that it was asked for, and is not done.
+  progress.complete = progress.isAllIdentified() && session_.isComplete();
   return progress;
 }
 

@@ -238,6 +238,26 @@ TEST_F(LiveSessionTest, OnlyARefinementCountsAsRefined) {
   EXPECT_FALSE(session.progress().refined);
 }
 
+// Of what was never asked for nothing is open, and nothing is known.
+TEST_F(LiveSessionTest, IsCompleteOnceAllIsIdentifiedAndNoFailureIsLeft) {
+  LiveSession session = open();
+  EXPECT_FALSE(session.progress().complete);
+  scenarios::Generator generator(3);
+  for (Sample sample : scenarios::paperSession(
+           scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator)) {
+    sample.id = 0;
+    session.addSample(sample, kDate);
+  }
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  EXPECT_FALSE(session.progress().complete);
+  ASSERT_TRUE(session.run({Cycle::kRefine}, kDate).success);
+  EXPECT_TRUE(session.progress().complete);
+  // Nothing has moved, and no refinement tells what a motion would.
+  ASSERT_FALSE(session.run({Cycle::kMotion}, kDate).success);
+  EXPECT_TRUE(session.progress().isAllIdentified());
+  EXPECT_FALSE(session.progress().complete);
+}
+
 TEST_F(LiveSessionTest, DescriptionCarriesItsRevision) {
   LiveSession session = open();
   addAll(session);

@@ -151,24 +151,6 @@ class Cycles(unittest.TestCase):
         self.assertEqual(progress.service_of("refine"), ("refine", 0))
 
 
-class AllIdentified(unittest.TestCase):
-    @staticmethod
-    def status(joint, poles, coils):
-        def parts(flags):
-            return [SimpleNamespace(identified=flag) for flag in flags]
-
-        return SimpleNamespace(joint=parts([joint])[0], poles=parts(poles), coils=parts(coils))
-
-    def test_needs_joint_poles_and_coils(self):
-        self.assertTrue(progress.all_identified(self.status(True, [True] * 8, [True] * 24)))
-        self.assertFalse(progress.all_identified(self.status(False, [True], [True])))
-        self.assertFalse(progress.all_identified(self.status(True, [True, False], [True])))
-        self.assertFalse(progress.all_identified(self.status(True, [True], [False, True])))
-
-    def test_an_actuator_may_be_a_joint_alone(self):
-        self.assertTrue(progress.all_identified(self.status(True, [], [])))
-
-
 class ProgressOfASession(unittest.TestCase):
     def test_tells_the_remaining_time_from_the_rate_so_far(self):
         now = [100.0]

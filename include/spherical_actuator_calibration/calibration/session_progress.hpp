@@ -40,9 +40,13 @@ struct SessionProgress {
   bool poles_done = false;                    ///< poles are identified
   std::vector<bool> coil_done;                ///< per coil
   bool refined = false;                       ///< by the refinement, since the last other cycle
+  bool complete = false;                      ///< all is identified, and isComplete() (session)
   bool saved = false;                         ///< the parameters in force are in a file
   bool contradicted = false;                  ///< held-out samples disagree with what is in force
   std::string plan_step;  ///< next pose of the plan that is followed, see planStep(); empty: none
+
+  /// Whether the joint, every pole and every coil is identified.
+  bool isAllIdentified() const;
 };
 
 /// Counts the samples in use one by one, so that a capture costs the same however many there are.
@@ -57,8 +61,8 @@ class ProgressCounter {
   void add(const Sample& sample);
   void add(const std::vector<Sample>& samples);
 
-  /// What samples and parameters tell of the progress; `refined`, `saved`, `contradicted` and
-  /// `plan_step` are not in them.
+  /// What samples and parameters tell of the progress; `refined`, `complete`, `saved`,
+  /// `contradicted` and `plan_step` are not in them.
   SessionProgress progress() const;
 
  private:

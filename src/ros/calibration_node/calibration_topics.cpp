@@ -92,6 +92,7 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   for (const CycleRequest& request : progress.next_cycles) {
     message.next_cycles.push_back(cycleText(request));
   }
+  message.complete = static_cast<std::uint8_t>(progress.complete);
   message.grade = gradeName(graded.grade);
   message.grade_reason = graded.reason;
   message.next_step = nextStep(calibration.model(), progress);

@@ -115,11 +115,6 @@ def service_of(cycle):
     return name if name == "refine" else "calibrate_" + name, int(coil or 0)
 
 
-def all_identified(status):
-    """Whether the node has identified the joint, every pole and every coil."""
-    return all(part.identified for part in (status.joint, *status.poles, *status.coils))
-
-
 class Progress:
     """Captures done and left, and the time that they will take."""
 

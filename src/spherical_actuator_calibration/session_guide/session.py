@@ -13,7 +13,7 @@ from .progress import Progress
 POLL = 0.05  # [s]
 # Times as long without current as with it: all torques of a pose share the bias that is measured then.
 ZERO_CAPTURE = 3.0
-FURTHER_POSES = 2  # that are added at a time where parameters stay open
+FURTHER_POSES = 2  # that are added at a time until the calibration is complete
 MOST_ROUNDS = 4
 SLOW = 5.0  # [s] after which the operator is told what the session waits for
 # [s] without current before it is tried again: a driver whose currents deviated follows again after zero was commanded
@@ -53,7 +53,7 @@ class Session:
             for _ in range(MOST_ROUNDS):
                 if is_complete:
                     break
-                self._terminal.say(f"Parameters stay open: {FURTHER_POSES} poses are added.")
+                self._terminal.say(f"The calibration is not complete: {FURTHER_POSES} poses are added.")
                 self._measure(self._plan(FURTHER_POSES))
                 is_complete = self._estimate()
             return self._conclude() and is_complete
@@ -283,13 +283,13 @@ class Session:
     # -- estimating ----------------------------------------------------------------------------------
 
     def _estimate(self):
-        """Runs the cycles that the samples are enough for; returns whether every parameter is identified."""
+        """Runs the cycles that the samples are enough for; returns whether the calibration is complete."""
         for cycle in self._calibration.status().next_cycles:
             answer = self._calibration.run(cycle)
             self._terminal.say(("" if answer.success else "Not done: ") + answer.message)
         status = self._calibration.status()
         self._terminal.say(status.grade_reason)
-        return progress.all_identified(status)
+        return status.complete
 
     def _conclude(self):
         """Validates and saves; returns whether the result can be used."""
