@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_title.hpp"
 #include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 
@@ -115,6 +116,8 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
 
 void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.line(2, "- cycle: " + cycleName(report.cycle));
+  writer.entry(3, "title", cycleTitle(report.cycle, report.coil));
+  writer.entry(3, "title_of_kind", cyclesTitle(report.cycle));
   writer.entry(3, "coil", std::to_string(numberOrZero(report.coil)));
   writer.entry(3, "success", yamlBoolean(report.success));
   writer.entry(3, "message", yamlText(report.message));

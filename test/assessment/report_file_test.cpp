@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/calibration/cycle_title.hpp"
 #include "support/scenarios.hpp"
 #include "support/source_dir.hpp"
 
@@ -104,6 +105,15 @@ TEST(ReportFile, NamesEverySampleWithItsPoseAndCoils) {
   EXPECT_NE(lines[0].find("torque: false, coils: [], validation: false}"), std::string::npos);
   EXPECT_NE(lines[10].find("orientation: true, torque: true, coils: [1]"), std::string::npos)
       << lines[10];
+}
+
+TEST(ReportFile, CallsEachCycleByATitle) {
+  const YAML::Node report = YAML::Load(reportOf(calibratedSession(0)))["calibration_report"];
+  EXPECT_EQ(report["cycles"][0]["title"].as<std::string>(), "Joint");
+  EXPECT_EQ(report["cycles"][1]["title_of_kind"].as<std::string>(), "Refinement");
+  EXPECT_EQ(cycleTitle(Cycle::kPoles, 0), "Poles with coil 1");
+  EXPECT_EQ(cyclesTitle(Cycle::kPoles), "Poles with their coil");
+  EXPECT_EQ(cycleTitle(Cycle::kCoil, 2), "Coil 3");
 }
 
 TEST(ReportFile, ShowsTheResidualsOfHeldOutSamples) {

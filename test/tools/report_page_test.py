@@ -121,7 +121,7 @@ class ReportPage(unittest.TestCase):
         figures = dict(self.figures)
         cycle = dict(self.figures["cycles"][0], cycle="refine", error_unit="1", error_history=[0.97, 0.91])
         figures["cycles"] = [cycle]
-        picture = next(item for item in self.render(figures, "short").of("img") if item["alt"].startswith("Refinement"))
+        picture = next(item for item in self.render(figures, "short").of("img") if item["alt"].startswith("Joint: "))
         svg = base64.b64decode(picture["src"].split(",", 1)[1]).decode("utf-8")
         axis = svg.split('<g id="matplotlib.axis_2"')[1]
         numbers = [float(text) for text in re.findall(r">([0-9.]+)</text>", axis)]
@@ -182,6 +182,12 @@ class ReportPage(unittest.TestCase):
                 (str(item["id"]), item["quantity"], item["reason"]),
                 [(row[0], row[1], row[-1]) for row in self.page.rows if len(row) == 4],
             )
+
+    def test_calls_cycles_as_the_report_does(self):
+        cycle = dict(self.figures["cycles"][-1], cycle="swing", title="Swinging", title_of_kind="Swings")
+        page = self.render(dict(self.figures, cycles=[*self.figures["cycles"][:-1], cycle]), "titles")
+        self.assertIn(cycle["message"], page.row("Swinging")[-1])
+        self.assertTrue([item for item in page.of("img") if item["alt"].startswith("Swings: ")])
 
     def test_names_are_no_markup(self):
         self.assertIn(HOSTILE, self.page.text)

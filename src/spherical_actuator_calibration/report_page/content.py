@@ -13,7 +13,6 @@ GRADES = {
     "contradicted": "Contradicted",
     "failed": "Failed",
 }
-CYCLES = {"joint": "Joint", "poles": "Poles with coil {}", "coil": "Coil {}", "refine": "Refinement", "motion": "Motion"}
 QUANTITIES = ("orientation", "torque")
 MOST_INFLUENTIAL = 8
 
@@ -22,11 +21,6 @@ def cross_and_dot(one, other):
     """Vector product and scalar product of two vectors."""
     cross = [one[i - 2] * other[i - 1] - one[i - 1] * other[i - 2] for i in range(3)]
     return cross, sum(a * b for a, b in zip(one, other))
-
-
-def name_of(cycle):
-    """A cycle as people call it."""
-    return CYCLES.get(cycle["cycle"], cycle["cycle"].capitalize()).format(cycle["coil"])
 
 
 class Report:
@@ -107,7 +101,7 @@ class Report:
             cycle = next((one for one in self._cycles if one["success"] and one["cycle"] in kinds), None)
             if cycle and cycle["error_history"] and cycle["error_unit"] != "1":
                 change = change_of(cycle["error_history"][0], cycle["error_history"][-1], cycle["error_unit"])
-                cards.append((f"{title}, before → after", change, f"error, cycle {name_of(cycle).lower()}"))
+                cards.append((f"{title}, before → after", change, f"error, cycle {cycle['title'].lower()}"))
         return cards
 
     def joint_axes(self):
@@ -191,7 +185,7 @@ class Report:
             history = cycle["error_history"]
             rows.append(
                 {
-                    "name": name_of(cycle),
+                    "name": cycle["title"],
                     "success": cycle["success"],
                     "message": cycle["message"],
                     "samples": self._samples_of(cycle),
@@ -237,7 +231,7 @@ class Report:
     def residual_cycle(self):
         """Name of the cycle whose residuals are shown."""
         last = self._last_success()
-        return name_of(last) if last else None
+        return last["title"] if last else None
 
     def rejected(self):
         """Rows of measurements that were taken for outliers by the last successful cycles."""

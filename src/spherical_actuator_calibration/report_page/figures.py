@@ -105,13 +105,6 @@ def _plain_logarithm(axes, values):
         axes.set_ylim(0.7 * min(positive), 1.4 * max(positive))
 
 
-CYCLE_TITLES = {
-    "joint": "Joint",
-    "poles": "Poles with their coil",
-    "coil": "Single coils",
-    "refine": "Refinement",
-    "motion": "Motion",
-}
 ERROR_TITLES = {"rad": "mean orientation error", "N·m": "torque error", "1": "standardised error"}
 
 
@@ -120,7 +113,7 @@ def convergence(kind, error_unit, cycles):
 
     The cycles tell their errors in the same unit."""
     factor, unit = SHOWN[error_unit]
-    title = f"{CYCLE_TITLES.get(kind, kind.capitalize())}: {ERROR_TITLES[error_unit]}"
+    title = f"{cycles[0]['title_of_kind']}: {ERROR_TITLES[error_unit]}"
     with Figure(f"convergence_{kind}", title) as figure:
         axes = figure.axes
         for cycle in cycles:
