@@ -15,10 +15,6 @@
 namespace sac {
 namespace {
 
-const char* quantityName(Quantity quantity) {
-  return quantity == Quantity::kOrientation ? "orientation" : "torque";
-}
-
 std::vector<std::string> texts(const std::vector<std::string>& plain) {
   std::vector<std::string> lines;
   lines.reserve(plain.size());
@@ -60,10 +56,24 @@ std::vector<std::string> estimateLines(const std::vector<ParameterEstimate>& est
   return lines;
 }
 
+/// To what a coordinate belongs.
+const char* kindOf(const ParameterSpace& space, Eigen::Index parameter) {
+  if (parameter < space.pole(0)) {
+    return "joint";
+  }
+  if (parameter < space.coil(0)) {
+    return "pole";
+  }
+  return parameter < space.effect() ? "coil" : "effect";
+}
+
 void writeParameters(YamlWriter& writer, const CalibrationSession& session) {
   std::vector<std::string> lines;
   for (const ParameterEstimate& estimate : session.parameters()) {
-    lines.push_back(estimateLine(estimate, false).text());
+    YamlLine line = estimateLine(estimate, false);
+    const auto parameter = static_cast<Eigen::Index>(lines.size());
+    line.add("kind", kindOf(session.model().space(), parameter));
+    lines.push_back(line.text());
   }
   writer.list(1, "parameters", lines);
 }
@@ -75,7 +85,7 @@ std::vector<std::string> residualLines(const std::vector<SampleResidual>& residu
     line.add("id", std::to_string(residual.id));
     line.add("quantity", quantityName(residual.quantity));
     line.add("residual", yamlNumber(residual.residual));
-    line.add("unit", residual.quantity == Quantity::kOrientation ? "rad" : "N·m");
+    line.add("unit", unitOf(residual.quantity));
     line.add("standardized", yamlNumber(residual.standardized));
     line.add("rejected", yamlBoolean(residual.rejected));
     if (residual.rejected) {

@@ -335,13 +335,21 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
 std::string unitOf(ErrorMeasure measure) {
   switch (measure) {
     case ErrorMeasure::kOrientation:
-      return "rad";
+      return unitOf(Quantity::kOrientation);
     case ErrorMeasure::kTorque:
-      return "N·m";
+      return unitOf(Quantity::kTorque);
     case ErrorMeasure::kStandardized:
       break;
   }
   return "1";
+}
+
+std::string quantityName(Quantity quantity) {
+  return quantity == Quantity::kOrientation ? "orientation" : "torque";
+}
+
+std::string unitOf(Quantity quantity) {
+  return quantity == Quantity::kOrientation ? "rad" : "N·m";
 }
 
 std::optional<double> residualRms(const CycleReport& report, Quantity quantity) {

@@ -207,7 +207,7 @@ std::vector<SampleLine> PanelModel::samples() const {
   lines.reserve(residuals.size());
   for (const msg::SampleResidual& one : residuals) {
     lines.push_back({one.id,
-                     one.unit == "rad" ? "orientation" : "torque",
+                     one.quantity,
                      number("%.3f m", 1e3 * one.residual) + one.unit,
                      number("%.1f", one.standardized),
                      one.rejected == 0    ? ""

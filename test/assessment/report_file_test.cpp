@@ -116,6 +116,21 @@ TEST(ReportFile, CallsEachCycleByATitle) {
   EXPECT_EQ(cycleTitle(Cycle::kCoil, 2), "Coil 3");
 }
 
+TEST(ReportFile, TellsToWhatEachParameterBelongs) {
+  const CalibrationSession session = calibratedSession(0);
+  const YAML::Node report = YAML::Load(reportOf(session))["calibration_report"];
+  const auto poles = static_cast<std::size_t>(session.model().space().pole(0));
+  const auto coils = static_cast<std::size_t>(session.model().space().coil(0));
+  const YAML::Node parameters = report["parameters"];
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    EXPECT_EQ(parameters[p]["kind"].as<std::string>(),
+              p < poles   ? "joint"
+              : p < coils ? "pole"
+                          : "coil")
+        << parameters[p]["name"];
+  }
+}
+
 TEST(ReportFile, ShowsTheResidualsOfHeldOutSamples) {
   const CalibrationSession session = calibratedSession(6);
   const std::vector<std::string> lines = blockOf(reportOf(session), "validation");

@@ -200,6 +200,7 @@ TEST(PanelModel, SamplesAreListedWorstFirstUntilTheyAreRemoved) {
   for (std::size_t n = 0; n < 3; ++n) {
     message.residuals[n].id = static_cast<std::uint32_t>(n + 1);
     message.residuals[n].unit = n == 0 ? "rad" : "N·m";
+    message.residuals[n].quantity = n == 0 ? "orientation" : n == 1 ? "torque" : "force";
     message.residuals[n].residual = 0.0015;
     message.residuals[n].standardized = standardized[n];
   }

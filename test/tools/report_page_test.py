@@ -189,6 +189,16 @@ class ReportPage(unittest.TestCase):
         self.assertIn(cycle["message"], page.row("Swinging")[-1])
         self.assertTrue([item for item in page.of("img") if item["alt"].startswith("Swings: ")])
 
+    def test_sorts_parameters_by_their_kind_and_draws_angles_alone(self):
+        angle = dict(self.figures["parameters"][0], name="wear", kind="coil", identified=True)
+        strength = dict(angle, name="strength", unit="1", nominal=0.0, value=700.0)
+        page = self.render(dict(self.figures, parameters=[*self.figures["parameters"], angle, strength]), "kinds")
+        names = [row[0].split()[0] for row in page.rows if row]
+        self.assertEqual(names.index("strength"), names.index("wear") + 1)
+        drawn = sum(item["identified"] for item in self.figures["parameters"]) + 1
+        change = next(item["alt"] for item in page.of("img") if item["alt"].startswith("Difference between"))
+        self.assertIn(f" of {drawn} parameters", change)
+
     def test_names_are_no_markup(self):
         self.assertIn(HOSTILE, self.page.text)
         self.assertNotIn("<script", self.html)
@@ -222,7 +232,7 @@ class ReportPage(unittest.TestCase):
     def test_laboratory_effects_are_compared(self):
         figures = dict(self.figures)
         effect = {"name": "torque_bias/x", "nominal": 0.0, "value": 2.7e-3, "stddev": 4e-5, "identified": True}
-        figures["parameters"] = self.figures["parameters"] + [dict(effect, unit="N·m")]
+        figures["parameters"] = self.figures["parameters"] + [dict(effect, unit="N·m", kind="effect")]
         fit = {"effects": "none", "converged": True, "parameters": 31, "chi_square": 900.0, "reduced_chi_square": 3.0}
         figures["model_choice"] = [dict(fit, bic=1076.5), dict(fit, effects="all", bic=400.25)]
         page = self.render(figures, "effects")

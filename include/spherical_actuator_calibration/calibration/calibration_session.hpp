@@ -127,6 +127,10 @@ class CalibrationSession {
 /// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.
 std::string unitOf(ErrorMeasure measure);
 
+/// orientation or torque, and the unit of its residuals: rad or N·m.
+std::string quantityName(Quantity quantity);
+std::string unitOf(Quantity quantity);
+
 /// Root mean square norm of the residuals of one kind that were not rejected; nothing when there
 /// are none.
 std::optional<double> residualRms(const CycleReport& report, Quantity quantity);

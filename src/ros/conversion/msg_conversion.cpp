@@ -27,11 +27,12 @@ Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::u
 msg::SampleResidual residualToRos(const SampleResidual& residual) {
   msg::SampleResidual message;
   message.id = residual.id;
-  message.unit = residual.quantity == Quantity::kOrientation ? "rad" : "N·m";
+  message.unit = unitOf(residual.quantity);
   message.residual = residual.residual;
   message.standardized = residual.standardized;
   message.rejected = static_cast<std::uint8_t>(residual.rejected);
   message.reason = residual.reason;
+  message.quantity = quantityName(residual.quantity);
   return message;
 }
 

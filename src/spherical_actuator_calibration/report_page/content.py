@@ -1,7 +1,6 @@
 """What the page tells: the figures of a report as words, rows and pictures for the template."""
 
 import math
-import re
 
 from . import figures
 from .numbers import change_of, plus_minus, signed, significant, with_unit
@@ -13,6 +12,8 @@ GRADES = {
     "contradicted": "Contradicted",
     "failed": "Failed",
 }
+# Kinds of parameters as their tables are called.
+KINDS = {"joint": "Joints", "pole": "Magnet poles", "coil": "Coils", "effect": "Laboratory effects"}
 QUANTITIES = ("orientation", "torque")
 MOST_INFLUENTIAL = 8
 
@@ -145,20 +146,10 @@ class Report:
 
     def parameter_groups(self):
         """Tables of parameters: joints, poles, coils, laboratory effects."""
-        groups = {"Joints": [], "Magnet poles": [], "Coils": [], "Laboratory effects": []}
+        groups = {kind: [] for kind in KINDS}
         for item in self._parameters:
-            groups[self._group_of(item["name"])].append(self._parameter_row(item))
-        return [(title, rows) for title, rows in groups.items() if rows]
-
-    @staticmethod
-    def _group_of(name):
-        if re.fullmatch(r"joint_\d+/(offset|axis_[uv])", name):
-            return "Joints"
-        if re.fullmatch(r"pole_\d+/(polar|azimuth)", name):
-            return "Magnet poles"
-        if re.fullmatch(r"coil_\d+/(polar|azimuth)", name):
-            return "Coils"
-        return "Laboratory effects"
+            groups[item["kind"]].append(self._parameter_row(item))
+        return [(KINDS[kind], rows) for kind, rows in groups.items() if rows]
 
     @staticmethod
     def _parameter_row(item):
@@ -340,7 +331,7 @@ class Report:
 
     def changes(self):
         """Picture of what calibration changed; None where nothing is identified."""
-        geometry = [item for item in self._parameters if self._group_of(item["name"]) != "Laboratory effects"]
+        geometry = [item for item in self._parameters if item["kind"] != "effect" and item["unit"] == "rad"]
         return figures.changes(geometry) if any(item["identified"] for item in geometry) else None
 
     # ---- laboratory effects --------------------------------------------------------------------------

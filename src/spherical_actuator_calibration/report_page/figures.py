@@ -354,20 +354,20 @@ def workspace_map(quantity, tilt, values, joints):
 
 
 def changes(parameters):
-    """What calibration changed, with 95 % intervals."""
+    """What calibration changed in parameters in rad, with 95 % intervals."""
     with Figure("changes", "Identified minus nominal") as figure:
         axes = figure.axes
         identified = [item for item in parameters if item["identified"]]
-        groups = {"joint": BLUE, "pole": AMBER, "coil": TEAL}
-        for group, colour in groups.items():
+        kinds = {"joint": BLUE, "pole": AMBER, "coil": TEAL}
+        for kind, colour in kinds.items():
             chosen = [
                 (place, 1e3 * (item["value"] - item["nominal"]), 1.96e3 * item["stddev"])
                 for place, item in enumerate(identified, 1)
-                if item["name"].startswith(group)
+                if item["kind"] == kind
             ]
             if chosen:
                 place, change, interval = zip(*chosen)
-                axes.errorbar(place, change, interval, fmt=".", color=colour, elinewidth=1.0, label=f"{group}s")
+                axes.errorbar(place, change, interval, fmt=".", color=colour, elinewidth=1.0, label=f"{kind}s")
         axes.axhline(0.0, color=GREY, linewidth=1.0)
         _whole_numbers(axes.xaxis)
         axes.set_xlabel("parameter, in the order of the table")
