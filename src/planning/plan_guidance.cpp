@@ -6,24 +6,11 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
 namespace {
-
-bool isAt(const Sample& sample, const PlannedPose& pose) {
-  return (sample.joint_position - pose.joint_position).cwiseAbs().maxCoeff() <= kPoseTolerance;
-}
-
-/// Coils that count as excited, with their signs.
-CoilPattern patternOf(const Sample& sample, double current_threshold) {
-  CoilPattern pattern;
-  for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
-    pattern.push_back({excitation.coil, excitation.current < 0.0 ? -1 : 1});
-  }
-  return pattern;
-}
 
 /// The opposite of a pattern tells the same.
 bool isSame(const CoilPattern& a, CoilPattern b) {
@@ -42,7 +29,7 @@ std::vector<CoilPattern> openPatterns(const PlannedPose& pose,
                                       double current_threshold) {
   std::vector<CoilPattern> open = pose.excitations();
   for (const Sample& sample : samples) {
-    if (!isAt(sample, pose)) {
+    if (!isAtPose(sample, pose.joint_position)) {
       continue;
     }
     const CoilPattern measured = patternOf(sample, current_threshold);
@@ -57,8 +44,9 @@ std::vector<CoilPattern> openPatterns(const PlannedPose& pose,
 }
 
 bool hasSample(const PlannedPose& pose, const std::vector<Sample>& samples) {
-  return std::any_of(
-      samples.begin(), samples.end(), [&](const Sample& sample) { return isAt(sample, pose); });
+  return std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+    return isAtPose(sample, pose.joint_position);
+  });
 }
 
 /// "a, b and c".

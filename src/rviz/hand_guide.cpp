@@ -2,14 +2,15 @@
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include "spherical_actuator_calibration/Capture.h"
+#include "spherical_actuator_calibration/CapturePlanned.h"
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
-#include "spherical_actuator_calibration/RemoveSample.h"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 
@@ -141,10 +142,7 @@ void HandGuide::take(const ServiceAnswer& answer) {
       break;
     case Asked::kCapture:
       measurement_.captured(
-          {answer.success, answer.message, answer.sample.id, answer.sample.dwell.toNSec()}, now);
-      break;
-    case Asked::kRemoval:
-      measurement_.removed(answer.success, answer.message, now);
+          {answer.success, answer.message, answer.flaw == msg::CapturePlannedResponse::REST}, now);
       break;
   }
 }
@@ -184,8 +182,10 @@ void HandGuide::measure() {
     return;
   }
   std::vector<std::uint32_t> patterns = {0};
+  pose_.reset();
   if (const std::optional<std::size_t> here = guide_.here()) {
     patterns = guide_.missing(*here);
+    pose_ = guide_.joints(*here);
   }
   if (patterns.empty()) {
     outcome_->setText("This pose is measured already.");
@@ -204,9 +204,6 @@ void HandGuide::goOn() {
     case PoseMeasurement::Action::kCapture:
       askForCapture();
       break;
-    case PoseMeasurement::Action::kRemove:
-      askForRemoval();
-      break;
     case PoseMeasurement::Action::kEnd:
       finish();
       break;
@@ -219,19 +216,24 @@ void HandGuide::goOn() {
 }
 
 void HandGuide::askForCapture() {
-  msg::Capture::Request request;
-  request.duration = duration_();
-  request.validation = static_cast<std::uint8_t>(hold_out_());
   asked_ = Asked::kCapture;
-  caller_.call<msg::Capture>(node_.resolveName("calibration/capture"), request);
-}
-
-void HandGuide::askForRemoval() {
-  msg::RemoveSample::Request request;
-  request.id = measurement_.flawedSample();
-  asked_ = Asked::kRemoval;
-  caller_.call<msg::RemoveSample>(node_.resolveName("calibration/remove_sample"), request);
-  outcome_->setText("The rest was interrupted: it is measured without current again …");
+  const auto validation = static_cast<std::uint8_t>(hold_out_());
+  if (!pose_) {
+    msg::Capture::Request request;
+    request.duration = duration_();
+    request.validation = validation;
+    caller_.call<msg::Capture>(node_.resolveName("calibration/capture"), request);
+    return;
+  }
+  msg::CapturePlanned::Request request;
+  std::copy(pose_->begin(), pose_->end(), request.joint_position.begin());
+  if (measurement_.coil() != 0) {
+    const auto coil = static_cast<std::int32_t>(measurement_.coil());
+    request.coils = {measurement_.current() < 0.0 ? -coil : coil};
+  }
+  request.duration = duration_();
+  request.validation = validation;
+  caller_.call<msg::CapturePlanned>(node_.resolveName("calibration/capture_planned"), request);
 }
 
 void HandGuide::finish() {

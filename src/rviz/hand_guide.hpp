@@ -38,7 +38,7 @@ class HandGuide : public QWidget {
 
  private:
   /// What the running call, or the last one, is for.
-  enum class Asked { kPlan, kCapture, kRemoval };
+  enum class Asked { kPlan, kCapture };
 
   void build();
   void listen();
@@ -49,7 +49,6 @@ class HandGuide : public QWidget {
   void measure();
   void goOn();
   void askForCapture();
-  void askForRemoval();
   void finish();
   void showAdvice();
   void tellTarget();
@@ -67,6 +66,8 @@ class HandGuide : public QWidget {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;
+  std::optional<std::array<double, 3>>
+      pose_;  ///< planned, that is measured [rad]; or what is there
 
   QPushButton* plan_ = nullptr;
   QSpinBox* poses_ = nullptr;

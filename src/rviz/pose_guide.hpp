@@ -42,6 +42,8 @@ class PoseGuide {
   std::optional<std::array<double, 3>> target() const;
   /// Index of the pose where the rotor is; the first that is not measured, if there are several.
   std::optional<std::size_t> here() const;
+  /// Joint angles of a pose [rad].
+  const std::array<double, 3>& joints(std::size_t pose) const { return poses_.at(pose).joints; }
   /// Coils to excite at a pose that no sample holds yet, counted from 1, in turn; 0: without
   /// current, which comes first. None where all coils are measured, and anything at all.
   std::vector<std::uint32_t> missing(std::size_t pose) const;

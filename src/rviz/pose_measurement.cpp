@@ -48,7 +48,6 @@ void PoseMeasurement::beginPattern(double now) {
   began_ = now;
   settled_ = -1.0;
   is_asked_ = false;
-  is_removing_ = false;
 }
 
 PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measured, double now) {
@@ -57,10 +56,6 @@ PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measure
   }
   if (is_asked_) {
     return Action::kNothing;
-  }
-  if (is_removing_) {
-    is_asked_ = true;
-    return Action::kRemove;
   }
   if (!carries(measured)) {
     settled_ = -1.0;
@@ -81,35 +76,20 @@ PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measure
 }
 
 void PoseMeasurement::captured(const CaptureOutcome& outcome, double now) {
-  if (!isRunning() || !is_asked_ || is_removing_) {
+  if (!isRunning() || !is_asked_) {
+    return;
+  }
+  if (outcome.rest_interrupted) {
+    patterns_.insert(patterns_.begin() + static_cast<std::ptrdiff_t>(place_), 0);
+    beginPattern(now);
     return;
   }
   if (!outcome.success) {
     end(outcome.message);
     return;
   }
-  if (coil() == 0) {
-    rest_ = outcome.rest;
-  } else if (outcome.rest != rest_) {
-    flawed_ = outcome.sample;
-    is_removing_ = true;
-    is_asked_ = false;
-    return;
-  }
   ++samples_;
   advance(now);
-}
-
-void PoseMeasurement::removed(bool success, const std::string& message, double now) {
-  if (!isRunning() || !is_asked_ || !is_removing_) {
-    return;
-  }
-  if (!success) {
-    end(message);
-    return;
-  }
-  patterns_.insert(patterns_.begin() + static_cast<std::ptrdiff_t>(place_), 0);
-  beginPattern(now);
 }
 
 void PoseMeasurement::advance(double now) {

@@ -19,20 +19,18 @@ struct CurrentRule {
 /// What a capture gave.
 struct CaptureOutcome {
   bool success = false;
-  std::string message;       ///< one sentence
-  std::uint32_t sample = 0;  ///< its id
-  std::uint64_t rest = 0;    ///< begin of the rest that it belongs to [ns]
+  std::string message;            ///< one sentence
+  bool rest_interrupted = false;  ///< the torque without current is to be measured anew
 };
 
 /// Measures a pose: excites coils in turn, waits until they carry their current, and has each
-/// captured. A torque contains what acts without current where that was measured in another rest,
-/// as when a stream has stopped meanwhile: such a sample is removed, and the rest begins with its
-/// zero again. It decides; who asks it publishes and calls. Knows no windows. Times by a steady
-/// clock.
+/// captured. What a sample must be is for the calibration node to decide; where it tells that the
+/// rest was interrupted, that begins with its zero again. Who asks it publishes and calls. Knows no
+/// windows. Times by a steady clock.
 class PoseMeasurement {
  public:
   /// What is to be done now.
-  enum class Action { kNothing, kCapture, kRemove, kEnd };
+  enum class Action { kNothing, kCapture, kEnd };
 
   void judgeBy(const CurrentRule& rule) { rule_ = rule; }
 
@@ -41,14 +39,10 @@ class PoseMeasurement {
   void begin(std::vector<std::uint32_t> patterns, double current, double now);
   bool isRunning() const { return place_ < patterns_.size(); }
 
-  /// `measured`: the last currents [A], one per coil. kCapture is told once for each pattern,
-  /// kRemove once for a sample that must go.
+  /// `measured`: the last currents [A], one per coil. kCapture is told once for each pattern.
   Action step(const std::vector<double>& measured, double now);
-  /// To a capture that was asked for. What failed ends the measurement.
+  /// To a capture that was asked for. What else failed ends the measurement.
   void captured(const CaptureOutcome& outcome, double now);
-  /// To the removal of flawedSample(). What failed ends the measurement.
-  void removed(bool success, const std::string& message, double now);
-  std::uint32_t flawedSample() const { return flawed_; }
   void end(const std::string& reason);
 
   /// To be commanded now: the coil, counted from 1, or 0, and its current [A].
@@ -69,9 +63,6 @@ class PoseMeasurement {
   double began_ = 0.0;
   double settled_ = -1.0;  ///< since when the currents are those wanted; negative: they are not
   bool is_asked_ = false;
-  bool is_removing_ = false;  ///< flawed_ must go first
-  std::uint32_t flawed_ = 0;
-  std::uint64_t rest_ = 0;   ///< whose torque without current is measured
   std::size_t samples_ = 0;  ///< that are kept
   std::string outcome_;
 };

@@ -11,7 +11,7 @@
 
 #include <ros/service.h>
 
-#include "spherical_actuator_calibration/Capture.h"
+#include "spherical_actuator_calibration/CapturePlanned.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
@@ -22,7 +22,7 @@ struct ServiceAnswer {
   bool success = false;
   std::string message;                  ///< one sentence
   std::vector<msg::PlannedPose> poses;  ///< of plan_poses
-  msg::CalibrationSample sample;        ///< of capture
+  std::string flaw;                     ///< of capture_planned
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -48,8 +48,8 @@ class ServiceCaller {
       if constexpr (std::is_same_v<Service, msg::PlanPoses>) {
         answer.poses = service.response.poses;
       }
-      if constexpr (std::is_same_v<Service, msg::Capture>) {
-        answer.sample = service.response.sample;
+      if constexpr (std::is_same_v<Service, msg::CapturePlanned>) {
+        answer.flaw = service.response.flaw;
       }
       return answer;
     });

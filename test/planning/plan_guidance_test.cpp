@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {

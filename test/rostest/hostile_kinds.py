@@ -324,6 +324,7 @@ REQUESTS = {
     "a negative duration": ("calibration/capture", struct.pack("<d?", -1.0, True)),
     "revision 4294967295": ("calibration/restore", struct.pack("<I", 0xFFFFFFFF)),
     "sample 4294967295": ("calibration/remove_sample", struct.pack("<I", 0xFFFFFFFF)),
+    "coil -2147483648": ("calibration/capture_planned", struct.pack("<3dIid?", 0.0, 0.0, 0.0, 1, -(2**31), 0.1, False)),
     "coil 4294967295": ("calibration/calibrate_coil", struct.pack("<I", 0xFFFFFFFF)),
     "no coil": ("calibration/calibrate_poles", struct.pack("<I", 0)),
     "a path for a cycle": ("calibration/plan_poses", text(TRICK) + struct.pack("<IId", 1, 1, 0.0) + REST_OF_PLAN),

@@ -24,8 +24,8 @@ PoseMeasurement judged() {
   return measurement;
 }
 
-CaptureOutcome sample(std::uint32_t id, std::uint64_t rest) {
-  return {true, "", id, rest};
+CaptureOutcome stored() {
+  return {true, "", false};
 }
 
 /// One pattern, from its settling to its capture.
@@ -45,7 +45,7 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
   EXPECT_EQ(measurement.step(zero(), 0.0), Action::kNothing);
   EXPECT_EQ(measurement.step(zero(), 0.4), Action::kCapture);
   EXPECT_EQ(measurement.step(zero(), 0.5), Action::kNothing);
-  measurement.captured(sample(1, 7), 1.0);
+  measurement.captured(stored(), 1.0);
   EXPECT_EQ(measurement.coil(), 2U);
   EXPECT_EQ(measurement.current(), 2.0);
   EXPECT_EQ(measurement.step(zero(), 1.1), Action::kNothing);
@@ -54,7 +54,7 @@ TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
   EXPECT_EQ(measurement.step(zero(), 1.4), Action::kNothing);
   EXPECT_EQ(measurement.step(second(), 1.6), Action::kNothing);
   EXPECT_EQ(measurement.step(second(), 2.0), Action::kCapture);
-  measurement.captured(sample(2, 7), 3.0);
+  measurement.captured(stored(), 3.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.outcome(), "The pose is measured: 2 samples.");
@@ -64,7 +64,7 @@ TEST(PoseMeasurement, EndsWhereACoilDoesNotCarryItsCurrent) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   EXPECT_EQ(measurement.step({}, 1.0), Action::kNothing);
-  measure(measurement, zero(), sample(1, 7), 2.0);
+  measure(measurement, zero(), stored(), 2.0);
   EXPECT_EQ(measurement.step(zero(), 13.1), Action::kEnd);
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.outcome(), "Coil 2 does not carry its current: look at the coil driver.");
@@ -79,7 +79,7 @@ TEST(PoseMeasurement, TakesACurrentThatTheNodeWouldTellFromNone) {
   measurement.begin({0}, 0.05, 0.0);
   EXPECT_TRUE(measurement.isRunning());
   measurement.begin({0, 2}, -0.09, 0.0);
-  measure(measurement, zero(), sample(1, 7), 1.0);
+  measure(measurement, zero(), stored(), 1.0);
   measurement.step({0.0, -0.04, 0.0}, 3.0);
   EXPECT_EQ(measurement.step({0.0, -0.04, 0.0}, 4.0), Action::kNothing);
   measurement.step({0.0, -0.06, 0.0}, 5.0);
@@ -91,7 +91,7 @@ TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
   measurement.begin({0, 2}, 2.0, 0.0);
   measurement.step(zero(), 0.0);
   ASSERT_EQ(measurement.step(zero(), 1.0), Action::kCapture);
-  measurement.captured({false, "The rotor moved.", 0, 0}, 2.0);
+  measurement.captured({false, "The rotor moved.", false}, 2.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.outcome(), "The rotor moved.");
 }
@@ -99,10 +99,10 @@ TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
 TEST(PoseMeasurement, AnswersThatNobodyAskedForChangeNothing) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
-  measurement.captured(sample(9, 7), 0.1);
+  measurement.captured(stored(), 0.1);
   EXPECT_EQ(measurement.coil(), 0U);
   measurement.end("Stopped.");
-  measurement.captured(sample(9, 7), 0.2);
+  measurement.captured(stored(), 0.2);
   EXPECT_EQ(measurement.outcome(), "Stopped.");
 }
 
@@ -110,36 +110,22 @@ TEST(PoseMeasurement, BeginsWithoutCurrentInAnyCase) {
   PoseMeasurement measurement = judged();
   measurement.begin({2}, 2.0, 0.0);
   EXPECT_EQ(measurement.coil(), 0U);
-  measure(measurement, zero(), sample(1, 7), 1.0);
+  measure(measurement, zero(), stored(), 1.0);
   EXPECT_EQ(measurement.coil(), 2U);
 }
 
-TEST(PoseMeasurement, ATorqueOfAnotherRestGoesAndItsZeroIsMeasuredAnew) {
+TEST(PoseMeasurement, AfterAnInterruptedRestItsZeroIsMeasuredAnew) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
-  measure(measurement, zero(), sample(1, 7), 1.0);
-  measure(measurement, second(), sample(2, 8), 2.0);
-  EXPECT_EQ(measurement.step(second(), 3.1), Action::kRemove);
-  EXPECT_EQ(measurement.flawedSample(), 2U);
-  EXPECT_EQ(measurement.step(second(), 3.2), Action::kNothing);
-  measurement.removed(true, "", 3.3);
+  measure(measurement, zero(), stored(), 1.0);
+  measure(measurement, second(), {false, "The rest was interrupted.", true}, 2.0);
+  EXPECT_TRUE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
-  measure(measurement, zero(), sample(3, 8), 4.0);
+  measure(measurement, zero(), stored(), 4.0);
   EXPECT_EQ(measurement.coil(), 2U);
-  measure(measurement, second(), sample(4, 8), 5.0);
+  measure(measurement, second(), stored(), 5.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.outcome(), "The pose is measured: 3 samples.");
-}
-
-TEST(PoseMeasurement, EndsWhereASampleCannotBeRemoved) {
-  PoseMeasurement measurement = judged();
-  measurement.begin({0, 2}, 2.0, 0.0);
-  measure(measurement, zero(), sample(1, 7), 1.0);
-  measure(measurement, second(), sample(2, 8), 2.0);
-  measurement.step(second(), 3.1);
-  measurement.removed(false, "Sample 2 is not in use.", 3.3);
-  EXPECT_FALSE(measurement.isRunning());
-  EXPECT_EQ(measurement.outcome(), "Sample 2 is not in use.");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ from spherical_actuator_calibration.session_guide.calibration import excitations
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
 from spherical_actuator_calibration.session_guide.terminal import Terminal
+from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 
 TOLERANCE = 0.05  # [rad] of one pose
@@ -259,35 +260,29 @@ class WaitingForCurrent(unittest.TestCase):
 
 
 class Bench:
-    """A calibration node and its laboratory at one pose; `rests` says in which rest each capture falls."""
+    """A calibration node and its laboratory at one pose; `flaws` are what the node says of each capture."""
 
     POSE = Pose((0.1, 0.0, 0.0), ((3,),))
 
-    def __init__(self, rests, places=()):
-        self._rests = iter(rests)
-        self._places = iter(places)
+    def __init__(self, flaws):
+        self._flaws = iter(flaws)
         self.pattern = ()
-        self.held = {}
+        self.held = []
         self.log = []
 
     def excite(self, pattern, _current):
         self.pattern = pattern
 
-    def capture(self, _duration, _validation):
-        number = len(self.log)
-        place = next(self._places, self.POSE.joints)
-        self.held[number] = SimpleNamespace(
-            id=number, has_orientation=True, has_torque=True, dwell=next(self._rests), joint_position=place, is_of=self.pattern
-        )
-        self.log.append(self.pattern)
-        return SimpleNamespace(success=True, sample=self.held[number])
+    def capture_planned(self, pose, pattern, _duration):
+        assert pose is self.POSE and pattern == self.pattern
+        flaw = next(self._flaws)
+        self.log.append(pattern)
+        if flaw is None or not flaw:
+            self.held.append(Measured(pose.joints, pattern, pose.validation))
+        return None if flaw is None else SimpleNamespace(success=not flaw, message=f"Flaw: {flaw}.", flaw=flaw)
 
-    def call(self, _service, **fields):
-        del self.held[fields["id"]]
-
-    @staticmethod
-    def pattern_of(sample):
-        return sample.is_of
+    def measured(self):
+        return self.held
 
     @staticmethod
     def pose_tolerance():
@@ -303,33 +298,41 @@ class Bench:
 
 
 class CapturingAPose(unittest.TestCase):
-    def captured(self, rests, places=()):
+    def captured(self, flaws):
         """The bench after a pose, and what was said."""
-        bench, screen = Bench(rests, places), Screen(False)
+        bench, screen = Bench(flaws), Screen(False)
         guided = session.Session.__new__(session.Session)
-        guided._options, guided._current, guided._rest = Options(), 2.0, None
+        guided._options, guided._current = Options(), 2.0
         guided._terminal, guided._laboratory, guided._calibration = Terminal(screen), bench, bench
-        guided._wait_for_rest = lambda pose: bench.log.append("rest")
+        guided._wait_for_rest = lambda pose: bench.log.append("rest" if not bench.pattern else "current is on")
         with mock.patch.object(session, "rospy", SimpleNamespace(get_time=lambda: 0.0, sleep=lambda _: None)):
             for pattern in progress.patterns_to_capture(Bench.POSE, [], TOLERANCE):
                 guided._capture(Bench.POSE, pattern)
         return bench, screen.getvalue()
 
     def test_in_one_rest(self):
-        bench, said = self.captured([1, 1])
+        bench, said = self.captured(["", ""])
         self.assertEqual(bench.log, [(), (3,)])
         self.assertEqual(said, "")
 
-    def test_a_torque_of_another_rest_than_the_one_without_current_goes(self):
-        bench, said = self.captured([1, 2, 2, 2])
+    def test_after_an_interrupted_rest_that_without_current_is_captured_anew(self):
+        bench, said = self.captured(["", CapturePlannedResponse.REST, "", ""])
         self.assertEqual(bench.log, [(), (3,), (), (3,)])
-        self.assertEqual([(s.dwell, s.is_of) for s in bench.held.values()], [(1, ()), (2, ()), (2, (3,))])
-        self.assertIn("The rest was interrupted", said)
+        self.assertIn("Flaw: rest.", said)
 
     def test_a_rotor_that_has_left_is_waited_for(self):
-        bench, said = self.captured([1, 1, 1], [(0.1, 0.0, 0.0), (0.1, 0.2, 0.0)])
+        bench, said = self.captured(["", CapturePlannedResponse.POSE, ""])
         self.assertEqual(bench.log, [(), (3,), "rest", (3,)])
-        self.assertIn("has left the pose", said)
+        self.assertIn("Flaw: pose.", said)
+
+    def test_another_flaw_asks_for_another_capture(self):
+        for flaw in (CapturePlannedResponse.CURRENTS, CapturePlannedResponse.TORQUE, CapturePlannedResponse.ORIENTATION):
+            bench, _ = self.captured(["", flaw, ""])
+            self.assertEqual(bench.log, [(), (3,), (3,)])
+
+    def test_a_sample_whose_answer_was_lost_counts(self):
+        bench, _ = self.captured(["", None])
+        self.assertEqual(bench.log, [(), (3,)])
 
 
 class Screen(io.StringIO):

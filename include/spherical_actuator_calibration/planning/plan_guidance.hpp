@@ -9,11 +9,6 @@ namespace sac {
 
 struct PlannedPose;
 
-/// Joint angles that differ by at most this from those of a planned pose are at it [rad], as a hand
-/// meets it: half of the least spacing of planned poses (PosePlanOptions). Panel and guided session
-/// have it from the message CalibrationStatus.
-inline constexpr double kPoseTolerance = 0.05;
-
 /// What the operator of a plan does next, in a sentence with the pose [rad and degrees] and the
 /// coils; empty when each pose is measured. A pose is measured when samples at it, held out or not,
 /// have each of its patterns or its opposite, or when one is there where it has none.

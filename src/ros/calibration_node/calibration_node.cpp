@@ -61,6 +61,7 @@ void CalibrationNode::advertiseServices() {
     services_.push_back(private_node_.advertiseService(name, callback, this));
   };
   advertise("capture", &CalibrationNode::capture);
+  advertise("capture_planned", &CalibrationNode::capturePlanned);
   advertise("list_samples", &CalibrationNode::listSamples);
   advertise("remove_sample", &CalibrationNode::removeSample);
   advertise("set_auto_capture", &CalibrationNode::setAutoCapture);

@@ -1,10 +1,14 @@
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "spherical_actuator_calibration/planning/time_budget.hpp"
@@ -25,7 +29,58 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
+/// Throws ConfigError for what is no pattern of an actuator with so many coils.
+PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request, std::size_t coils) {
+  PlannedCapture planned;
+  planned.joint_position = Eigen::Vector3d(request.joint_position.data());
+  std::size_t before = 0;
+  for (const std::int32_t signed_number : request.coils) {
+    const auto number =
+        static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(signed_number)));
+    if (number <= before || number > coils) {
+      throw ConfigError("coils: numbers from 1 to " + std::to_string(coils) +
+                        " in ascending order, negative where the current is.");
+    }
+    planned.pattern.push_back({number - 1, signed_number < 0 ? -1 : 1});
+    before = number;
+  }
+  return planned;
+}
+
 }  // namespace
+
+bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
+                                     msg::CapturePlanned::Response& response) {
+  try {
+    // The model never changes while the node runs.
+    const CalibrationSession& calibration = session_.calibration();
+    const PlannedCapture planned = plannedCapture(request, calibration.model().space().coils());
+    const double duration = request.duration == 0.0 ? options_.capture_duration : request.duration;
+    const CaptureProgress progress = intake_.waitForCapture(captureDuration(planned, duration));
+    if (!progress.sample) {
+      response.message = "No sample: " + progress.message;
+      return true;
+    }
+    Sample sample = *progress.sample;
+    sample.validation = request.validation != 0;
+    const std::lock_guard<std::mutex> lock(session_mutex_);
+    const CaptureFlaw flaw = captureFlaw(
+        sample, planned, calibration.samples(), calibration.config().estimation.current_threshold);
+    if (flaw != CaptureFlaw::kNone) {
+      response.flaw = flawName(flaw);
+      response.message = flawInWords(flaw);
+      return true;
+    }
+    sample = store(sample);
+    response.sample = topics_.sampleMessage(sample);
+    response.message = "Sample " + std::to_string(sample.id) + " is stored." +
+                       (progress.message.empty() ? "" : " " + progress.message);
+    response.success = 1;
+  } catch (const std::exception& error) {
+    response.message = printable(error.what());
+  }
+  return true;
+}
 
 // Planning takes seconds: it works on a copy, so that nothing waits for it.
 bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,

@@ -9,7 +9,7 @@
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
-#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"

@@ -2,7 +2,7 @@
 
 import rospy
 from spherical_actuator_calibration.msg import CalibrationStatus
-from spherical_actuator_calibration.srv import Calibrate, Capture, ListSamples, PlanPoses, RemoveSample
+from spherical_actuator_calibration.srv import Calibrate, Capture, CapturePlanned, ListSamples, PlanPoses
 from std_srvs.srv import Trigger
 
 from .progress import Measured, Pose, excited_coils, service_of
@@ -12,10 +12,10 @@ SERVICES = {
     "calibrate_joint": Calibrate,
     "calibrate_poles": Calibrate,
     "capture": Capture,
+    "capture_planned": CapturePlanned,
     "list_samples": ListSamples,
     "plan_poses": PlanPoses,
     "refine": Calibrate,
-    "remove_sample": RemoveSample,
     "save": Trigger,
     "validate": Calibrate,
 }
@@ -89,6 +89,16 @@ class Calibration:
         """Answer, or None when it is not known whether a sample was stored."""
         return self._call("capture", duration=duration, validation=validation)
 
+    def capture_planned(self, pose, pattern, duration):
+        """Likewise, of one pattern of a pose: the node keeps only what serves it, and answers with the flaw."""
+        return self._call(
+            "capture_planned",
+            joint_position=pose.joints,
+            coils=pattern,
+            duration=duration,
+            validation=pose.validation,
+        )
+
     def run(self, cycle):
         """Answer of a cycle, as the status names it."""
         service, coil = service_of(cycle)
@@ -101,7 +111,7 @@ class Calibration:
     def measured(self):
         """Samples that are held."""
         samples = self.call("list_samples").samples
-        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation, s.dwell) for s in samples]
+        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation) for s in samples]
 
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""

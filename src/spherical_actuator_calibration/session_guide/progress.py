@@ -28,12 +28,11 @@ class Pose:
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here: where, which pattern, whether held out, in which rest (when that began)."""
+    """What counts of a sample here: where, which pattern, whether held out."""
 
     joints: tuple
     pattern: tuple
     validation: bool
-    rest: object = None
 
 
 def excited_coils(currents, threshold):

@@ -3,6 +3,7 @@
 import math
 
 import rospy
+from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 from . import progress
 from .calibration import Calibration
@@ -11,8 +12,6 @@ from .plans import read_plan, read_session
 from .progress import Progress
 
 POLL = 0.05  # [s]
-# Times as long without current as with it: all torques of a pose share the bias that is measured then.
-ZERO_CAPTURE = 3.0
 FURTHER_POSES = 2  # that are added at a time until the calibration is complete
 MOST_ROUNDS = 4
 SLOW = 5.0  # [s] after which the operator is told what the session waits for
@@ -39,7 +38,6 @@ class Session:
         self._calibration = Calibration(options.ns, terminal)
         self._laboratory = Laboratory(options.ns, self._coils, self._names)
         self._progress = None
-        self._rest = None  # begin of the rest whose torque without current is measured
         self._uncertainty = ""
 
     def run(self):
@@ -219,53 +217,33 @@ class Session:
 
     def _capture(self, pose, pattern):
         """Captures one pattern; repeats, and says why, until a sample of it is held."""
-        duration = self._options.dwell * (1.0 if pattern else ZERO_CAPTURE)
         while True:
             self._laboratory.excite(pattern, self._current)
             self._wait_for_current(pattern)
             rospy.sleep(min(self._settling(), 0.1))
-            answer = self._calibration.capture(duration, pose.validation)
+            answer = self._calibration.capture_planned(pose, pattern, self._options.dwell)
             if answer is None:
                 if pattern and self._holds(pose, pattern):
                     return
-            elif not answer.success:
-                self._terminal.say_once(answer.message)
-                rospy.sleep(POLL)
-            elif self._accept(answer.sample, pose, pattern):
+                continue
+            if answer.success:
                 return
+            self._terminal.say_once(answer.message)
+            self._mend(answer.flaw, pose)
+            rospy.sleep(POLL)
 
     def _holds(self, pose, pattern):
-        """Whether a sample of the present rest has the pattern, though its answer was lost."""
-        return any(s.rest == self._rest and s.pattern == pattern for s in self._measured())
+        """Whether a sample has the pattern, though its answer was lost."""
+        missing = progress.missing_patterns(pose, self._measured(), self._calibration.pose_tolerance())
+        return pattern not in missing
 
-    def _accept(self, sample, pose, pattern):
-        """Whether a sample holds what it was made for. Else it goes, its flaw is told, and mended where that can be."""
-        sentence, mend = self._flaw(sample, pose, pattern)
-        if not sentence:
-            self._rest = self._rest if pattern else sample.dwell
-            return True
-        self._calibration.call("remove_sample", id=sample.id)
-        self._terminal.say_once(sentence)
-        if mend is not None:
+    def _mend(self, flaw, pose):
+        """What is to be done about a flaw that the node tells of, beside another capture."""
+        if flaw == CapturePlannedResponse.POSE:
             self._laboratory.excite((), 0.0)
-            mend()
-        return False
-
-    def _flaw(self, sample, pose, pattern):
-        """What a sample lacks, and what is to be done about it beside another capture."""
-        if not sample.has_orientation:
-            return "The sample has no orientation: check the tracker.", None
-        if self._calibration.pattern_of(sample) != pattern:
-            return "The currents changed during the capture: check the amplifier.", None
-        if pattern and not sample.has_torque:
-            return "The sample has no torque: check the force/torque sensor.", None
-        if not pose.is_at(sample.joint_position, self._calibration.pose_tolerance()):
-            return "The rotor has left the pose: bring it back.", lambda: self._wait_for_rest(pose)
-        if pattern and sample.dwell != self._rest:
-            # What acts without current is known of an earlier rest only, and still in this torque.
-            sentence = "The rest was interrupted: the torque without current is measured anew."
-            return sentence, lambda: self._capture(pose, ())
-        return "", None
+            self._wait_for_rest(pose)
+        elif flaw == CapturePlannedResponse.REST:
+            self._capture(pose, ())
 
     def _look_at_the_joint(self):
         """Tells how well the joint is known so far, as soon as enough poses are measured."""

@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/CapturePlanned.h"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
@@ -319,6 +321,16 @@ TEST(MsgConversion, AValidationSucceedsOnlyWhereHeldOutSamplesAgree) {
   validation.probability = 1e-6;
   EXPECT_FALSE(validationToRos(validation, {Grade::kContradicted, ""}).success);
   EXPECT_FALSE(validationToRos({}, {Grade::kNotValidated, ""}).success);
+}
+
+// The service has its own constants for the flaws that the core names.
+TEST(MsgConversion, FlawsOfPlannedCapturesHaveTheNamesOfTheService) {
+  using Response = msg::CapturePlannedResponse;
+  EXPECT_EQ(flawName(CaptureFlaw::kOrientation), Response::ORIENTATION);
+  EXPECT_EQ(flawName(CaptureFlaw::kCurrents), Response::CURRENTS);
+  EXPECT_EQ(flawName(CaptureFlaw::kTorque), Response::TORQUE);
+  EXPECT_EQ(flawName(CaptureFlaw::kPose), Response::POSE);
+  EXPECT_EQ(flawName(CaptureFlaw::kRest), Response::REST);
 }
 
 }  // namespace

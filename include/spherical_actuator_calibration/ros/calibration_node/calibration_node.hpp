@@ -11,6 +11,7 @@
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
 #include <spherical_actuator_calibration/Capture.h>
+#include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
 #include <spherical_actuator_calibration/ListSamples.h>
 #include <spherical_actuator_calibration/RemoveSample.h>
@@ -57,6 +58,8 @@ class CalibrationNode {
 
   // Samples.
   bool capture(msg::Capture::Request& request, msg::Capture::Response& response);
+  bool capturePlanned(msg::CapturePlanned::Request& request,
+                      msg::CapturePlanned::Response& response);
   bool listSamples(msg::ListSamples::Request& request, msg::ListSamples::Response& response);
   bool removeSample(msg::RemoveSample::Request& request, msg::RemoveSample::Response& response);
   bool setAutoCapture(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);

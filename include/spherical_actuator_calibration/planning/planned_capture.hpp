@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
+
+namespace sac {
+
+/// Joint angles that differ by at most this from those of a planned pose are at it [rad], as a hand
+/// meets it: half of the least spacing of planned poses (PosePlanOptions). Panel and guided session
+/// have it from the message CalibrationStatus.
+inline constexpr double kPoseTolerance = 0.05;
+
+/// What is captured at one time: a pattern of a planned pose, without current where it has no coil.
+struct PlannedCapture {
+  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
+  CoilPattern pattern;
+};
+
+/// Why a sample does not serve the capture that it was made for.
+enum class CaptureFlaw {
+  kNone,
+  kOrientation,  ///< it has none
+  kCurrents,     ///< of another pattern
+  kTorque,       ///< it has none, though it has current
+  kPose,         ///< away from it
+  kRest,         ///< no sample without current is held of its rest
+};
+
+/// Coils that count as excited in a sample, with their signs; one below `current_threshold` [A] is
+/// off.
+CoilPattern patternOf(const Sample& sample, double current_threshold);
+
+/// Whether a sample was taken at planned joint angles, see kPoseTolerance.
+bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position);
+
+/// Judges a sample that is not held yet. What acts without current is taken off the torques of its
+/// rest: where no held sample of that rest is without current, they still contain it.
+CaptureFlaw captureFlaw(const Sample& sample,
+                        const PlannedCapture& planned,
+                        const std::vector<Sample>& held,
+                        double current_threshold);
+
+/// orientation, currents, torque, pose, rest, as in the service CapturePlanned; empty for none.
+std::string flawName(CaptureFlaw flaw);
+/// What the operator is to see to, in a sentence; empty for none.
+std::string flawInWords(CaptureFlaw flaw);
+
+/// For how long to average [s], where a pattern with current takes `duration`: three times as long
+/// without, as all torques of the rest share the error of what is measured then.
+double captureDuration(const PlannedCapture& planned, double duration);
+
+}  // namespace sac
