@@ -36,7 +36,7 @@ void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current,
     std::snprintf(text,
                   sizeof(text),
                   "%.3g A are too little to tell a coil from one that is off: take %.3g A or more.",
-                  std::abs(current),
+                  std::fabs(current),
                   rule_.least);
     end(text);
     return;

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kLengthSize = sizeof(std::uint32_t);
 
 std::size_t lengthAt(const FileBytes& file, std::uint64_t position, std::size_t largest) {
-  const std::size_t length = numberAt<std::uint32_t>(file.at(position, kLengthSize), 0);
+  const std::string bytes = file.at(position, kLengthSize);
+  const std::size_t length = numberAt<std::uint32_t>(bytes, 0);
   if (length > largest) {
     throw BagDefect("a record says that it is " + std::to_string(length) + " bytes long; " +
                     std::to_string(largest) + " are the most that is read");
