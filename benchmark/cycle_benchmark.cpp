@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 
 #include <benchmark/benchmark.h>
 
@@ -107,7 +108,7 @@ BENCHMARK_CAPTURE(iterate, refine, Cycle::kRefine)->Arg(132)->Unit(benchmark::kM
 BENCHMARK_CAPTURE(runWholeCycle, refine, Cycle::kRefine)
     ->Arg(132)
     ->RangeMultiplier(10)
-    ->Range(100, 10 * kMany)
+    ->Range(100, std::int64_t{10} * kMany)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(refineManyCoils)
     ->Arg(24)
