@@ -35,7 +35,7 @@ template <typename Number>
 Number numberAt(std::string_view bytes, std::size_t offset) {
   static_assert(std::is_unsigned_v<Number>);
   Number number = 0;
-  std::memcpy(&number, bytes.data() + offset, sizeof number);
+  std::memcpy(&number, &bytes[offset], sizeof number);
   return boost::endian::little_to_native(number);
 }
 
