@@ -3,13 +3,13 @@
 import rospy
 from geometry_msgs.msg import QuaternionStamped
 from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.joint_readings import JointReadings
 from spherical_actuator_calibration.msg import ActuatorParameters
 from std_srvs.srv import SetBool
 
 from .rotations import quaternion_of, rotation_exp, rotation_of
 
 TARGET_RATE = 100.0  # [Hz]
-STALE = 0.5  # [s]
 STARTING = 5.0  # [s] for the inputs of the controller
 PATIENCE = 30.0  # [s] for topics and services that must be there
 
@@ -22,21 +22,11 @@ class CoilDrive:
         self._ns = ns
         self._frame = rospy.get_param(f"{ns}/orientation_controller/frames/stator", "stator")
         self._names = [joint["name"] for joint in rospy.get_param(f"{ns}/actuator/joints")]
-        self._joints = None
-        self._joints_time = None
+        self._readings = JointReadings(ns, self._names)
         self.parameters = None
         self._targets = rospy.Publisher(f"{ns}/orientation_target", QuaternionStamped, queue_size=1)
         self._joint_targets = rospy.Publisher(f"{ns}/joint_target", JointState, queue_size=1)
-        self._subscribers = [
-            rospy.Subscriber(f"{ns}/joint_states", JointState, self._keep_joints),
-            rospy.Subscriber(f"{ns}/parameters", ActuatorParameters, self._keep_parameters),
-        ]
-
-    def _keep_joints(self, message):
-        by_name = dict(zip(message.name, message.position))
-        if all(name in by_name for name in self._names):
-            self._joints = tuple(by_name[name] for name in self._names)
-            self._joints_time = rospy.get_time()
+        self._subscriber = rospy.Subscriber(f"{ns}/parameters", ActuatorParameters, self._keep_parameters)
 
     def _keep_parameters(self, message):
         self.parameters = message
@@ -54,7 +44,7 @@ class CoilDrive:
     def start(self, fixture):
         """Enables the control; with the name of an emulated laboratory, its fixture lets the rotor go."""
         end = rospy.get_time() + PATIENCE
-        while self.parameters is None or self._joints is None:
+        while self.parameters is None or self._readings.fresh() is None:
             if rospy.get_time() > end:
                 raise RuntimeError(f"{self._ns}/parameters and joint_states do not come: start the laboratory.")
             rospy.sleep(0.05)
@@ -84,9 +74,10 @@ class CoilDrive:
 
     def joints(self):
         """Joint angles [rad]; raises RuntimeError without fresh ones."""
-        if self._joints_time is None or rospy.get_time() - self._joints_time > STALE:
+        joints = self._readings.fresh()
+        if joints is None:
             raise RuntimeError("No joint angles arrive: check the joint sensor.")
-        return self._joints
+        return joints
 
     def send(self, rotation):
         message = QuaternionStamped()

@@ -5,6 +5,7 @@ import threading
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
+from spherical_actuator_calibration.joint_readings import JointReadings
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
@@ -12,7 +13,6 @@ from .progress import carries
 
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
-STALE = 1.0  # [s] without joint angles
 
 
 class Laboratory:
@@ -21,8 +21,7 @@ class Laboratory:
     def __init__(self, ns, coils, joint_names):
         self._coils = coils
         self._names = list(joint_names)
-        self._joints = None
-        self._joints_time = None
+        self._readings = JointReadings(ns, joint_names)
         self._currents = None
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
@@ -31,18 +30,10 @@ class Laboratory:
         self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
         self._targets = rospy.Publisher(ns + "/fixture/target", JointState, queue_size=1, latch=True)
         self._subscribers = [
-            rospy.Subscriber(ns + "/joint_states", JointState, self._keep_joints),
             rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
             rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
         ]
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
-
-    def _keep_joints(self, message):
-        with self._lock:
-            by_name = dict(zip(message.name, message.position))
-            if all(name in by_name for name in self._names):
-                self._joints = tuple(by_name[name] for name in self._names)
-                self._joints_time = rospy.get_time()
 
     def _keep_currents(self, message):
         with self._lock:
@@ -62,9 +53,7 @@ class Laboratory:
 
     def joints(self):
         """Joint angles [rad]; None without fresh ones."""
-        with self._lock:
-            fresh = self._joints_time is not None and rospy.get_time() - self._joints_time < STALE
-            return self._joints if fresh else None
+        return self._readings.fresh()
 
     def excite(self, pattern, current):
         """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none."""
