@@ -11,8 +11,8 @@
 #include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 
 namespace sac {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
 

@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
+#include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
@@ -20,10 +20,6 @@ std::string patternText(const CoilPattern& pattern) {
     text += (coil.sign < 0 ? "-" : "+") + std::to_string(numberOf(coil.coil));
   }
   return text;
-}
-
-std::vector<CoilPattern> PlannedPose::excitations() const {
-  return patterns.empty() ? singly(coils) : patterns;
 }
 
 }  // namespace sac
