@@ -6,7 +6,6 @@ and of an amplifier with a watchdog of 0.5 s of its own; then, how long it took 
 its limit [s]. Exit status: 0 all is within the limits, 1 something is not.
 """
 
-import argparse
 import contextlib
 import dataclasses
 import math
@@ -32,6 +31,7 @@ from amplifier_faults import (
 from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command, outcome, status_of
 from links import free_port
 from sensor_faults import sensor_fault
+from spherical_actuator_calibration.command_line import parser
 
 SIMULATED = rospy.Time(978307200)  # the year 2001
 JUMP = 3600  # [s] of the wall clock
@@ -302,14 +302,14 @@ def first_good(fault, folder, limits, attempts):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(prog="fault_campaign", description=__doc__.split("\n\n", maxsplit=1)[0])
-    parser.add_argument("--short", action="store_true", help="one of each kind")
-    parser.add_argument("--only", default="", help="faults whose names have this part")
-    parser.add_argument(
+    command_line = parser("fault_campaign", __doc__)
+    command_line.add_argument("--short", action="store_true", help="one of each kind")
+    command_line.add_argument("--only", default="", help="faults whose names have this part")
+    command_line.add_argument(
         "--attempts", type=int, default=1, help="until each is within its limits, on a busy computer (%(default)s)"
     )
-    parser.add_argument("--patience", type=float, default=1.0, help="factor of all limits (%(default)s)")
-    return parser.parse_args(arguments)
+    command_line.add_argument("--patience", type=float, default=1.0, help="factor of all limits (%(default)s)")
+    return command_line.parse_args(arguments)
 
 
 def main():
