@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "si_units.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/covariance_file.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
@@ -38,22 +39,6 @@ class Element {
  private:
   tinyxml2::XMLPrinter& printer_;
 };
-
-/// A unit as D-SI writes it.
-std::string siUnit(const std::string& unit) {
-  if (unit == "rad") {
-    return "\\radian";
-  }
-  return unit == "1" ? "\\one" : "\\newton\\metre";
-}
-
-/// Of a product; a factor one is left out.
-std::string siProduct(const std::string& a, const std::string& b) {
-  if (a == "1" || b == "1") {
-    return siUnit(a == "1" ? b : a);
-  }
-  return a == b && a == "rad" ? "\\radian\\tothe{2}" : siUnit(a) + siUnit(b);
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;

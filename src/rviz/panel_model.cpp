@@ -43,18 +43,34 @@ std::string numbered(const std::string& name, std::size_t index) {
   return name + "_" + std::to_string(numberOf(index));
 }
 
-bool isPure(const std::string& unit) {
-  return unit.empty() || unit == "1";
+/// In what small quantities are shown: angles and torques in thousandths, others as they come.
+struct ShownUnit {
+  double factor;
+  std::string name;
+  const char* format;  ///< of printf
+};
+
+ShownUnit shownIn(const std::string& unit) {
+  if (unit == "rad" || unit == "N·m") {
+    return {1e3, "m" + unit, "%.3f"};
+  }
+  return {1.0, unit == "1" ? "" : unit, "%.2g"};
+}
+
+std::string withUnit(const char* format, double value, const std::string& unit) {
+  return number(format, value) + (unit.empty() ? "" : " " + unit);
 }
 
 ParameterLine line(const std::string& name, double value, double stddev, const std::string& unit) {
   if (!std::isfinite(stddev)) {
     return {name, "–", "not identified"};
   }
-  if (isPure(unit)) {
-    return {name, number("%.5f", value), "± " + number("%.2g", stddev)};
-  }
-  return {name, number("%.5f ", value) + unit, "± " + number("%.3f m", 1e3 * stddev) + unit};
+  const ShownUnit shown = shownIn(unit);
+  // Delays and inertia are small beside angles, torques and gains.
+  const char* const format = shown.name == unit && !unit.empty() ? "%.5g" : "%.5f";
+  return {name,
+          withUnit(format, value, unit == "1" ? "" : unit),
+          "± " + withUnit(shown.format, shown.factor * stddev, shown.name)};
 }
 
 /// A direction has two deviations, across it.
@@ -206,9 +222,10 @@ std::vector<SampleLine> PanelModel::samples() const {
   std::vector<SampleLine> lines;
   lines.reserve(residuals.size());
   for (const msg::SampleResidual& one : residuals) {
+    const ShownUnit shown = shownIn(one.unit);
     lines.push_back({one.id,
                      one.quantity,
-                     number("%.3f m", 1e3 * one.residual) + one.unit,
+                     withUnit("%.3f", shown.factor * one.residual, shown.name),
                      number("%.1f", one.standardized),
                      one.rejected == 0    ? ""
                      : one.reason.empty() ? "rejected"
@@ -219,10 +236,8 @@ std::vector<SampleLine> PanelModel::samples() const {
 
 std::vector<double> PanelModel::errorHistory() const {
   std::vector<double> errors = report_.error_history;
-  if (!isPure(report_.error_unit)) {
-    for (double& error : errors) {
-      error *= 1e3;
-    }
+  for (double& error : errors) {
+    error *= shownIn(report_.error_unit).factor;
   }
   return errors;
 }
@@ -231,8 +246,8 @@ std::string PanelModel::historyTitle() const {
   if (report_.cycle.empty()) {
     return "No cycle has run";
   }
-  return "Cycle " + cycleName(report_) + ": error [" +
-         (isPure(report_.error_unit) ? "1" : "m" + report_.error_unit) + "]";
+  const std::string unit = shownIn(report_.error_unit).name;
+  return "Cycle " + cycleName(report_) + ": error [" + (unit.empty() ? "1" : unit) + "]";
 }
 
 }  // namespace sac

@@ -182,6 +182,23 @@ TEST(PanelModel, EstimatesHaveTheUnitThatTheReportTells) {
   EXPECT_EQ(lines[1].uncertainty, "not identified");
 }
 
+TEST(PanelModel, NoPrefixStandsBeforeAUnitThatWouldTakeItOtherwise) {
+  msg::CalibrationReport message = report("1");
+  message.estimates[0].unit = "s²";
+  message.estimates[0].value = 1.234e-6;
+  message.estimates[0].stddev = 1.5e-8;
+  message.estimates[1].unit = "kg·m²";
+  message.estimates[1].value = 2.5e-3;
+  message.estimates[1].stddev = 1e-5;
+  PanelModel panel("/actuator");
+  panel.receive(message);
+  const auto lines = panel.estimates();
+  EXPECT_EQ(lines[0].value, "1.234e-06 s²");
+  EXPECT_EQ(lines[0].uncertainty, "± 1.5e-08 s²");
+  EXPECT_EQ(lines[1].value, "0.0025 kg·m²");
+  EXPECT_EQ(lines[1].uncertainty, "± 1e-05 kg·m²");
+}
+
 TEST(PanelModel, TheHistoryHasTheUnitThatTheReportTells) {
   PanelModel panel("/actuator");
   EXPECT_EQ(panel.historyTitle(), "No cycle has run");

@@ -157,6 +157,14 @@ class ReportPage(unittest.TestCase):
             self.assertAlmostEqual(float(value.replace("−", "-")), parameter["value"], delta=0.1 * parameter["stddev"])
             self.assertAlmostEqual(float(stddev), parameter["stddev"], delta=0.06 * parameter["stddev"])
 
+    def test_a_change_has_the_unit_of_its_parameter(self):
+        example = dict(self.figures["parameters"][0], nominal=1.0, value=1.00125, stddev=1e-5, identified=True, kind="effect")
+        expected = {"rad": "+1.25 mrad", "N·m": "+1.25 mN·m", "1": "+0.00125", "kg·m²": "+0.00125 kg·m²", "s²": "+0.00125 s²"}
+        examples = [dict(example, name=f"example_{number}", unit=unit) for number, unit in enumerate(expected)]
+        page = self.render(dict(self.figures, parameters=[*self.figures["parameters"], *examples]), "units")
+        self.assertEqual([page.row(one["name"])[-1] for one in examples], list(expected.values()))
+        self.assertTrue(page.row("example_3")[1].endswith(" kg·m²"))
+
     def test_names_what_is_not_identified(self):
         unidentified = [item["name"] for item in self.figures["parameters"] if not item["identified"]]
         self.assertIn("coil_3/azimuth", unidentified)

@@ -34,7 +34,7 @@ std::string describe(const EffectSelection& selection);
 /// One effect and the place of its coordinates.
 struct PlacedEffect {
   std::string name;
-  std::string unit;  ///< of its values: rad, N·m, or 1
+  std::string unit;  ///< of its values, in SI: rad, N·m, kg·m² and so on, or 1
   LaboratoryEffect::ActsOn acts_on = LaboratoryEffect::ActsOn::kEverything;
   LaboratoryEffect::BelongsTo belongs_to = LaboratoryEffect::BelongsTo::kActuator;
   Eigen::Index first = 0;  ///< among the coordinates of all effects

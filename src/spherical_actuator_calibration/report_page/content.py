@@ -136,7 +136,7 @@ class Report:
             "compared": len(moved),
             "beyond": sum(ratio > 3.0 for ratio, _, _ in moved),
             "rows": [
-                {"name": item["name"], "change": signed(1e3 * change), "ratio": significant(ratio)}
+                {"name": item["name"], "change": signed(change, item["unit"]), "ratio": significant(ratio)}
                 for ratio, item, change in moved[:MOST_INFLUENTIAL]
                 if ratio > 0.0
             ],
@@ -160,7 +160,7 @@ class Report:
             "name": item["name"],
             "nominal": f"{item['nominal']:.6g}".replace("-", "−"),
             "value": f"{plus_minus(item['value'], item['stddev'])} {unit}".strip(),
-            "change": signed(1e3 * (item["value"] - item["nominal"])) if item["identified"] or has_moved else "–",
+            "change": signed(item["value"] - item["nominal"], item["unit"]) if item["identified"] or has_moved else "–",
             "identified": item["identified"],
             "tag": "" if item["identified"] else "not identified" + (", relative only" if has_moved else ""),
         }

@@ -14,7 +14,7 @@ import matplotlib.ticker
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.patches import Rectangle
 
-from .numbers import SHOWN, significant, with_unit
+from .numbers import shown_in, significant, with_unit
 
 SIZE = (4.7, 3.0)  # [inch]
 PIXELS_PER_INCH = 150  # of what is drawn as pixels
@@ -112,7 +112,7 @@ def convergence(kind, error_unit, cycles):
     """Error before the first and after each iteration, of all cycles of one kind (paper, Figures 7, 10, 12, 13).
 
     The cycles tell their errors in the same unit."""
-    factor, unit = SHOWN[error_unit]
+    factor, unit = shown_in(error_unit)
     title = f"{cycles[0]['title_of_kind']}: {ERROR_TITLES[error_unit]}"
     with Figure(f"convergence_{kind}", title) as figure:
         axes = figure.axes
@@ -174,7 +174,7 @@ def _draw_residuals(axes, residuals, key, factor, colour, influential):
 def residuals_of(quantity, residuals, influential):
     """Residual norm of each sample, in its unit."""
     unit = residuals[0]["unit"]
-    factor, name = SHOWN[unit]
+    factor, name = shown_in(unit)
     with Figure(f"residuals_{quantity}", f"{quantity.capitalize()} residuals") as figure:
         _draw_residuals(figure.axes, residuals, "residual", factor, COLOURS[quantity], influential)
         figure.axes.set_ylabel(f"residual [{name}]")
@@ -208,7 +208,7 @@ def standardized_of(quantity, residuals, influential):
 
 def residuals_by_joint(quantity, residuals, positions, joints):
     """Residual norms over each joint angle: what depends on an angle is a fault of the model, not noise."""
-    factor, unit = SHOWN[residuals[0]["unit"]]
+    factor, unit = shown_in(residuals[0]["unit"])
     chosen = [item for item in residuals if not item["rejected"] and item["id"] in positions]
     values = [factor * item["residual"] for item in chosen]
     as_pixels = len(chosen) > MOST_VECTORS

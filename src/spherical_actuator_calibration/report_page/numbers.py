@@ -2,8 +2,13 @@
 
 import math
 
-# Factor and unit in which a quantity of the report is shown.
+# Factor and unit in which a quantity of the report is shown; others are in SI units.
 SHOWN = {"rad": (1e3, "mrad"), "N·m": (1e3, "mN·m"), "1": (1.0, "")}
+
+
+def shown_in(unit):
+    """Factor and unit in which a quantity is shown."""
+    return SHOWN.get(unit, (1.0, unit))
 
 
 def significant(value, digits=3):
@@ -17,13 +22,13 @@ def significant(value, digits=3):
 
 def with_unit(value, unit, digits=3):
     """A value in SI units as it is shown: 0.000122 rad gives "0.122 mrad"."""
-    factor, name = SHOWN[unit]
+    factor, name = shown_in(unit)
     return f"{significant(factor * value, digits)} {name}".strip()
 
 
 def change_of(before, after, unit):
     """ "65.5 → 0.122 mrad" of values in SI units."""
-    factor, _ = SHOWN[unit]
+    factor, _ = shown_in(unit)
     return f"{significant(factor * before)} → {with_unit(after, unit)}"
 
 
@@ -40,6 +45,7 @@ def plus_minus(value, stddev):
     return f"{value:.{decimals}f} ± {stddev:.{decimals}f}".replace("-", "−")
 
 
-def signed(value, digits=4):
-    """With its sign, for differences."""
-    return f"{value:+.{digits}g}".replace("-", "−")
+def signed(value, unit, digits=4):
+    """A difference in SI units as it is shown, with its sign: -0.000122 rad gives "−0.122 mrad"."""
+    factor, name = shown_in(unit)
+    return f"{factor * value:+.{digits}g} {name}".replace("-", "−").strip()
