@@ -12,13 +12,11 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 
 namespace sac::benchmarks {
 namespace {
 
-constexpr double kExact = 1e-10;  // what noiseless samples must give [rad]
 constexpr double kParameterTolerance = 1e-12;
 
 /// The coordinates as Ceres moves them. The model at them is worked out once for all residuals.
@@ -123,11 +121,7 @@ void ceresRefine(benchmark::State& state, ceres::LinearSolverType type) {
   const CycleScenario scenario =
       cycleScenario(Cycle::kRefine, static_cast<std::size_t>(state.range(0)));
   const ParameterSpace& space = scenario.model.space();
-  EstimationProblem problem;
-  problem.model = &scenario.model;
-  problem.samples = &scenario.samples;
-  problem.observations = selectObservations(scenario.samples, scenario.request, {});
-  problem.prior = scenario.state.belief;
+  const EstimationProblem problem = problemOf(scenario);
   const EstimationOptions options;
   Eigen::VectorXd x;
   int iterations = 0;

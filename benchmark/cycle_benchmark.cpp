@@ -13,8 +13,6 @@
 namespace sac::benchmarks {
 namespace {
 
-constexpr double kExact = 1e-10;  // what noiseless samples must give [rad]
-
 void tell(benchmark::State& state,
           const CycleScenario& scenario,
           bool success,
@@ -32,11 +30,7 @@ void tell(benchmark::State& state,
 void iterate(benchmark::State& state, Cycle cycle) {
   const CycleScenario scenario = cycleScenario(cycle, static_cast<std::size_t>(state.range(0)));
   const ParameterSpace& space = scenario.model.space();
-  EstimationProblem problem;
-  problem.model = &scenario.model;
-  problem.samples = &scenario.samples;
-  problem.observations = selectObservations(scenario.samples, scenario.request, {});
-  problem.prior = scenario.state.belief;
+  const EstimationProblem problem = problemOf(scenario);
   const EstimationOptions options;
   LeastSquaresInput input;
   input.active.assign(problem.observations.size(), true);

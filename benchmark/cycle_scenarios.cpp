@@ -239,6 +239,15 @@ CycleScenario cycleScenario(Cycle cycle, std::size_t samples) {
   return {std::move(model), request, makeSamples(cycle, samples, truth), std::move(state), truth};
 }
 
+EstimationProblem problemOf(const CycleScenario& scenario) {
+  EstimationProblem problem;
+  problem.model = &scenario.model;
+  problem.samples = &scenario.samples;
+  problem.observations = selectObservations(scenario.samples, scenario.request, {});
+  problem.prior = scenario.state.belief;
+  return problem;
+}
+
 double worstError(const CycleScenario& scenario, const Eigen::VectorXd& x) {
   const ParameterSpace& space = scenario.model.space();
   const Eigen::VectorXd truth = space.coordinatesOf(scenario.truth);

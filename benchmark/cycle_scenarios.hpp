@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 
 namespace sac::benchmarks {
 
@@ -27,6 +28,12 @@ CycleScenario cycleScenario(Cycle cycle, std::size_t samples);
 /// The refinement of an actuator with as many coils as wanted (a multiple of 8, in as many layers),
 /// `samples` in all, each coil's at poses where it sees poles.
 CycleScenario manyCoilsScenario(std::size_t coils, std::size_t samples);
+
+/// All observations that its cycle takes. Keeps pointers to model and samples of the scenario.
+EstimationProblem problemOf(const CycleScenario& scenario);
+
+/// Largest error that noiseless samples may leave [rad].
+inline constexpr double kExact = 1e-10;
 
 /// Largest difference between coordinates `x` and the truth over those that the cycle estimates
 /// [rad].
