@@ -13,7 +13,7 @@ ROOM = re.compile(r"^add_room\(([\w/]+)\s+LIBRARY\s+(\w+)", re.MULTILINE)
 NODE = re.compile(r"^\s*add_node\((\w+)\s+([^)]*)\)", re.MULTILINE)
 TOOL = re.compile(r"^\s*add_tool\((\w+)\s+(?:SOURCES([^)]*?))?LIBRARIES([^)]*)\)", re.MULTILINE)
 SHARED = re.compile(r"^\s*add_library\((\w+) STATIC([^)]*)\)", re.MULTILINE)
-INCLUDE = re.compile(rf'^\s*#\s*include\s*"{PACKAGE}/([\w/]+)/\w+\.hpp"', re.MULTILINE)
+INCLUDE = re.compile(rf'^\s*#\s*include\s*["<]{PACKAGE}/([\w/]+)/\w+\.hpp[">]', re.MULTILINE)
 
 
 class Library:
@@ -71,7 +71,7 @@ def included_rooms(root, room, rooms):
     files = [
         file
         for top in (root / "include" / PACKAGE, root / "src")
-        for file in sorted((top / room).glob("*.[ch]pp"))
+        for file in sorted((top / room).rglob("*.[ch]pp"))
     ]
     found = {name for file in files for name in INCLUDE.findall(file.read_text(encoding="utf-8"))}
     return (found & set(rooms)) - {room}

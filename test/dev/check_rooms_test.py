@@ -115,6 +115,72 @@ class CheckRooms(unittest.TestCase):
         self.write("src/actuator/coil.cpp", '#include "../base/turns.hpp"\n')
         self.expect_one("src/actuator/coil.cpp: includes src/base/turns.hpp, which is internal to base")
 
+    def test_names_an_include_against_the_order_by_a_relative_path(self):
+        self.write("src/base/wire.cpp", f'#include "../../{INCLUDE}/actuator/coil.hpp"\n')
+        self.expect_one("src/base/wire.cpp: base must not include")
+
+    def test_names_an_internal_header_in_one_that_is_installed(self):
+        self.write(f"{INCLUDE}/base/wire.hpp", '#include "../../../src/base/turns.hpp"\n')
+        self.expect_one(f"{INCLUDE}/base/wire.hpp: includes src/base/turns.hpp, which is not installed")
+
+    def test_names_an_internal_header_in_a_test_of_another_room(self):
+        self.write("test/base/turns_test.cpp", '#include "turns.hpp"\n')
+        self.assertEqual(self.complaints(), [])
+        self.write("test/actuator/coil_test.cpp", include("actuator/coil.hpp") + '#include "../../src/base/turns.hpp"\n')
+        self.expect_one("test/actuator/coil_test.cpp: includes src/base/turns.hpp, which is internal to base")
+
+    def test_names_a_test_in_a_room_that_it_does_not_test(self):
+        self.write("test/base/wire_test.cpp", include("actuator/coil.hpp"))
+        self.expect_one("test/base/wire_test.cpp: includes no header of base: a test is in the room of what it tests")
+        self.write("test/base/fixture.hpp", include("base/angle.hpp"))
+        self.write("test/base/wire_test.cpp", '#include "fixture.hpp"\n')
+        self.assertEqual(self.complaints(), [])
+
+    def test_names_texts_and_sources_that_are_included(self):
+        self.write("src/base/table.txt", include("actuator/coil.hpp"))
+        for name, complaint in (
+            ("table.txt", "headers end in .hpp here"),
+            ("angle.cpp", "includes src/base/angle.cpp, which is no header"),
+        ):
+            with self.subTest(name):
+                self.write("src/base/wire.cpp", f'#include "{name}"\n')
+                self.expect_one("src/base/wire.cpp: includes", complaint)
+
+    def test_names_sources_where_no_rule_would_see_them(self):
+        for name, complaint in (
+            ("library/angle.cpp", "C++ belongs into include, src"),
+            ("include/sac/angle.hpp", f"headers belong into {INCLUDE}"),
+        ):
+            with self.subTest(name):
+                self.write(name, "int angle();\n")
+                self.expect_one(name, complaint)
+                (self.root / name).unlink()
+        self.write("build-arm/angle.cpp", "int angle();\n")
+        self.assertEqual(self.complaints(), [])
+
+    def test_names_a_header_of_planning_that_many_sources_include(self):
+        self.write(f"{INCLUDE}/planning/pose.hpp", "")
+        for number in range(14):
+            self.write(f"test/planning/pose{number}_test.cpp", include("planning/pose.hpp"))
+        self.assertEqual(self.complaints(), [])
+        self.write("test/tools/pose.hpp", include("planning/pose.hpp"))
+        self.write("test/tools/tool_test.cpp", '#include "pose.hpp"\n')
+        self.expect_one(f"{INCLUDE}/planning/pose.hpp: 15 sources include it, more than 14")
+
+    def test_names_a_circle_of_modules(self):
+        package = "src/spherical_actuator_calibration"
+        self.write(f"{package}/guide/__init__.py", "")
+        self.write(f"{package}/guide/one.py", "from . import two\n")
+        self.write(f"{package}/guide/two.py", "from spherical_actuator_calibration.three import words\n")
+        self.write(f"{package}/three.py", "import rospy\n")
+        self.assertEqual(self.complaints(), [])
+        self.write(f"{package}/three.py", "def words():\n    from .guide.one import more\n")
+        self.expect_one("circle of modules", "guide.one -> spherical_actuator_calibration.guide.two -> ")
+
+    def test_names_a_program_that_changes_where_modules_are_looked_for(self):
+        self.write("scripts/turn", "#!/usr/bin/python3\nimport sys\nsys.path.insert(0, '..')\n")
+        self.expect_one("scripts/turn: changes where modules are looked for")
+
     def test_names_what_is_for_tests_in_what_is_not(self):
         self.write("test/support/example.hpp", "int example();\n")
         self.write("src/actuator/coil.cpp", '#include "support/example.hpp"\n')
@@ -148,18 +214,21 @@ class CheckRooms(unittest.TestCase):
                 "ros/time.h",
                 "geometry_msgs/Pose.h",
                 "eigen_conversions/eigen_msg.h",
+                "angles/angles.h",
+                "ros.h",
                 "spherical_actuator_calibration/CoilCurrents.h",
             ):
                 with self.subTest(place + header):
-                    self.write(place, f"#include <{header}>\n")
+                    self.write(place, include("base/angle.hpp") + f"#include <{header}>\n")
                     self.expect_one(f"{place}: includes {header}: base must not know ROS")
             (self.root / place).unlink()
 
     def test_what_tests_share_may_know_ros_where_the_tests_do(self):
         self.write("test/support/bag.hpp", "#include <rosbag/bag.h>\n")
-        self.write("test/ros/node/node_test.cpp", '#include "support/bag.hpp"\n')
+        self.write("src/ros/node/coil_node.hpp", "")
+        self.write("test/ros/node/node_test.cpp", '#include "coil_node.hpp"\n#include "support/bag.hpp"\n')
         self.assertEqual(self.complaints(), [])
-        self.write("test/base/wire_test.cpp", '#include "support/bag.hpp"\n')
+        self.write("test/base/wire_test.cpp", include("base/angle.hpp") + '#include "support/bag.hpp"\n')
         self.expect_one("test/base/wire_test.cpp: includes rosbag/bag.h, by test/support/bag.hpp: base must not know ROS")
 
     def test_names_a_folder_with_more_than_a_quarter_of_the_lines(self):
@@ -204,6 +273,14 @@ class CheckRooms(unittest.TestCase):
                 expected = [f"src/base/long.cpp:1: {name} has {length} lines, more than 60."] if length > 60 else []
                 self.assertEqual(found, expected)
 
+    def test_names_a_long_lambda_outside_of_functions(self):
+        for head, end in (("const auto turn = [](int a) {\n", "};\n"), ("const int turn =\n    [] {\n", "}();\n")):
+            with self.subTest(head):
+                self.write("src/base/long.cpp", head + 60 * "  turn();\n" + end)
+                found = [one for one in self.complaints() if "base/long.cpp" in one]
+                length = 61 + head.count("\n")
+                self.assertEqual(found, [f"src/base/long.cpp:1: turn has {length} lines, more than 60."])
+
     def test_takes_no_class_or_table_for_a_function(self):
         struct = "struct Turns {\n" + 70 * "  int a;\n" + "};\n"
         table = "constexpr int kTurns[] = {\n" + 70 * "  1,\n" + "};\n"
@@ -211,11 +288,13 @@ class CheckRooms(unittest.TestCase):
         self.assertEqual([one for one in self.complaints() if "table.cpp" in one], [])
 
     def test_names_a_long_function_in_shell(self):
-        for length in (60, 61):
-            self.write("scripts/turn", "#!/usr/bin/env bash\nturn() {\n" + (length - 2) * "  echo\n" + "}\n")
-            if length == 60:
-                self.assertEqual(self.complaints(), [])
-        self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
+        for head, end in (("turn() {\n", "}\n"), ("turn() (\n", ")\n"), ("function turn\n{\n", "}\n")):
+            for length in (60, 61):
+                rest = (length - head.count("\n") - 1) * "  echo\n"
+                self.write("scripts/turn", "#!/usr/bin/env bash\n" + head + rest + end)
+                if length == 60:
+                    self.assertEqual(self.complaints(), [])
+            self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
 
     def test_names_a_long_cmake_file(self):
         for name in ("CMakeLists.txt", "src/base/CMakeLists.txt", "cmake/rooms.cmake"):
