@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 
 namespace sac {
 namespace {
@@ -21,6 +23,26 @@ CoilPattern patternOf(const Sample& sample, double current_threshold) {
     pattern.push_back({excitation.coil, excitation.current < 0.0 ? -1 : 1});
   }
   return pattern;
+}
+
+std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
+                                     const Eigen::VectorXd& measured,
+                                     double current_threshold) {
+  Eigen::VectorXd commanded = Eigen::VectorXd::Zero(measured.size());
+  for (const SignedCoil& coil : planned.pattern) {
+    const auto j = static_cast<Eigen::Index>(coil.coil);
+    if (j >= measured.size()) {
+      return coil.coil;
+    }
+    commanded[j] = coil.sign * planned.current;
+  }
+  const CurrentTolerance tolerance = currentTolerance(current_threshold);
+  for (Eigen::Index j = 0; j < measured.size(); ++j) {
+    if (!tolerance.allows(measured[j], commanded[j])) {
+      return static_cast<std::size_t>(j);
+    }
+  }
+  return std::nullopt;
 }
 
 bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position) {
@@ -54,6 +76,8 @@ std::string flawName(CaptureFlaw flaw) {
   switch (flaw) {
     case CaptureFlaw::kNone:
       break;
+    case CaptureFlaw::kExcitation:
+      return "excitation";
     case CaptureFlaw::kOrientation:
       return "orientation";
     case CaptureFlaw::kCurrents:
@@ -72,6 +96,8 @@ std::string flawInWords(CaptureFlaw flaw) {
   switch (flaw) {
     case CaptureFlaw::kNone:
       break;
+    case CaptureFlaw::kExcitation:
+      return "The coils do not carry their currents: check the amplifier and the coil driver.";
     case CaptureFlaw::kOrientation:
       return "The sample has no orientation: check the tracker.";
     case CaptureFlaw::kCurrents:
@@ -85,6 +111,15 @@ std::string flawInWords(CaptureFlaw flaw) {
       return "The rest was interrupted: the torque without current is to be measured anew.";
   }
   return "";
+}
+
+std::string amissInWords(const PlannedCapture& planned, std::size_t coil) {
+  const bool is_excited = std::any_of(planned.pattern.begin(),
+                                      planned.pattern.end(),
+                                      [coil](const SignedCoil& each) { return each.coil == coil; });
+  return "Coil " + std::to_string(numberOf(coil)) +
+         (is_excited ? " does not carry its current" : " is not free of current") +
+         ": check the amplifier and the coil driver.";
 }
 
 double captureDuration(const PlannedCapture& planned, double duration) {

@@ -3,13 +3,13 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include "spherical_actuator_calibration/Capture.h"
 #include "spherical_actuator_calibration/CapturePlanned.h"
-#include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
@@ -41,6 +41,17 @@ std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
     names[k] = printable(static_cast<std::string>(joint["name"]));
   }
   return names;
+}
+
+CaptureOutcome::Flaw flawOf(const ServiceAnswer& answer) {
+  using Flaw = CaptureOutcome::Flaw;
+  if (answer.flaw == msg::CapturePlannedResponse::EXCITATION) {
+    return Flaw::kExcitation;
+  }
+  if (answer.flaw == msg::CapturePlannedResponse::REST) {
+    return Flaw::kRestInterrupted;
+  }
+  return answer.flaw.empty() ? Flaw::kNone : Flaw::kOther;
 }
 
 }  // namespace
@@ -105,12 +116,6 @@ void HandGuide::listen() {
       kNewest,
       [this](const sensor_msgs::JointState::ConstPtr& message) { guide_.receive(*message); },
       tellRefusal("joint_states")));
-  subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(
-      node_,
-      "coil_currents",
-      kNewest,
-      [this](const msg::CoilCurrents::ConstPtr& message) { currents_ = message->current; },
-      tellRefusal("coil_currents")));
   subscribers_.push_back(subscribeChecked<msg::CalibrationSample>(
       node_,
       "samples",
@@ -121,7 +126,7 @@ void HandGuide::listen() {
 
 void HandGuide::refresh() {
   guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
-  measurement_.judgeBy(model_.currentRule());
+  measurement_.requireAtLeast(model_.leastCurrent());
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
     take(*answer);
   }
@@ -141,8 +146,7 @@ void HandGuide::take(const ServiceAnswer& answer) {
       takePlan(answer);
       break;
     case Asked::kCapture:
-      measurement_.captured(
-          {answer.success, answer.message, answer.flaw == msg::CapturePlannedResponse::REST}, now);
+      measurement_.captured({answer.success, answer.message, flawOf(answer)}, now);
       break;
   }
 }
@@ -198,9 +202,9 @@ void HandGuide::measure() {
 void HandGuide::goOn() {
   const double seconds = duration_() + kLongestBeside;
   if (measurement_.coil() != exciter_.coil()) {
-    exciter_.excite(measurement_.coil(), currents_.size(), measurement_.current(), seconds);
+    exciter_.excite(measurement_.coil(), model_.coils(), measurement_.current(), seconds);
   }
-  switch (measurement_.step(currents_, ros::SteadyTime::now().toSec())) {
+  switch (measurement_.step(ros::SteadyTime::now().toSec())) {
     case PoseMeasurement::Action::kCapture:
       askForCapture();
       break;
@@ -230,6 +234,7 @@ void HandGuide::askForCapture() {
   if (measurement_.coil() != 0) {
     const auto coil = static_cast<std::int32_t>(measurement_.coil());
     request.coils = {measurement_.current() < 0.0 ? -coil : coil};
+    request.current = std::abs(measurement_.current());
   }
   request.duration = duration_();
   request.validation = validation;

@@ -62,7 +62,6 @@ class HandGuide : public QWidget {
   CoilExciter exciter_;
   ServiceCaller caller_;
   Asked asked_ = Asked::kPlan;
-  std::vector<double> currents_;  ///< measured [A]
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;

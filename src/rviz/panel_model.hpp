@@ -8,7 +8,6 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/time.h>
 
-#include "pose_measurement.hpp"
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/CalibrationStatus.h"
@@ -84,10 +83,8 @@ class PanelModel {
 
   /// A coil below it counts as off [A].
   double currentThreshold() const { return status_.current_threshold; }
-  /// When a coil carries what is commanded.
-  CurrentRule currentRule() const {
-    return {status_.current_tolerance, status_.current_tolerance_share, status_.least_current};
-  }
+  /// A coil is excited with at least this [A].
+  double leastCurrent() const { return status_.least_current; }
   /// Joint angles that differ by at most this from a planned pose are at it [rad].
   double poseTolerance() const { return status_.pose_tolerance; }
 

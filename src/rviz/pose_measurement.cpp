@@ -1,12 +1,9 @@
 #include "pose_measurement.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <utility>
-
-#include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
@@ -15,12 +12,10 @@ namespace {
 constexpr double kSettling = 0.3;
 /// In which coils must carry their current [s].
 constexpr double kPatience = 10.0;
+/// Before the node is asked again whether they do [s].
+constexpr double kPause = 0.1;
 
 }  // namespace
-
-bool CurrentRule::allows(double measured, double commanded) const {
-  return std::abs(measured - commanded) <= std::max(tolerance, share * std::abs(commanded));
-}
 
 void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current, double now) {
   patterns_ = std::move(patterns);
@@ -31,13 +26,13 @@ void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current,
   samples_ = 0;
   current_ = current;
   outcome_.clear();
-  if (patterns_.size() > 1 && !(std::abs(current) >= rule_.least)) {
+  if (patterns_.size() > 1 && !(std::abs(current) >= least_)) {
     char text[96];
     std::snprintf(text,
                   sizeof(text),
                   "%.3g A are too little to tell a coil from one that is off: take %.3g A or more.",
                   std::fabs(current),
-                  rule_.least);
+                  least_);
     end(text);
     return;
   }
@@ -46,29 +41,15 @@ void PoseMeasurement::begin(std::vector<std::uint32_t> patterns, double current,
 
 void PoseMeasurement::beginPattern(double now) {
   began_ = now;
-  settled_ = -1.0;
+  next_ = now + kSettling;
   is_asked_ = false;
 }
 
-PoseMeasurement::Action PoseMeasurement::step(const std::vector<double>& measured, double now) {
+PoseMeasurement::Action PoseMeasurement::step(double now) {
   if (!isRunning()) {
     return Action::kEnd;
   }
-  if (is_asked_) {
-    return Action::kNothing;
-  }
-  if (!carries(measured)) {
-    settled_ = -1.0;
-    if (now - began_ > kPatience) {
-      end(coil() == 0 ? "The coils do not become free of current: look at the coil driver."
-                      : "Coil " + std::to_string(coil()) +
-                            " does not carry its current: look at the coil driver.");
-      return Action::kEnd;
-    }
-    return Action::kNothing;
-  }
-  settled_ = settled_ < 0.0 ? now : settled_;
-  if (now - settled_ < kSettling) {
+  if (is_asked_ || now < next_) {
     return Action::kNothing;
   }
   is_asked_ = true;
@@ -79,17 +60,18 @@ void PoseMeasurement::captured(const CaptureOutcome& outcome, double now) {
   if (!isRunning() || !is_asked_) {
     return;
   }
-  if (outcome.rest_interrupted) {
+  if (outcome.flaw == CaptureOutcome::Flaw::kExcitation && now - began_ <= kPatience) {
+    next_ = now + kPause;
+    is_asked_ = false;
+  } else if (outcome.flaw == CaptureOutcome::Flaw::kRestInterrupted) {
     patterns_.insert(patterns_.begin() + static_cast<std::ptrdiff_t>(place_), 0);
     beginPattern(now);
-    return;
-  }
-  if (!outcome.success) {
+  } else if (!outcome.success) {
     end(outcome.message);
-    return;
+  } else {
+    ++samples_;
+    advance(now);
   }
-  ++samples_;
-  advance(now);
 }
 
 void PoseMeasurement::advance(double now) {
@@ -106,16 +88,6 @@ void PoseMeasurement::end(const std::string& reason) {
   patterns_.clear();
   place_ = 0;
   outcome_ = reason;
-}
-
-bool PoseMeasurement::carries(const std::vector<double>& measured) const {
-  for (std::size_t j = 0; j < measured.size(); ++j) {
-    const double wanted = numberOf(j) == coil() ? current() : 0.0;
-    if (!rule_.allows(measured[j], wanted)) {
-      return false;
-    }
-  }
-  return !measured.empty() && coil() <= measured.size();
 }
 
 }  // namespace sac

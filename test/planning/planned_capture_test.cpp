@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+
 namespace sac {
 namespace {
 
@@ -15,6 +17,7 @@ class PlannedCaptureTest : public ::testing::Test {
   PlannedCaptureTest() {
     planned_.joint_position = Eigen::Vector3d(0.1, -0.2, 0.3);
     planned_.pattern = {{0, 1}, {2, -1}};
+    planned_.current = 2.0;
     sample_.joint_position = planned_.joint_position;
     sample_.has_orientation = true;
     sample_.has_torque = true;
@@ -53,6 +56,31 @@ TEST_F(PlannedCaptureTest, RefusesAnotherPattern) {
   EXPECT_EQ(flaw(), CaptureFlaw::kCurrents);
 }
 
+TEST_F(PlannedCaptureTest, NamesACoilThatDoesNotCarryWhatIsCommanded) {
+  const auto amiss = [this](double a, double b, double c) {
+    return coilAmiss(planned_, Eigen::Vector3d(a, b, c), kThreshold);
+  };
+  EXPECT_FALSE(amiss(1.81, 0.03, -2.19).has_value());
+  EXPECT_EQ(amiss(1.79, 0.0, -2.0), 0U);
+  EXPECT_EQ(amiss(2.0, 0.05, -2.0), 1U);
+  EXPECT_EQ(amiss(2.0, 0.0, 2.0), 2U);
+  EXPECT_EQ(amissInWords(planned_, 2),
+            "Coil 3 does not carry its current: check the amplifier and the coil driver.");
+  EXPECT_EQ(amissInWords(planned_, 1),
+            "Coil 2 is not free of current: check the amplifier and the coil driver.");
+  EXPECT_EQ(coilAmiss(planned_, Eigen::Vector2d(2.0, 0.0), kThreshold), 2U);
+  planned_.pattern.clear();
+  EXPECT_FALSE(amiss(0.03, -0.03, 0.0).has_value());
+  EXPECT_EQ(amiss(0.0, -0.05, 0.0), 1U);
+}
+
+TEST_F(PlannedCaptureTest, ALeastCurrentIsToldFromNone) {
+  planned_.pattern = {{0, 1}};
+  planned_.current = leastExcitation(kThreshold);
+  EXPECT_EQ(coilAmiss(planned_, Eigen::Vector3d::Zero(), kThreshold), 0U);
+  EXPECT_FALSE(coilAmiss(planned_, Eigen::Vector3d(kThreshold, 0.0, 0.0), kThreshold).has_value());
+}
+
 TEST_F(PlannedCaptureTest, NeedsATorqueWhereThereIsCurrent) {
   sample_.has_torque = false;
   EXPECT_EQ(flaw(), CaptureFlaw::kTorque);
@@ -87,7 +115,8 @@ TEST_F(PlannedCaptureTest, TheOneWithoutCurrentNeedsNoOther) {
 }
 
 TEST_F(PlannedCaptureTest, EachFlawHasANameAndASentence) {
-  for (const CaptureFlaw flaw : {CaptureFlaw::kOrientation,
+  for (const CaptureFlaw flaw : {CaptureFlaw::kExcitation,
+                                 CaptureFlaw::kOrientation,
                                  CaptureFlaw::kCurrents,
                                  CaptureFlaw::kTorque,
                                  CaptureFlaw::kPose,

@@ -1,73 +1,75 @@
 #include "pose_measurement.hpp"
 
-#include <vector>
-
 #include <gtest/gtest.h>
 
 namespace sac {
 namespace {
 
 using Action = PoseMeasurement::Action;
-
-std::vector<double> zero() {
-  return {0.0, 0.0, 0.0};
-}
-
-std::vector<double> second() {
-  return {0.01, 1.98, 0.0};
-}
+using Flaw = CaptureOutcome::Flaw;
 
 /// By what the calibration node tells.
 PoseMeasurement judged() {
   PoseMeasurement measurement;
-  measurement.judgeBy({0.04, 0.1, 0.09});
+  measurement.requireAtLeast(0.09);
   return measurement;
 }
 
 CaptureOutcome stored() {
-  return {true, "", false};
+  return {true, "", Flaw::kNone};
+}
+
+CaptureOutcome amiss() {
+  return {false, "Coil 2 does not carry its current.", Flaw::kExcitation};
 }
 
 /// One pattern, from its settling to its capture.
-void measure(PoseMeasurement& measurement,
-             const std::vector<double>& currents,
-             const CaptureOutcome& outcome,
-             double now) {
-  measurement.step(currents, now);
-  ASSERT_EQ(measurement.step(currents, now + 0.5), Action::kCapture);
+void measure(PoseMeasurement& measurement, const CaptureOutcome& outcome, double now) {
+  ASSERT_EQ(measurement.step(now + 0.5), Action::kCapture);
   measurement.captured(outcome, now + 1.0);
 }
 
-TEST(PoseMeasurement, CapturesEachPatternOnceItsCurrentsHaveSettled) {
+TEST(PoseMeasurement, CapturesEachPatternOnceItHasSettled) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
   EXPECT_EQ(measurement.coil(), 0U);
-  EXPECT_EQ(measurement.step(zero(), 0.0), Action::kNothing);
-  EXPECT_EQ(measurement.step(zero(), 0.4), Action::kCapture);
-  EXPECT_EQ(measurement.step(zero(), 0.5), Action::kNothing);
+  EXPECT_EQ(measurement.step(0.0), Action::kNothing);
+  EXPECT_EQ(measurement.step(0.4), Action::kCapture);
+  EXPECT_EQ(measurement.step(0.5), Action::kNothing);
   measurement.captured(stored(), 1.0);
   EXPECT_EQ(measurement.coil(), 2U);
   EXPECT_EQ(measurement.current(), 2.0);
-  EXPECT_EQ(measurement.step(zero(), 1.1), Action::kNothing);
-  EXPECT_EQ(measurement.step(second(), 1.2), Action::kNothing);
-  // Not there all the time.
-  EXPECT_EQ(measurement.step(zero(), 1.4), Action::kNothing);
-  EXPECT_EQ(measurement.step(second(), 1.6), Action::kNothing);
-  EXPECT_EQ(measurement.step(second(), 2.0), Action::kCapture);
+  EXPECT_EQ(measurement.step(1.1), Action::kNothing);
+  EXPECT_EQ(measurement.step(1.4), Action::kCapture);
   measurement.captured(stored(), 3.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
   EXPECT_EQ(measurement.outcome(), "The pose is measured: 2 samples.");
 }
 
+TEST(PoseMeasurement, AsksAgainWhileTheCurrentsAreNotThere) {
+  PoseMeasurement measurement = judged();
+  measurement.begin({0, 2}, 2.0, 0.0);
+  measure(measurement, stored(), 0.0);
+  ASSERT_EQ(measurement.step(1.4), Action::kCapture);
+  measurement.captured(amiss(), 1.5);
+  EXPECT_EQ(measurement.coil(), 2U);
+  EXPECT_EQ(measurement.step(1.55), Action::kNothing);
+  EXPECT_EQ(measurement.step(1.65), Action::kCapture);
+  measurement.captured(stored(), 2.0);
+  EXPECT_EQ(measurement.outcome(), "The pose is measured: 2 samples.");
+}
+
 TEST(PoseMeasurement, EndsWhereACoilDoesNotCarryItsCurrent) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
-  EXPECT_EQ(measurement.step({}, 1.0), Action::kNothing);
-  measure(measurement, zero(), stored(), 2.0);
-  EXPECT_EQ(measurement.step(zero(), 13.1), Action::kEnd);
+  measure(measurement, stored(), 1.0);
+  measure(measurement, amiss(), 5.0);
+  EXPECT_TRUE(measurement.isRunning());
+  measure(measurement, amiss(), 12.0);
+  EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
-  EXPECT_EQ(measurement.outcome(), "Coil 2 does not carry its current: look at the coil driver.");
+  EXPECT_EQ(measurement.outcome(), "Coil 2 does not carry its current.");
 }
 
 TEST(PoseMeasurement, TakesACurrentThatTheNodeWouldTellFromNone) {
@@ -79,19 +81,15 @@ TEST(PoseMeasurement, TakesACurrentThatTheNodeWouldTellFromNone) {
   measurement.begin({0}, 0.05, 0.0);
   EXPECT_TRUE(measurement.isRunning());
   measurement.begin({0, 2}, -0.09, 0.0);
-  measure(measurement, zero(), stored(), 1.0);
-  measurement.step({0.0, -0.04, 0.0}, 3.0);
-  EXPECT_EQ(measurement.step({0.0, -0.04, 0.0}, 4.0), Action::kNothing);
-  measurement.step({0.0, -0.06, 0.0}, 5.0);
-  EXPECT_EQ(measurement.step({0.0, -0.06, 0.0}, 6.0), Action::kCapture);
+  EXPECT_TRUE(measurement.isRunning());
 }
 
 TEST(PoseMeasurement, EndsWithTheReasonOfACaptureThatFailed) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
-  measurement.step(zero(), 0.0);
-  ASSERT_EQ(measurement.step(zero(), 1.0), Action::kCapture);
-  measurement.captured({false, "The rotor moved.", false}, 2.0);
+  measurement.step(0.0);
+  ASSERT_EQ(measurement.step(1.0), Action::kCapture);
+  measurement.captured({false, "The rotor moved.", Flaw::kNone}, 2.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.outcome(), "The rotor moved.");
 }
@@ -110,20 +108,20 @@ TEST(PoseMeasurement, BeginsWithoutCurrentInAnyCase) {
   PoseMeasurement measurement = judged();
   measurement.begin({2}, 2.0, 0.0);
   EXPECT_EQ(measurement.coil(), 0U);
-  measure(measurement, zero(), stored(), 1.0);
+  measure(measurement, stored(), 1.0);
   EXPECT_EQ(measurement.coil(), 2U);
 }
 
 TEST(PoseMeasurement, AfterAnInterruptedRestItsZeroIsMeasuredAnew) {
   PoseMeasurement measurement = judged();
   measurement.begin({0, 2}, 2.0, 0.0);
-  measure(measurement, zero(), stored(), 1.0);
-  measure(measurement, second(), {false, "The rest was interrupted.", true}, 2.0);
+  measure(measurement, stored(), 1.0);
+  measure(measurement, {false, "The rest was interrupted.", Flaw::kRestInterrupted}, 2.0);
   EXPECT_TRUE(measurement.isRunning());
   EXPECT_EQ(measurement.coil(), 0U);
-  measure(measurement, zero(), stored(), 4.0);
+  measure(measurement, stored(), 4.0);
   EXPECT_EQ(measurement.coil(), 2U);
-  measure(measurement, second(), stored(), 5.0);
+  measure(measurement, stored(), 5.0);
   EXPECT_FALSE(measurement.isRunning());
   EXPECT_EQ(measurement.outcome(), "The pose is measured: 3 samples.");
 }

@@ -16,7 +16,7 @@ from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 
 TOLERANCE = 0.05  # [rad] of one pose
-STATUS = SimpleNamespace(current_tolerance=0.04, current_tolerance_share=0.1, least_current=0.09)
+STATUS = SimpleNamespace(least_current=0.09)
 
 
 class ExcitedCoils(unittest.TestCase):
@@ -48,21 +48,6 @@ class Excitation(unittest.TestCase):
         self.assertEqual(bench._command, [1.5, 0.0, -1.5, 0.0])
         bench.excite((), 0.0)
         self.assertEqual(bench._command, [0.0] * 4)
-
-    def test_is_there_when_the_node_would_tell_it_from_none(self):
-        bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
-        bench._coils, bench._lock = 2, threading.Lock()
-        for current, measured, is_there in (
-            (0.05, (0.0, 0.0), False),
-            (0.09, (0.05, 0.0), True),
-            (0.09, (0.09, 0.05), False),
-            (2.0, (1.81, 0.03), True),
-            (2.0, (1.79, 0.0), False),
-            (2.0, (2.0, 0.05), False),
-        ):
-            bench.excite((1,), current)
-            bench._currents = measured
-            self.assertEqual(bench.is_excited(STATUS), is_there, (current, measured))
 
     def test_with_less_than_the_node_tells_from_none_is_refused(self):
         guided = session.Session.__new__(session.Session)
@@ -192,7 +177,8 @@ class CommandLine(unittest.TestCase):
 
 
 class Coils:
-    """Of a laboratory whose driver follows again once it was commanded zero for a while, if at all."""
+    """Of a laboratory whose driver follows again once it was commanded zero for a while, if at all, and the node that
+    looks at them."""
 
     def __init__(self, clock, cured_at, needs_zero):
         self._clock = clock
@@ -205,8 +191,11 @@ class Coils:
         if not pattern and self._clock[0] >= self._cured_at:
             self._needs_zero = False
 
-    def is_excited(self, _status):
-        return self._clock[0] >= self._cured_at and not self._needs_zero and self._pattern == (3,)
+    def capture_planned(self, _pose, pattern, _current, _duration):
+        assert pattern == self._pattern == (3,)
+        if self._clock[0] >= self._cured_at and not self._needs_zero:
+            return SimpleNamespace(flaw="", message="Stored.")
+        return SimpleNamespace(flaw=CapturePlannedResponse.EXCITATION, message="Coil 3 does not carry its current: check the amplifier.")
 
     @staticmethod
     def driver_complaint():
@@ -226,12 +215,11 @@ class WaitingForCurrent(unittest.TestCase):
         guided._options = Options(current_timeout=timeout)
         guided._current = guided._options.current
         guided._terminal = Terminal(screen)
-        guided._laboratory = Coils(clock, cured_at, needs_zero)
-        guided._calibration = SimpleNamespace(status=lambda: STATUS)
+        guided._laboratory = guided._calibration = Coils(clock, cured_at, needs_zero)
         fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
         with mock.patch.object(session, "rospy", fake):
             try:
-                guided._wait_for_current((3,))
+                self.assertEqual(guided._answer_with_current(Bench.POSE, (3,)).message, "Stored.")
             except RuntimeError as error:
                 return clock[0], str(error)
         return clock[0], screen.getvalue()
@@ -245,7 +233,7 @@ class WaitingForCurrent(unittest.TestCase):
         waited, said = self.waited(30.0)
         self.assertLess(waited, 40.0)
         self.assertEqual(said.count("\n"), 1)
-        self.assertIn("Coil 3 does not carry its current: check the amplifier", said)
+        self.assertIn("Coil 3 does not carry its current: check the amplifier. The driver: ", said)
         self.assertIn("coil 3 carries 0.00 A", said)
 
     def test_commands_the_zero_that_a_driver_in_fault_waits_for(self):
@@ -273,7 +261,7 @@ class Bench:
     def excite(self, pattern, _current):
         self.pattern = pattern
 
-    def capture_planned(self, pose, pattern, _duration):
+    def capture_planned(self, pose, pattern, _current, _duration):
         assert pose is self.POSE and pattern == self.pattern
         flaw = next(self._flaws)
         self.log.append(pattern)
@@ -288,13 +276,6 @@ class Bench:
     def pose_tolerance():
         return TOLERANCE
 
-    @staticmethod
-    def is_excited(_status):
-        return True
-
-    @staticmethod
-    def status():
-        return STATUS
 
 
 class CapturingAPose(unittest.TestCase):

@@ -6,7 +6,7 @@
 namespace sac {
 
 /// How near a measured current is to the one commanded where the coil carries it. Panel and guided
-/// session have it from the message CalibrationStatus.
+/// session are told by the service capture_planned.
 struct CurrentTolerance {
   double absolute = 0.0;  ///< [A]
   double share = 0.0;     ///< of the command, where that is more [1]

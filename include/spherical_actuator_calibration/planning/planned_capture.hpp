@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,11 +21,13 @@ inline constexpr double kPoseTolerance = 0.05;
 struct PlannedCapture {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
   CoilPattern pattern;
+  double current = 0.0;  ///< commanded in each coil of the pattern, > 0 [A]
 };
 
 /// Why a sample does not serve the capture that it was made for.
 enum class CaptureFlaw {
   kNone,
+  kExcitation,   ///< there is none: coils do not carry what is commanded
   kOrientation,  ///< it has none
   kCurrents,     ///< of another pattern
   kTorque,       ///< it has none, though it has current
@@ -35,6 +39,12 @@ enum class CaptureFlaw {
 /// off.
 CoilPattern patternOf(const Sample& sample, double current_threshold);
 
+/// The first coil, counted from 0, that does not carry what the capture has it commanded, none for
+/// most; nothing where all do. `measured` [A], one per coil: see currentTolerance().
+std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
+                                     const Eigen::VectorXd& measured,
+                                     double current_threshold);
+
 /// Whether a sample was taken at planned joint angles, see kPoseTolerance.
 bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position);
 
@@ -45,10 +55,13 @@ CaptureFlaw captureFlaw(const Sample& sample,
                         const std::vector<Sample>& held,
                         double current_threshold);
 
-/// orientation, currents, torque, pose, rest, as in the service CapturePlanned; empty for none.
+/// excitation, orientation, currents, torque, pose, rest, as in the service CapturePlanned; empty
+/// for none.
 std::string flawName(CaptureFlaw flaw);
 /// What the operator is to see to, in a sentence; empty for none.
 std::string flawInWords(CaptureFlaw flaw);
+/// The same of a coil that does not carry what the capture has it commanded, see coilAmiss().
+std::string amissInWords(const PlannedCapture& planned, std::size_t coil);
 
 /// For how long to average [s], where a pattern with current takes `duration`: three times as long
 /// without, as all torques of the rest share the error of what is measured then.

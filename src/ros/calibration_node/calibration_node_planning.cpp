@@ -8,6 +8,8 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
@@ -29,8 +31,13 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
-/// Throws ConfigError for what is no pattern of an actuator with so many coils.
-PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request, std::size_t coils) {
+constexpr double kLargestCurrent = 1000.0;  // [A]
+
+/// Throws ConfigError for what is no pattern of an actuator with so many coils, and for less than
+/// the least current [A].
+PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request,
+                              std::size_t coils,
+                              double least_current) {
   PlannedCapture planned;
   planned.joint_position = Eigen::Vector3d(request.joint_position.data());
   std::size_t before = 0;
@@ -44,6 +51,11 @@ PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request, std::
     planned.pattern.push_back({number - 1, signed_number < 0 ? -1 : 1});
     before = number;
   }
+  if (!planned.pattern.empty()) {
+    requireInRange(
+        "current", request.current, ValueRange::closed(least_current, kLargestCurrent, "A"));
+    planned.current = request.current;
+  }
   return planned;
 }
 
@@ -54,7 +66,14 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
   try {
     // The model never changes while the node runs.
     const CalibrationSession& calibration = session_.calibration();
-    const PlannedCapture planned = plannedCapture(request, calibration.model().space().coils());
+    const double threshold = calibration.config().estimation.current_threshold;
+    const PlannedCapture planned =
+        plannedCapture(request, calibration.model().space().coils(), leastExcitation(threshold));
+    if (const auto coil = coilAmiss(planned, intake_.currents(), threshold)) {
+      response.flaw = flawName(CaptureFlaw::kExcitation);
+      response.message = amissInWords(planned, *coil);
+      return true;
+    }
     const double duration = request.duration == 0.0 ? options_.capture_duration : request.duration;
     const CaptureProgress progress = intake_.waitForCapture(captureDuration(planned, duration));
     if (!progress.sample) {
@@ -64,8 +83,7 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
     Sample sample = *progress.sample;
     sample.validation = request.validation != 0;
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    const CaptureFlaw flaw = captureFlaw(
-        sample, planned, calibration.samples(), calibration.config().estimation.current_threshold);
+    const CaptureFlaw flaw = captureFlaw(sample, planned, calibration.samples(), threshold);
     if (flaw != CaptureFlaw::kNone) {
       response.flaw = flawName(flaw);
       response.message = flawInWords(flaw);

@@ -84,9 +84,6 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.refined = static_cast<std::uint8_t>(progress.refined);
   fillCoverage(progress, message);
   message.current_threshold = estimation.current_threshold;
-  const CurrentTolerance tolerance = currentTolerance(estimation.current_threshold);
-  message.current_tolerance = tolerance.absolute;
-  message.current_tolerance_share = tolerance.share;
   message.least_current = leastExcitation(estimation.current_threshold);
   message.pose_tolerance = kPoseTolerance;
   for (const CycleRequest& request : progress.next_cycles) {

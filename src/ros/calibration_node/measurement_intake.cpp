@@ -126,6 +126,11 @@ std::optional<Stamp> MeasurementIntake::newest() const {
   return builder_.newest();
 }
 
+Eigen::VectorXd MeasurementIntake::currents() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return newest_currents_;
+}
+
 MotionRecording MeasurementIntake::motion() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return motion_.recording();
@@ -168,6 +173,7 @@ void MeasurementIntake::build(const AnyMeasurement& measurement) {
     build(*torque, report.torques, torques_);
   } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
     motion_.add(*current);
+    newest_currents_ = current->current;
     build(*current, report.currents, currents_);
   }
 }

@@ -89,12 +89,14 @@ class Calibration:
         """Answer, or None when it is not known whether a sample was stored."""
         return self._call("capture", duration=duration, validation=validation)
 
-    def capture_planned(self, pose, pattern, duration):
-        """Likewise, of one pattern of a pose: the node keeps only what serves it, and answers with the flaw."""
+    def capture_planned(self, pose, pattern, current, duration):
+        """Likewise, of one pattern of a pose at so much current [A]: the node keeps only what serves it, and answers
+        with the flaw."""
         return self._call(
             "capture_planned",
             joint_position=pose.joints,
             coils=pattern,
+            current=current if pattern else 0.0,
             duration=duration,
             validation=pose.validation,
         )

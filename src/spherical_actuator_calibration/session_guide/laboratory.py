@@ -9,35 +9,25 @@ from spherical_actuator_calibration.joint_readings import JointReadings
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
-from .progress import carries
-
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
 
 
 class Laboratory:
-    """Commands coils and fixture, and keeps the last joint angles and currents."""
+    """Commands coils and fixture, and keeps the last joint angles."""
 
     def __init__(self, ns, coils, joint_names):
         self._coils = coils
         self._names = list(joint_names)
         self._readings = JointReadings(ns, joint_names)
-        self._currents = None
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
         self._command = [0.0] * coils
         self._lock = threading.Lock()
         self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
         self._targets = rospy.Publisher(ns + "/fixture/target", JointState, queue_size=1, latch=True)
-        self._subscribers = [
-            rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
-        ]
+        self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics)
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
-
-    def _keep_currents(self, message):
-        with self._lock:
-            self._currents = tuple(message.current)
 
     def _keep_diagnostics(self, message):
         for status in message.status:
@@ -61,13 +51,6 @@ class Laboratory:
             self._command = [0.0] * self._coils
             for coil in pattern:
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
-
-    def is_excited(self, status):
-        """Whether the measured currents are those commanded, by what the node's status allows."""
-        with self._lock:
-            if self._currents is None or len(self._currents) != self._coils:
-                return False
-            return all(carries(status, *pair) for pair in zip(self._currents, self._command))
 
     def driver_complaint(self):
         """What the coil driver says is wrong; empty when it says nothing."""

@@ -40,12 +40,6 @@ def excited_coils(currents, threshold):
     return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
 
 
-def carries(status, measured, commanded):
-    """Whether a coil carries the current [A] that was commanded, by the rule of the node."""
-    allowed = max(status.current_tolerance, status.current_tolerance_share * abs(commanded))
-    return abs(measured - commanded) <= allowed
-
-
 def is_same_pattern(one, other):
     """A pattern or its opposite, which tells the same."""
     return one == other or one == tuple(-coil for coil in other)

@@ -185,43 +185,40 @@ class Session:
         """[rad] of arrival. A hand does not meet the angles as a fixture does; any pose nearby tells as much."""
         return FIXTURE_TOLERANCE if self._options.drive_fixture else self._calibration.pose_tolerance()
 
-    def _wait_for_current(self, pattern):
-        """Until the coils carry what is commanded. Raises RuntimeError when that takes too long."""
+    def _answer_with_current(self, pose, pattern):
+        """To a capture while the coils carry what is commanded. Raises RuntimeError when that takes too long."""
         begin = rospy.get_time()
-        while not self._has_current():
+        while True:
+            answer = self._answer_soon(pose, pattern)
+            if answer is None or answer.flaw != CapturePlannedResponse.EXCITATION:
+                return answer
             waited = rospy.get_time() - begin
-            what = "A coil carries current"
-            if pattern:
-                verb = "does not carry its current" if len(pattern) == 1 else "do not carry their currents"
-                what = f"{progress.in_words(pattern)} {verb}"
-            complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
+            complaint = self._laboratory.driver_complaint() or "it does not say why"
             if waited > self._options.current_timeout:
                 raise RuntimeError(
-                    f"{what}, after {waited:.0f} s: {complaint}. See to that, and start guided_session again."
+                    f"{answer.message} After {waited:.0f} s: {complaint}. See to that, and start guided_session again."
                 )
-            self._terminal.say_once(
-                f"{what}: check the amplifier (tripped?) and the coil driver ({complaint})."
-            )
+            self._terminal.say_once(f"{answer.message} The driver: {complaint}.")
             self._laboratory.excite((), 0.0)
             rospy.sleep(PAUSE)
             self._laboratory.excite(pattern, self._current)
 
-    def _has_current(self):
-        """Whether the coils carry what is commanded, soon."""
+    def _answer_soon(self, pose, pattern):
+        """Answer to a capture; asked again for a moment while coils do not carry what is commanded."""
         end = rospy.get_time() + SLOW
-        while not self._laboratory.is_excited(self._calibration.status()):
-            if rospy.get_time() > end:
-                return False
+        while True:
+            answer = self._calibration.capture_planned(pose, pattern, self._current, self._options.dwell)
+            is_amiss = answer is not None and answer.flaw == CapturePlannedResponse.EXCITATION
+            if not is_amiss or rospy.get_time() > end:
+                return answer
             rospy.sleep(POLL)
-        return True
 
     def _capture(self, pose, pattern):
         """Captures one pattern; repeats, and says why, until a sample of it is held."""
         while True:
             self._laboratory.excite(pattern, self._current)
-            self._wait_for_current(pattern)
             rospy.sleep(min(self._settling(), 0.1))
-            answer = self._calibration.capture_planned(pose, pattern, self._options.dwell)
+            answer = self._answer_with_current(pose, pattern)
             if answer is None:
                 if pattern and self._holds(pose, pattern):
                     return

@@ -45,6 +45,9 @@ class MeasurementIntake {
   /// why they do not: see SampleBuilder::capture(). Never kWaiting.
   CaptureProgress waitForCapture(double duration) const;
 
+  /// Currents that were measured last [A], one per coil; none before any came.
+  Eigen::VectorXd currents() const;
+
   /// How the rotor moved with currents lately: see MotionMemory.
   MotionRecording motion();
   void forgetMotion();
@@ -75,6 +78,7 @@ class MeasurementIntake {
   mutable std::mutex mutex_;  ///< of all down to finished_
   StreamMerger merger_;
   SampleBuilder builder_;
+  Eigen::VectorXd newest_currents_;
   MotionMemory motion_;
   ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
   bool finished_ = true;           ///< nothing came since finish()
