@@ -43,7 +43,8 @@ class CheckRooms(unittest.TestCase):
                    "add_library_of_rooms(sac_control USES sac_core)\nadd_library_of_rooms(sac_storage USES sac_core)\n"
                    + "".join(f"add_subdirectory({room})\n" for room in rooms))  # fmt: skip
         for room, library in rooms.items():
-            self.write(f"src/{room}/CMakeLists.txt", f"add_room({room} LIBRARY {library}\n  SOURCES\n    rest.cpp)\n")
+            self.write(f"src/{room}/CMakeLists.txt", f"add_room({room} LIBRARY {library}\n  SOURCES\n    rest.cpp\n"
+                       "    angle.cpp table.cpp)\nadd_room_tests(base SOURCES angle_test.cpp)\n")
         self.write("src/nodes/CMakeLists.txt", "if(DATABASE)\n  add_node(turner sac_storage)\nendif()\n")
         self.write("src/tools/CMakeLists.txt", "add_library(tool_words STATIC words.cpp)\n"
                    "target_link_libraries(tool_words PUBLIC sac_core)\n"
@@ -77,6 +78,14 @@ class CheckRooms(unittest.TestCase):
         self.write(f"{INCLUDE}/control/motion.hpp", "enum class Motion { kUp };\n")
         self.write("src/storage/table.cpp", include("control/motion.hpp"))
         self.expect_one("src/storage/table.cpp: includes", "sac_storage does not link sac_control")
+
+    def test_names_sources_that_nobody_compiles(self):
+        self.write_libraries()
+        for name in ("src/base/wire.cpp", "test/base/wire_test.cpp"):
+            with self.subTest(name):
+                self.write(name, include("base/angle.hpp"))
+                self.expect_one(f"{name}: src/base/CMakeLists.txt does not list it")
+                (self.root / name).unlink()
 
     def test_names_a_program_that_does_not_link_what_it_includes(self):
         self.write_libraries()
@@ -297,7 +306,7 @@ class CheckRooms(unittest.TestCase):
             self.expect_one("scripts/turn:2: turn has 61 lines, more than 60")
 
     def test_names_a_long_cmake_file(self):
-        for name in ("CMakeLists.txt", "src/base/CMakeLists.txt", "cmake/rooms.cmake"):
+        for name in ("CMakeLists.txt", "benchmark/CMakeLists.txt", "cmake/rooms.cmake"):
             with self.subTest(name):
                 self.write(name, 200 * "\n")
                 self.assertEqual(self.complaints(), [])
