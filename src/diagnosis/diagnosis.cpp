@@ -8,6 +8,7 @@
 
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
+#include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "torque_screen.hpp"
 #include "wiring_case.hpp"
 
@@ -117,8 +118,8 @@ class Diagnostician {
     const WiringDiagnosis result_before = result_;
     PosteriorFit base = fitted({}, FittedStream::kTorques);
     for (int round = 0; round < kMostRounds; ++round) {
-      const std::vector<Judged> found = decided(
-          judged(screenTorques(case_, config_, with_joints), base, FittedStream::kTorques, true));
+      const std::vector<Judged> found =
+          decided(judged(screenedTorques(base, with_joints), base, FittedStream::kTorques, true));
       if (found.empty()) {
         break;
       }
@@ -130,6 +131,22 @@ class Diagnostician {
       case_ = before;
       result_ = result_before;
     }
+  }
+
+  /// By the misfit of the torques as described, and beside it at the parameters that explain them
+  /// best so far: there a single coil shows that is lost in the tolerance of all.
+  std::vector<ScreenedCandidate> screenedTorques(const PosteriorFit& base, bool with_joints) const {
+    std::vector<ScreenedCandidate> all = screenTorques(case_, config_, with_joints);
+    const WiringCase fitted{ParameterSpace(case_.actuator).actuatorAt(base.x), case_.samples};
+    for (ScreenedCandidate& candidate : screenMisfittingCoils(case_, fitted, config_)) {
+      const bool is_known = std::any_of(all.begin(), all.end(), [&](const ScreenedCandidate& one) {
+        return causes(one.parts) == causes(candidate.parts);
+      });
+      if (!is_known) {
+        all.push_back(std::move(candidate));
+      }
+    }
+    return all;
   }
 
   double mostMisfit() const { return std::sqrt(config_.estimation.max_reduced_chi_square); }

@@ -46,7 +46,7 @@ Hypothesis shift(int rows, const std::string& what) {
 
 std::vector<Hypothesis> shiftHypotheses(Quantity stream) {
   std::vector<Hypothesis> all;
-  for (const int rows : {1, -1, 2, -2}) {
+  for (const int rows : {1, -1, 2, -2, 3, -3}) {
     if (stream == Quantity::kOrientation) {
       Hypothesis orientation = shift(rows, "orientations");
       orientation.correct = moving(

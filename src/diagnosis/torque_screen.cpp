@@ -8,6 +8,7 @@
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
 #include "predicted_torques.hpp"
+#include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "torque_hypotheses.hpp"
 
@@ -19,6 +20,11 @@ constexpr std::size_t kMostFitted = 8;
 constexpr double kLeastGain = 3.0;
 /// A strength this near to none counts as none, and a factor this near to 1 as 1.
 constexpr double kAlikeUnit = 0.2;
+/// Coils with fewer torques are not judged by themselves.
+constexpr std::size_t kFewestOfCoil = 3;
+/// Twice the mean of a chi-square of three degrees of freedom: few coils reach it by chance.
+constexpr double kMisfits = 6.0;
+constexpr std::size_t kMostMisfitting = 2;
 
 /// All hypotheses of one case against its torques at the nominal description.
 class TorqueScreen {
@@ -311,6 +317,37 @@ std::vector<ScreenedCandidate> screenTorques(const WiringCase& described,
                                              const CalibrationConfig& config,
                                              bool with_joints) {
   return TorqueScreen(described, config).run(with_joints);
+}
+
+std::vector<ScreenedCandidate> screenMisfittingCoils(const WiringCase& described,
+                                                     const WiringCase& fitted,
+                                                     const CalibrationConfig& config) {
+  const std::vector<PredictedTorque> drawn = predictTorques(described, config);
+  const std::vector<PredictedTorque> torques = predictTorques(fitted, config);
+  std::vector<ScreenedCandidate> worst;
+  for (std::size_t coil = 0; coil < described.actuator.coils.size(); ++coil) {
+    const auto column = static_cast<Eigen::Index>(coil);
+    std::vector<double> misfits;
+    std::vector<double> strengths;
+    for (std::size_t n = 0; n < torques.size(); ++n) {
+      const Eigen::Vector3d own = drawn[n].per_ampere.col(column) * drawn[n].current[column];
+      if (std::abs(torques[n].current[column]) >= config.estimation.current_threshold &&
+          !own.isZero(0.0)) {
+        misfits.push_back((torques[n].measured - torques[n].total).squaredNorm() /
+                          torques[n].noise);
+        strengths.push_back((drawn[n].measured - drawn[n].total + own).norm() / own.norm());
+      }
+    }
+    if (misfits.size() < kFewestOfCoil) {
+      continue;
+    }
+    const double misfit = medianOf(misfits);
+    if (misfit > kMisfits) {
+      worst.push_back({{coilGain(coil, medianOf(strengths), config.tolerance.effect)}, misfit});
+    }
+  }
+  keepBest(worst, kMostMisfitting);
+  return worst;
 }
 
 }  // namespace sac

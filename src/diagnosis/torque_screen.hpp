@@ -14,4 +14,11 @@ std::vector<ScreenedCandidate> screenTorques(const WiringCase& described,
                                              const CalibrationConfig& config,
                                              bool with_joints);
 
+/// Strengths of the few coils whose torques misfit most where all others may fit: angles that took
+/// up a wrong strength hide it from a screen. `fitted`: the case with the parameters that explain
+/// its torques best as described.
+std::vector<ScreenedCandidate> screenMisfittingCoils(const WiringCase& described,
+                                                     const WiringCase& fitted,
+                                                     const CalibrationConfig& config);
+
 }  // namespace sac

@@ -1,7 +1,9 @@
 // Names the mistakes of sessions in files, for judges that made the files without this package:
 //   diagnose_samples ACTUATOR.yaml SAMPLES.yaml [ACTUATOR.yaml SAMPLES.yaml ...]
-// One line for each session: its causes, separated by blanks, or none.
+// One line for each session: the processor time it took [s], and its causes, separated by blanks,
+// or none.
 #include <cstdio>
+#include <ctime>
 #include <exception>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -16,8 +18,11 @@ int main(int argc, char** argv) {
   try {
     for (int n = 1; n < argc; n += 2) {
       const sac::Actuator actuator = sac::loadActuator(argv[n]);
-      const sac::WiringDiagnosis diagnosis = sac::diagnoseWiring(
-          actuator, sac::loadSamples(argv[n + 1], sac::modelledCoils(actuator)), {});
+      const std::vector<sac::Sample> samples =
+          sac::loadSamples(argv[n + 1], sac::modelledCoils(actuator));
+      const std::clock_t begin = std::clock();
+      const sac::WiringDiagnosis diagnosis = sac::diagnoseWiring(actuator, samples, {});
+      std::printf("%.4f ", static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
       for (const sac::Diagnosis& mistake : diagnosis.mistakes) {
         std::printf("%s ", mistake.cause.c_str());
         std::fprintf(stderr,

@@ -7,7 +7,7 @@ import numpy as np
 from wired_laboratory import quaternion, rotation_of, turn
 
 
-def _joints(change):
+def joints_changed(change):
     def apply(samples, _machine):
         for sample in samples:
             sample.q = change(sample.q.copy())
@@ -15,7 +15,7 @@ def _joints(change):
     return apply
 
 
-def _orientations(change):
+def orientations_changed(change):
     def apply(samples, _machine):
         for sample in samples:
             if sample.orientation is not None:
@@ -24,7 +24,7 @@ def _orientations(change):
     return apply
 
 
-def _torques(change):
+def torques_changed(change):
     def apply(samples, machine):
         for sample in samples:
             if sample.torque is not None:
@@ -33,7 +33,7 @@ def _torques(change):
     return apply
 
 
-def _currents(change):
+def currents_changed(change):
     """The recorded currents are not those that flowed."""
 
     def apply(samples, _machine):
@@ -61,7 +61,7 @@ def joint_sign(k):
         q[k] *= -1
         return q
 
-    return _joints(change)
+    return joints_changed(change)
 
 
 def joint_swap(k, other):
@@ -69,7 +69,7 @@ def joint_swap(k, other):
         q[[k, other]] = q[[other, k]]
         return q
 
-    return _joints(change)
+    return joints_changed(change)
 
 
 def joint_scale(k, factor):
@@ -77,7 +77,7 @@ def joint_scale(k, factor):
         q[k] *= factor
         return q
 
-    return _joints(change)
+    return joints_changed(change)
 
 
 def joint_index(k, angle):
@@ -85,7 +85,7 @@ def joint_index(k, angle):
         q[k] += angle
         return q
 
-    return _joints(change)
+    return joints_changed(change)
 
 
 def quaternion_order():
@@ -93,7 +93,7 @@ def quaternion_order():
         x, y, z, w = quaternion(rotation)
         return rotation_of([w, x, y, z])
 
-    return _orientations(change)
+    return orientations_changed(change)
 
 
 def coil_sign(j):
@@ -101,7 +101,7 @@ def coil_sign(j):
         current[j] *= -1
         return current
 
-    return _currents(change)
+    return currents_changed(change)
 
 
 def coil_swap(i, j):
@@ -109,7 +109,7 @@ def coil_swap(i, j):
         current[[i, j]] = current[[j, i]]
         return current
 
-    return _currents(change)
+    return currents_changed(change)
 
 
 def coil_strength(j, strength):
@@ -145,15 +145,15 @@ def both(*mistakes):
 
 
 def tracker_frame(rotation):
-    return _orientations(lambda R: rotation @ R)
+    return orientations_changed(lambda R: rotation @ R)
 
 
 def marker_frame(rotation):
-    return _orientations(lambda R: R @ rotation)
+    return orientations_changed(lambda R: R @ rotation)
 
 
 def torque_frame(rotation):
-    return _torques(lambda T, _R: rotation @ T)
+    return torques_changed(lambda T, _R: rotation @ T)
 
 
 X, Y, Z = np.eye(3)
@@ -166,14 +166,14 @@ LEVEL_1 = {
     "joints 1 and 2 exchanged": (joint_swap(0, 1), ["joint_swap:1:2"]),
     "joints 1 and 3 exchanged": (joint_swap(0, 2), ["joint_swap:1:3"]),
     "joints 2 and 3 exchanged": (joint_swap(1, 2), ["joint_swap:2:3"]),
-    "degrees": (_joints(np.degrees), ["joint_degrees"]),
+    "degrees": (joints_changed(np.degrees), ["joint_degrees"]),
     "encoder counts twice": (joint_scale(2, 2.0), ["joint_scale:3"]),
     "encoder counts half": (joint_scale(2, 0.5), ["joint_scale:3"]),
     "tilt 1 in 20 %": (joint_scale(0, 1.2), ["joint_scale:1"]),
     "index mark 30 deg off": (joint_index(2, np.radians(30)), ["joint_index:3"]),
     "index mark of joint 1": (joint_index(0, 0.5), ["joint_index:1"]),
     "index mark of joint 2": (joint_index(1, -0.4), ["joint_index:2"]),
-    "inverse orientation": (_orientations(lambda R: R.T), ["orientation_inverted"]),
+    "inverse orientation": (orientations_changed(lambda R: R.T), ["orientation_inverted"]),
     "w x y z": (quaternion_order(), ["quaternion_order"]),
     "tracker 90 deg about x": (tracker_frame(turn(X, np.pi / 2)), ["tracker_frame"]),
     "tracker 90 deg about z": (tracker_frame(turn(Z, np.pi / 2)), ["tracker_frame"]),
@@ -191,15 +191,15 @@ LEVEL_2 = {
     "torque frame 180 deg about x": (torque_frame(turn(X, np.pi)), ["torque_frame"]),
     "torque frame 90 deg about y": (torque_frame(turn(Y, -np.pi / 2)), ["torque_frame"]),
     "torque frame 30 deg about z": (torque_frame(turn(Z, np.radians(30))), ["torque_frame"]),
-    "torque in the stator": (_torques(lambda T, R: R @ T), ["torque_in_stator_frame"]),
-    "torque of reaction": (_torques(lambda T, _R: -T), ["torque_sign"]),
-    "reaction in the stator": (_torques(lambda T, R: -R @ T), [("torque_in_stator_frame", "torque_sign")]),
-    "torque in N mm": (_torques(lambda T, _R: 1e3 * T), ["torque_unit"]),
-    "torque in kgf cm": (_torques(lambda T, _R: T / 0.0980665), ["torque_unit"]),
-    "currents in mA": (_currents(lambda current: 1e3 * current), ["current_unit"]),
-    "currents with another sign": (_currents(lambda current: -current), ["current_sign"]),
-    "coils numbered from the next": (_currents(lambda current: np.roll(current, 1)), ["coil_shift"]),
-    "layers exchanged": (_currents(lambda current: np.roll(current, len(current) // 2)), ["coil_shift"]),
+    "torque in the stator": (torques_changed(lambda T, R: R @ T), ["torque_in_stator_frame"]),
+    "torque of reaction": (torques_changed(lambda T, _R: -T), ["torque_sign"]),
+    "reaction in the stator": (torques_changed(lambda T, R: -R @ T), [("torque_in_stator_frame", "torque_sign")]),
+    "torque in N mm": (torques_changed(lambda T, _R: 1e3 * T), ["torque_unit"]),
+    "torque in kgf cm": (torques_changed(lambda T, _R: T / 0.0980665), ["torque_unit"]),
+    "currents in mA": (currents_changed(lambda current: 1e3 * current), ["current_unit"]),
+    "currents with another sign": (currents_changed(lambda current: -current), ["current_sign"]),
+    "coils numbered from the next": (currents_changed(lambda current: np.roll(current, 1)), ["coil_shift"]),
+    "layers exchanged": (currents_changed(lambda current: np.roll(current, len(current) // 2)), ["coil_shift"]),
     "coil 4 backwards": (coil_sign(3), ["coil_sign:4"]),
     "coil 1 backwards": (coil_sign(0), ["coil_sign:1"]),
     "coils 2 and 5 exchanged": (coil_swap(1, 4), ["coil_swap:2:5"]),

@@ -123,7 +123,7 @@ def drawing(poles=8, coils=(12, 12), pole_elevation=0.0, coil_elevation=0.2618, 
         for j in range(count)
     ]
     return Machine(
-        axes=np.eye(3) if axes is None else np.asarray(axes, float),
+        axes=np.eye(3) if axes is None else np.array([np.array(axis, float) / np.linalg.norm(axis) for axis in axes]),
         offsets=np.zeros(3),
         poles=np.array([direction(angles) for angles in pole_angles]).reshape(-1, 3),
         polarity=np.array([(-1) ** i for i in range(poles)]),
@@ -249,7 +249,7 @@ def samples_yaml(samples, noise=None):
 
 def number(value):
     """A number that YAML reads as one."""
-    text = f"{float(value):.9g}"
+    text = f"{float(value):.12g}"
     return text if "." in text or "e" in text else text + ".0"
 
 
