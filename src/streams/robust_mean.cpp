@@ -31,19 +31,14 @@ double squaredDeviations(const double* begin, const double* end, double mean) {
   return sum;
 }
 
-/// Factor by which correlation between neighbours raises the variance of the mean.
-double correlationFactor(const std::vector<double>& series, double mean, double squares) {
-  const auto count = static_cast<double>(series.size());
+/// Lag-1 autocorrelation, zero where it is not significant.
+double neighbourCorrelation(const std::vector<double>& series, double mean, double squares) {
   double products = 0.0;
   for (std::size_t i = 1; i < series.size(); ++i) {
     products += (series[i - 1] - mean) * (series[i] - mean);
   }
   const double rho = squares > 0.0 ? products / squares : 0.0;
-  if (rho <= 2.0 / std::sqrt(count)) {
-    return 1.0;
-  }
-  // The mean is never known worse than a single measurement.
-  return std::min((1.0 + rho) / (1.0 - rho), count);
+  return rho > 2.0 / std::sqrt(static_cast<double>(series.size())) ? rho : 0.0;
 }
 
 void estimateDrift(const std::vector<double>& series,
@@ -75,8 +70,11 @@ void estimateComponent(const std::vector<double>& series,
   const double squares = squaredDeviations(series.data(), series.data() + series.size(), mean);
   result.mean[component] = mean;
   result.single_variance[component] = squares / std::max(count - 1.0, 1.0);
+  const double rho = neighbourCorrelation(series, mean, squares);
+  result.slow_variance[component] = result.single_variance[component] * rho;
+  // Correlation raises the variance of the mean, but never beyond that of a single measurement.
   result.variance[component] =
-      result.single_variance[component] / count * correlationFactor(series, mean, squares);
+      result.single_variance[component] / count * std::min((1.0 + rho) / (1.0 - rho), count);
   estimateDrift(series, component, result);
 }
 

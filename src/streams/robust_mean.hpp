@@ -13,6 +13,8 @@ struct MeanEstimate {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();         ///< of the mean, without any floor
   Eigen::Vector3d single_variance = Eigen::Vector3d::Zero();  ///< of one measurement
+  /// Part of it that neighbours in the series share: the lag-1 autocovariance, where significant.
+  Eigen::Vector3d slow_variance = Eigen::Vector3d::Zero();
   /// Largest difference between the means of the thirds of the series, per component.
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();
   /// Standard deviation of such a difference if only white noise made it.

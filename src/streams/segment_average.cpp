@@ -20,6 +20,8 @@ namespace {
 /// A difference of means counts as motion beyond the limit plus this many of its standard
 /// deviations: three pairs of thirds are looked at in three components.
 constexpr double kDriftSignificance = 4.0;
+/// Of a single orientation, over the largest motion: beyond it the tracker is disturbed.
+constexpr double kLargestNoise = 10.0;
 
 constexpr double kMilli = 1e3;
 
@@ -177,8 +179,14 @@ class SegmentAverager {
       return refuse("The measured orientation moved by " + shortNumber(drift * kMilli) +
                     " mrad while the joint sensors stood still.");
     }
+    const double sway = std::sqrt(estimate.slow_variance.maxCoeff());
+    if (sway > options_.largest_orientation_motion) {
+      return refuse("The measured orientation sways by " + shortNumber(sway * kMilli) +
+                    " mrad while the joint sensors stood still.");
+    }
+    // Noise of single measurements is none of motion: the mean states how well it is known.
     const double stddev = std::sqrt(estimate.single_variance.maxCoeff());
-    if (stddev > options_.largest_orientation_motion) {
+    if (stddev > kLargestNoise * options_.largest_orientation_motion) {
       return refuse("The measured orientation scatters by " + shortNumber(stddev * kMilli) +
                     " mrad while the joint sensors stood still.");
     }

@@ -159,9 +159,30 @@ TEST(SegmentAverage, RefusesWhatTheTrackerSawMove) {
   EXPECT_EQ(refusalOf(streams).substr(0, 34), "The measured orientation moved by ");
 }
 
+TEST(SegmentAverage, RefusesWhatTheTrackerSawSway) {
+  Streams streams = restingStreams();
+  for (OrientationMeasurement& orientation : streams.orientations) {
+    const double angle = 0.02 * std::sin(20.0 * synthetic::timeOf(orientation.stamp));
+    orientation.q_stator_rotor =
+        Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())) *
+        orientation.q_stator_rotor;
+  }
+  EXPECT_EQ(refusalOf(streams).substr(0, 34), "The measured orientation sways by ");
+}
+
+TEST(SegmentAverage, TakesTheNoiseOfATrackerForNoMotion) {
+  Sensors sensors;
+  sensors.orientation_noise = 0.01;
+  const SegmentAverage average =
+      averageSegment(buffersOf(restingStreams(sensors)), whole_second, {});
+  ASSERT_TRUE(average.sample.has_value()) << average.refusal;
+  EXPECT_TRUE(average.sample->has_orientation);
+  EXPECT_GT(average.sample->orientation_stddev, 5e-4);
+}
+
 TEST(SegmentAverage, RefusesAScatteringTracker) {
   Sensors sensors;
-  sensors.orientation_noise = 0.02;
+  sensors.orientation_noise = 0.2;
   EXPECT_EQ(refusalOf(restingStreams(sensors)).substr(0, 37),
             "The measured orientation scatters by ");
 }

@@ -20,7 +20,8 @@ struct SampleBuilderOptions {
   /// explains [rad]. A slow drift passes the window; here it ends.
   double largest_joint_drift = 2e-4;
   /// The same for the measured orientation [rad]: the tracker saw the rotor move while the joint
-  /// sensors stood still. It also bounds the standard deviation of a single measurement.
+  /// sensors stood still. It also bounds the standard deviation of swaying, which neighbouring
+  /// measurements share, and a tenth of that of a single measurement.
   double largest_orientation_motion = 5e-3;
   double settle_after_motion = 0.2;  ///< left out at the begin of a dwell [s]
   double guard_before_motion = 0.2;  ///< left out at the end of a dwell [s]
