@@ -80,9 +80,15 @@ bool explains(double with_it, double without_it) {
 
 std::string valueInWords(const ParameterEstimate& estimate) {
   if (estimate.unit == "1") {
-    return format("%s = %.2f %% ± %.2f %%",
+    constexpr double kFewest = 2.0;
+    constexpr double kMost = 6.0;
+    const double to_first_digit = std::ceil(-std::log10(1e2 * estimate.stddev));
+    const auto decimals = static_cast<int>(std::min(std::max(to_first_digit, kFewest), kMost));
+    return format("%s = %.*f %% ± %.*f %%",
                   estimate.name.c_str(),
+                  decimals,
                   1e2 * estimate.value,
+                  decimals,
                   1e2 * estimate.stddev);
   }
   return format("%s = %.3g ± %.2g %s",
