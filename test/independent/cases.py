@@ -21,9 +21,11 @@ class Outcome:
     grade: str
     reason: str
     cycles: list  # (name, success, message)
-    solve_time: float  # [s] of the last cycle
+    seconds: float  # of the last cycle
     complete: bool  # exit status 0 of calibrate_bag
     joint_covariance: np.ndarray  # 9x9, of the coordinates of the joints
+    diagnoses: list  # (cause, message), where the last cycle was refused
+    check: tuple  # (whether the held-out samples find it valid, message), where any are held out
 
     def refined(self):
         return self.cycles and self.cycles[-1][0] == "refine" and self.cycles[-1][1]
@@ -39,15 +41,20 @@ def registration_config(registration, more=""):
 
 
 def read_outcomes(text, names):
-    outcomes, rows, cycles, solve_time, complete, covariance = [], {}, [], 0.0, False, None
+    outcomes, rows, cycles, seconds, complete, covariance = [], {}, [], 0.0, False, None
     for line in text.splitlines():
         word, _, rest = line.partition(" ")
         if word == "case":
-            rows, cycles = {}, []
+            rows, cycles, diagnoses, check = {}, [], [], None
         elif word == "cycle":
-            name, how, _, _, _, _, _, seconds, message = rest.split(" ", 8)
+            name, how, _, _, _, _, _, taken, message = rest.split(" ", 8)
             cycles.append((name, how == "success", message))
-            solve_time = float(seconds)
+            seconds = float(taken)
+        elif word == "diagnosis":
+            diagnoses.append(tuple(rest.split(" ", 1)))
+        elif word == "check":
+            how, _, message = rest.partition(" ")
+            check = how == "valid", message
         elif word == "parameter":
             name, value, stddev, identified = rest.split(" ")
             rows[name] = (float(value), float(stddev), identified == "identified")
@@ -59,7 +66,9 @@ def read_outcomes(text, names):
             grade, _, reason = rest.partition(" ")
             chosen = [rows[name] for name in names]
             values, stddevs, identified = (np.array(column) for column in zip(*chosen))
-            outcomes.append(Outcome(values, stddevs, identified, grade, reason, cycles, solve_time, complete, covariance))
+            outcomes.append(
+                Outcome(values, stddevs, identified, grade, reason, cycles, seconds, complete, covariance, diagnoses, check)
+            )
     return outcomes
 
 

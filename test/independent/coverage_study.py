@@ -84,7 +84,7 @@ def study(name, count, first_seed=1000, with_bound=True):
         error_over_bound_error=np.std(squares) / root / (2.0 * error_over_bound),
         stated_over_bound=np.sqrt(np.mean((stddevs[done] / limits) ** 2)),
         refined=int(done.sum()),
-        seconds=float(np.median([outcome.solve_time for outcome in outcomes])),
+        seconds=float(np.median([outcome.seconds for outcome in outcomes])),
     )
 
 

@@ -158,6 +158,7 @@ class Dwell:
     reading: np.ndarray
     orientation: np.ndarray = None  # measured R
     torques: list = dataclasses.field(default_factory=list)  # ({coil: ampere}, measured torque)
+    held_out: bool = False
 
 
 def coils_in_reach(unit, q, count):
@@ -211,7 +212,7 @@ def write_samples(path, unit, laboratory, dwells, validation_every=0):
         return "[" + ", ".join(repr(float(v)) for v in values) + "]"
 
     for n, dwell in enumerate(dwells):
-        held_out = validation_every and n % validation_every == validation_every - 1
+        held_out = dwell.held_out or validation_every and n % validation_every == validation_every - 1
         common = [f"  - joint_position: {numbers(dwell.reading)}", f"    joint_stddev: {numbers([joint_stddev] * 3)}"]
         if held_out:
             common.append("    validation: true")
@@ -234,17 +235,18 @@ def write_samples(path, unit, laboratory, dwells, validation_every=0):
 
 
 def _predicted(unit, x, dwell):
-    """Stacked prediction of a dwell at x = (errors, registrations, errors of the reading, bias)."""
+    """Stacked prediction of a dwell at x = (errors, registrations, errors of the reading, bias, its drift)."""
     size = unit.size()
     errors, tracker, marker, sensor = x[:size], x[size : size + 3], x[size + 3 : size + 6], x[size + 6 : size + 9]
-    joints, bias = x[size + 9 : size + 12], x[size + 12 : size + 15]
+    joints, bias, drift = x[size + 9 : size + 12], x[size + 12 : size + 15], x[size + 15 : size + 18]
     R = unit.orientation(errors, dwell.reading - joints)
     rows = []
     if dwell.orientation is not None:
         predicted = rotation(tracker) @ R @ rotation(marker)
         rows.append(-rotation_vector(dwell.orientation @ predicted.T))
-    for current, _ in dwell.torques:
-        rows.append(rotation(sensor) @ unit.torque(errors, R, current) + bias)
+    for n, (current, _) in enumerate(dwell.torques):
+        drifted = bias + drift * (n + 1) / len(dwell.torques)
+        rows.append(rotation(sensor) @ unit.torque(errors, R, current) + drifted)
     return np.concatenate(rows)
 
 
@@ -257,12 +259,13 @@ def bound(unit, errors, laboratory, dwells, registered=None):
     stddevs = laboratory.registration if registered is None else registered
     shared = size + 9
     information = np.zeros((shared, shared))
-    latent = np.array([laboratory.reading_stddev()] * 3 + [laboratory.zero_current] * 3)
+    latent = np.repeat([laboratory.reading_stddev(), laboratory.zero_current, laboratory.bias_drift], 3)
+    count = shared + len(latent)
     for dwell in dwells:
-        x = np.concatenate([errors, np.zeros(15)])
+        x = np.concatenate([errors, np.zeros(count - size)])
         columns = []
-        for p in range(size + 15):
-            step = np.zeros(size + 15)
+        for p in range(count):
+            step = np.zeros(count)
             step[p] = 1e-6
             columns.append((_predicted(unit, x + step, dwell) - _predicted(unit, x - step, dwell)) / 2e-6)
         J = np.stack(columns, axis=1)
@@ -272,6 +275,6 @@ def bound(unit, errors, laboratory, dwells, registered=None):
         information += J[:, :shared].T @ np.linalg.solve(V, J[:, :shared])
     known = np.repeat(np.asarray(stddevs), 3)
     free = np.concatenate([np.ones(size, bool), known > 0.0])
-    information[size:, size:] += np.diag(np.where(known > 0.0, 1.0 / np.maximum(known, 1e-300) ** 2, 0.0))
+    information[size:, size:] += np.diag(np.divide(1.0, known**2, out=np.zeros_like(known), where=known > 0.0))
     covariance = np.linalg.inv(information[np.ix_(free, free)])
     return covariance[:size, :size]

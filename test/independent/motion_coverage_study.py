@@ -1,17 +1,21 @@
 #!/usr/bin/python3
 """Do the 95 % intervals of a calibration in motion hold 95 %?
 
-    motion_coverage_study.py [SCENARIO...] [--units N] [--first SEED] [--seconds S]
+    motion_coverage_study.py [SCENARIO...] [--units N] [--first SEED] [--seconds S] [--bounds N]
 
 Every unit has errors, a motion and noise of its own; all scenarios record the same motions. One line a unit, and one a
 scenario with the share of parameters inside and its standard error: the parameters of one unit share the tracker's
 errors, so it is that of the mean of the units' shares, not of a binomial distribution over all parameters.
+
+--bounds compares errors and standard deviations of so many units in the scenario 1000_hz with the Cramér-Rao bound of the
+whole recording (motion_bound.py), root mean square over the unit's parameters.
 """
 
 import argparse
 
 import free_motion
 import laboratory
+import motion_bound
 import numpy as np
 from motion_cases import calibrate
 
@@ -41,6 +45,7 @@ class Tally:
 
     def __init__(self):
         self.inside, self.squares, self.normalised, self.worst, self.refused = [], [], [], [], 0
+        self.error_over_bound, self.stated_over_bound = [], []  # squared
 
     def add(self, outcome, unit, errors):
         """The line of one unit."""
@@ -58,6 +63,29 @@ class Tally:
             f"chi-square {outcome.chi_square:.3f}  held out {outcome.probability:.2g}"
         )
 
+    def compare(self, outcome, unit, errors, limits):
+        """With the bound of each parameter; the end of the unit's line."""
+        apart, stddevs, _ = outcome.judged(unit, errors)
+        scale = np.mean(limits**2)
+        self.error_over_bound.append(np.mean(apart**2) / scale)
+        self.stated_over_bound.append(np.mean(stddevs**2) / scale)
+        return (
+            f"  error/bound {np.sqrt(self.error_over_bound[-1]):.2f}  stated/bound {np.sqrt(self.stated_over_bound[-1]):.3f}  "
+            f"worst stated/bound of a parameter {np.max(stddevs / limits):.3f}"
+        )
+
+    def bounds(self):
+        """What the comparisons came to."""
+        if not self.error_over_bound:
+            return ""
+        squares = np.array(self.error_over_bound)
+        rms = np.sqrt(np.mean(squares))
+        uncertainty = np.std(squares) / np.sqrt(len(squares)) / (2.0 * rms)
+        return (
+            f"  of {len(squares)}: error/bound {rms:.3f} +- {uncertainty:.3f}, stated/bound "
+            f"{np.sqrt(np.mean(self.stated_over_bound)):.3f}"
+        )
+
     def __str__(self):
         if not self.inside:
             return f"no unit calibrated, {self.refused} refused"
@@ -66,7 +94,7 @@ class Tally:
             f"{len(self.inside)} units, {self.refused} refused: inside {100.0 * np.mean(self.inside):.1f} +- "
             f"{100.0 * np.std(self.inside) / root:.1f} %  rms {np.sqrt(np.mean(self.squares)) / MILLI:.4f} mrad  "
             f"normalised {np.sqrt(np.mean(self.normalised)):.2f}  worst std {np.median(self.worst) / MILLI:.4f} mrad (median)"
-        )
+        ) + self.bounds()
 
 
 def main():
@@ -75,6 +103,7 @@ def main():
     parser.add_argument("--units", type=int, default=100)
     parser.add_argument("--first", type=int, default=1, help="seed of the first unit")
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--bounds", type=int, default=0, metavar="N", help="a minute each")
     options = parser.parse_args()
     unit, machine = laboratory.paper_unit(), free_motion.Machine()
     tallies = {scenario: Tally() for scenario in options.scenarios or SCENARIOS}
@@ -84,7 +113,11 @@ def main():
         for scenario, tally in tallies.items():
             streams = streams_of(scenario, np.random.default_rng(1000 + seed))
             outcome = calibrate(free_motion.record(unit, errors, motion, streams, seed))
-            print(f"unit {seed} {scenario:15} {tally.add(outcome, unit, errors)}", flush=True)
+            line = tally.add(outcome, unit, errors)
+            if scenario == "1000_hz" and seed < options.first + options.bounds:
+                limits = np.sqrt(np.diag(motion_bound.bound(unit, errors, machine, motion, streams)))
+                line += tally.compare(outcome, unit, errors, limits)
+            print(f"unit {seed} {scenario:15} {line}", flush=True)
     for scenario, tally in tallies.items():
         print(f"{scenario:15} {tally}")
 
