@@ -89,7 +89,7 @@ CoilDriver::Beat CoilDriver::exchange(const BeatClock& clock) {
   }
   last_beat_ = clock.begin();
   const double reading_began = clock.now();
-  result.measured = measure(reading_began);
+  result.measured = measure(clock);
   result.reading_time = clock.now() - reading_began;
   return result;
 }
@@ -112,9 +112,10 @@ Heartbeat CoilDriver::heartbeat() const {
   return is_measured_ && supervisor_.mayBeat() ? Heartbeat::kGiven : Heartbeat::kWithheld;
 }
 
-Eigen::VectorXd CoilDriver::measure(double now) {
+Eigen::VectorXd CoilDriver::measure(const BeatClock& clock) {
+  const double begin = clock.now();
   Eigen::VectorXd measured = amplifier_.read();
-  supervisor_.observe(measured, now);
+  supervisor_.observe(measured, begin, clock.now());
   is_measured_ = true;
   return measured;
 }
@@ -163,13 +164,14 @@ std::string CoilDriver::tryTo(void (CurrentAmplifier::*way)()) {
 }
 
 std::string CoilDriver::stop(double now) {
+  const BeatClock clock(now);
   supervisor_.close();
   forget();
   std::string failure = tryToDisable();
   try {
     allowOneBeat();
     transport_.open();
-    measure(now);
+    measure(clock);
   } catch (const Error& error) {
     transport_.close();
     return error.what();

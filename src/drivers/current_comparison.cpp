@@ -17,8 +17,8 @@ constexpr double kDelayStep = 0.01;
 constexpr Eigen::Index kDelays = 17;
 constexpr double kLongestDelay = kDelayStep * static_cast<double>(kDelays);
 
-/// Spans of time are no shorter, however fast the loop is [s].
-constexpr double kShortestSpan = 0.5 * kDelayStep;
+/// Of spans of time, however fast or slow the loop is [s].
+constexpr double kSpan = 0.5 * kDelayStep;
 
 /// Time constants lie between those that are tried: so much of what the setpoints change is allowed
 /// beside the tolerance.
@@ -47,7 +47,8 @@ CurrentComparison::CurrentComparison(std::size_t coils, double tolerance, int be
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils))),
       lowest_(setpoints_),
       highest_(setpoints_),
-      filtered_(Eigen::ArrayXXd::Zero(setpoints_.size(), kFilters)),
+      lower_(Eigen::ArrayXXd::Zero(setpoints_.size(), kFilters)),
+      upper_(lower_),
       deviating_(Eigen::ArrayXXd::Zero(setpoints_.size(), kFilters * kDelays)) {}
 
 void CurrentComparison::setting(const Eigen::VectorXd& setpoints) {
@@ -57,10 +58,17 @@ void CurrentComparison::setting(const Eigen::VectorXd& setpoints) {
 }
 
 std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& measured,
-                                                      double steady) {
-  const double weight = weightOf(steady);
-  advance(steady);
-  count(measured.array(), steady, weight);
+                                                      double begin,
+                                                      double end) {
+  const double weight = weightOf(end);
+  // What was set before may be in force until the answer to what was set last has come.
+  advance(begin);
+  lowest_ = highest_ = setpoints_.array();
+  advance(end);
+  while (spans_.front().end < begin - kLongestDelay) {
+    spans_.pop_front();
+  }
+  count(measured.array(), begin, end, weight);
   Eigen::Index coil = 0;
   most_ = deviating_.rowwise().minCoeff().maxCoeff(&coil);
   if (most_ < beats_) {
@@ -69,8 +77,8 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
   return static_cast<std::size_t>(coil);
 }
 
-double CurrentComparison::weightOf(double steady) const {
-  const double beats = (steady - last_.value_or(steady)) / period_;
+double CurrentComparison::weightOf(double end) const {
+  const double beats = (end - last_.value_or(end)) / period_;
   return std::max(1.0, std::min(beats, kLargestShare * beats_));
 }
 
@@ -83,36 +91,46 @@ void CurrentComparison::forgive() {
   most_ = 0.0;
 }
 
-// A late beat, or a current that needs a moment: what was set before may still flow. So what was in
-// force since the last measurement is all that was set from that one's setpoints on.
-void CurrentComparison::advance(double steady) {
-  Span span{last_.value_or(-std::numeric_limits<double>::infinity()), steady, filtered_, filtered_};
-  const double elapsed = steady - last_.value_or(steady);
+// Anything between the lowest and the highest setpoint may be in force all the time: no amplifier
+// of a time constant leaves what those two make of it. What a delay does not reach back to is one
+// span.
+void CurrentComparison::advance(double until) {
+  if (!last_) {
+    remember(settled(-std::numeric_limits<double>::infinity(), until, 0.0));
+    last_ = until;
+    return;
+  }
+  until = std::max(until, *last_);
+  const double remembered = until - kLongestDelay - kDelayStep;
+  do {
+    const double to = std::min(until, std::max(*last_ + kSpan, remembered));
+    remember(settled(*last_, to, to - *last_));
+    last_ = to;
+  } while (*last_ < until);
+}
+
+CurrentComparison::Span CurrentComparison::settled(double from, double to, double elapsed) {
+  Span span{from, to, lower_, upper_};
   for (Eigen::Index filter = 1; filter < kFilters; ++filter) {
     const double share = -std::expm1(-elapsed / kTimeConstants[static_cast<std::size_t>(filter)]);
-    filtered_.col(filter) += share * (filtered_.col(0) - filtered_.col(filter));
+    lower_.col(filter) += share * (lowest_ - lower_.col(filter));
+    upper_.col(filter) += share * (highest_ - upper_.col(filter));
   }
-  filtered_.col(0) = setpoints_.array();
-  span.lowest = span.lowest.min(filtered_);
-  span.highest = span.highest.max(filtered_);
-  span.lowest.col(0) = span.lowest.col(0).min(lowest_);
-  span.highest.col(0) = span.highest.col(0).max(highest_);
-  lowest_ = highest_ = setpoints_.array();
-  last_ = steady;
-  remember(span);
+  lower_.col(0) = lowest_;
+  upper_.col(0) = highest_;
+  span.lowest = span.lowest.min(lower_);
+  span.highest = span.highest.max(upper_);
+  return span;
 }
 
 void CurrentComparison::remember(const Span& span) {
-  if (!spans_.empty() && span.end - spans_.back().begin < kShortestSpan) {
+  if (!spans_.empty() && span.end - spans_.back().begin < kSpan) {
     Span& last = spans_.back();
     last.end = span.end;
     last.lowest = last.lowest.min(span.lowest);
     last.highest = last.highest.max(span.highest);
   } else {
     spans_.push_back(span);
-  }
-  while (spans_.front().end < span.end - kLongestDelay) {
-    spans_.pop_front();
   }
 }
 
@@ -126,16 +144,20 @@ Eigen::ArrayXd CurrentComparison::tolerances() const {
   return tolerance_ + kShareOfChange * (highest - lowest);
 }
 
-void CurrentComparison::count(const Eigen::ArrayXd& measured, double steady, double weight) {
+void CurrentComparison::count(const Eigen::ArrayXd& measured,
+                              double begin,
+                              double end,
+                              double weight) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const Eigen::ArrayXd tolerance = tolerances();
   for (Eigen::Index delay = 0; delay < kDelays; ++delay) {
-    const double latest = steady - kDelayStep * static_cast<double>(delay);
+    const double latest = end - kDelayStep * static_cast<double>(delay);
+    const double earliest = begin - kDelayStep * static_cast<double>(delay + 1);
     Eigen::ArrayXXd lowest = Eigen::ArrayXXd::Constant(measured.size(), kFilters, kNone);
     Eigen::ArrayXXd highest = -lowest;
     for (const Span& span : spans_) {
       const bool has_begun = span.begin < latest || delay == 0;
-      if (has_begun && span.end > latest - kDelayStep) {
+      if (has_begun && span.end > earliest) {
         lowest = lowest.min(span.lowest);
         highest = highest.max(span.highest);
       }

@@ -195,12 +195,12 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   }
 }
 
-void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) {
+void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, double end) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
-  countZeros(measured, steady);
-  const std::optional<std::size_t> stray = countStrays(measured, steady);
-  std::optional<std::size_t> deviating = comparison_.observe(measured, steady);
+  countZeros(measured, begin);
+  const std::optional<std::size_t> stray = countStrays(measured, begin);
+  std::optional<std::size_t> deviating = comparison_.observe(measured, begin, end);
   if (!deviating && strays_ >= kMostStrays) {
     deviating = stray;
   }
@@ -210,11 +210,11 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double steady) 
     return;
   }
   if (!fault_.empty()) {
-    watchZero(steady);
+    watchZero(begin);
     endFault();
   }
   if (maySustain()) {
-    fed_at_ = steady;
+    fed_at_ = begin;
   }
 }
 

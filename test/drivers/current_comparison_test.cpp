@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/drivers/current_comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -93,8 +94,8 @@ double toldAt(const Course& commanded, Plant plant, double end, double jitter = 
     const double command = commanded(std::floor(time * kCommandRate) / kCommandRate);
     setpoint += std::max(-step, std::min(step, command - setpoint));
     comparison.setting(Eigen::Vector2d(0.0, setpoint));
-    if (const auto coil =
-            comparison.observe(Eigen::Vector2d(0.0, plant(setpoint, time)), 1000.0 + time)) {
+    if (const auto coil = comparison.observe(
+            Eigen::Vector2d(0.0, plant(setpoint, time)), 1000.0 + time, 1000.0 + time)) {
       EXPECT_EQ(*coil, 1U);
       return time;
     }
@@ -188,36 +189,115 @@ TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
   double time = 0.0;
   const auto beats_until_told = [&] {
     int beats = 1;
-    while (!comparison.observe(two, time += kBeat)) {
+    for (; !comparison.observe(two, time, time); time += kBeat) {
       ++beats;
     }
     return beats;
   };
   EXPECT_EQ(beats_until_told(), kBeats);
-  EXPECT_TRUE(comparison.observe(two, time += kBeat));
+  EXPECT_TRUE(comparison.observe(two, time, time));
   comparison.forgive();
   EXPECT_EQ(beats_until_told(), kBeats);
 }
 
-// An amplifier that answers slowly makes the beats long; the time until it is told must not grow.
-TEST(CurrentComparison, ASlowLoopTellsInTheSameTime) {
-  for (const double beat : {0.005, 0.012, 0.03, 0.06, 0.09}) {
-    CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
-    const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
-    double time = 0.0;
-    for (; time < 1.0; time += beat) {
-      comparison.setting(two);
-      ASSERT_FALSE(comparison.observe(two, time)) << beat;
+/// Answers slowly: what it does of a request may be done at the begin of its answer, or at its end.
+class SlowAmplifier {
+ public:
+  SlowAmplifier(double delay, double time_constant)
+      : delay_(delay), time_constant_(time_constant) {}
+
+  void set(double setpoint, double time) { orders_.emplace_back(time, setpoint); }
+  double currentAt(double time) {
+    constexpr double kPart = 0.001;  // [s]
+    while (time_ < time) {
+      const double part = std::min(kPart, time - time_);
+      time_ += part;
+      while (orders_.size() > 1 && orders_[1].first <= time_ - delay_) {
+        orders_.pop_front();
+      }
+      const double wanted = orders_.front().second;
+      current_ +=
+          (wanted - current_) * (time_constant_ > 0.0 ? -std::expm1(-part / time_constant_) : 1.0);
     }
+    return current_;
+  }
+
+ private:
+  double delay_;
+  double time_constant_;
+  std::deque<std::pair<double, double>> orders_{{-1.0, 0.0}};
+  double time_ = 0.0;
+  double current_ = 0.0;
+};
+
+/// A loop of three requests: of the trip, of the setpoints, of the currents.
+struct SlowLoop {
+  double answer = 0.0;    ///< takes so long [s]
+  double applied = 0.0;   ///< at this share of it
+  double measured = 0.0;  ///< likewise
+};
+
+/// When the coil is told to deviate [s]; what the amplifier measures is replaced by `lie`, if
+/// given.
+double toldAt(const Course& commanded,
+              SlowAmplifier amplifier,
+              const SlowLoop& loop,
+              double end,
+              const Course& lie = {}) {
+  CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
+  double setpoint = 0.0;
+  for (double time = 0.0; time < end;) {
+    const double step = kSlew * std::min(3.0 * loop.answer, 0.05);
+    time += loop.answer;
+    setpoint += std::max(-step, std::min(step, commanded(time) - setpoint));
+    comparison.setting(Eigen::VectorXd::Constant(1, setpoint));
+    amplifier.set(setpoint, time + loop.applied * loop.answer);
+    time += loop.answer;
+    const double moment = time + loop.measured * loop.answer;
+    const double current = lie ? lie(moment) : amplifier.currentAt(moment);
     const double begin = time;
-    bool is_told = false;
-    for (; !is_told && time < begin + 2.0; time += beat) {
-      comparison.setting(none);
-      is_told = comparison.observe(two, time).has_value();
+    time += loop.answer;
+    if (comparison.observe(Eigen::VectorXd::Constant(1, current), begin, time)) {
+      return time;
     }
-    EXPECT_GT(time - begin, 0.3) << beat;
-    EXPECT_LT(time - begin, 0.56) << beat;
+  }
+  return kNever;
+}
+
+TEST(CurrentComparison, SlowAnswersOfAnHonestAmplifierAreNoDeviation) {
+  for (const double answer : {0.003, 0.007, 0.01, 0.03}) {
+    for (const double delay : {0.0, 0.05, 0.16}) {
+      for (const double time_constant : {0.0, 0.02, 0.03}) {
+        for (const double applied : {0.0, 1.0}) {
+          for (const double measured : {0.0, 1.0}) {
+            for (const auto& [name, course] : commands()) {
+              EXPECT_EQ(toldAt(course,
+                               SlowAmplifier(delay, time_constant),
+                               {answer, applied, measured},
+                               4.0),
+                        kNever)
+                  << name << ", answers of " << answer << " s, delay " << delay
+                  << ", time constant " << time_constant << ", applied at " << applied
+                  << ", measured at " << measured;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// The time until it is told must hardly grow: three measurements decide at least.
+TEST(CurrentComparison, ASlowLoopTellsInHardlyMoreTime) {
+  for (const double answer : {0.001, 0.003, 0.01, 0.02, 0.023, 0.028, 0.033}) {
+    for (double off = 1.0; off < 1.1; off += 0.003) {
+      const Course commanded = [off](double time) { return time < off ? 2.0 : 0.0; };
+      const Course stuck = [](double time) { return time < 0.1 ? 0.0 : 2.0; };
+      const double told =
+          toldAt(commanded, SlowAmplifier(0.0, 0.0), {answer, 0.0, 0.0}, 4.0, stuck) - off;
+      EXPECT_GT(told, 0.29) << answer;
+      EXPECT_LT(told, answer < 0.025 ? 0.48 : 0.57) << answer;
+    }
   }
 }
 

@@ -25,7 +25,7 @@ std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& w
     for (int n = 0; n < flow.beats; ++n) {
       now += 0.005;
       supervisor.setting(amperes(flow.set));
-      supervisor.observe(amperes(flow.measured), now);
+      supervisor.observe(amperes(flow.measured), now, now);
     }
   }
   return supervisor.fault();
@@ -69,7 +69,7 @@ TEST(SupervisedCurrents, CurrentThatComesRarelyBesideACommandedCoilIsAnErrorToo)
   double told = 0.0;
   for (int beat = 0; beat < 1000 && told == 0.0; ++beat) {
     supervisor.setting(amperes(1.0));
-    supervisor.observe(amperes(1.0, beat % 50 < 4 ? 2.0 : 0.0), 0.005 * beat);
+    supervisor.observe(amperes(1.0, beat % 50 < 4 ? 2.0 : 0.0), 0.005 * beat, 0.005 * beat);
     told = supervisor.fault().empty() ? 0.0 : 0.005 * beat;
   }
   EXPECT_GT(told, 1.0);
@@ -103,7 +103,7 @@ TEST(SupervisedCurrents, TheHeartbeatIsWithheldBeforeADeviationIsSure) {
   const auto beats = [&](int count, double measured) {
     for (int beat = 0; beat < count; ++beat, time += 0.005) {
       supervisor.setting(amperes(1.0));
-      supervisor.observe(amperes(measured), time);
+      supervisor.observe(amperes(measured), time, time);
     }
   };
   beats(100, 1.0);
@@ -120,9 +120,9 @@ TEST(SupervisedCurrents, ADriverThatStartsGivesNoHeartbeatWhileCurrentFlows) {
   CurrentSupervisor supervisor(limits(), 2);
   EXPECT_FALSE(supervisor.mayBeat());
   supervisor.setting(amperes(0.0));
-  supervisor.observe(amperes(0.0, 1.0), 0.0);
+  supervisor.observe(amperes(0.0, 1.0), 0.0, 0.0);
   EXPECT_FALSE(supervisor.mayBeat());
-  supervisor.observe(amperes(0.0, 0.1), 0.005);
+  supervisor.observe(amperes(0.0, 0.1), 0.005, 0.005);
   EXPECT_TRUE(supervisor.mayBeat());
 }
 
@@ -155,7 +155,7 @@ class FaultOfCurrents : public ::testing::Test {
     for (int n = 0; n < beats; ++n) {
       supervisor_.setting(amperes(0.0));
       beat_ += 0.005;
-      supervisor_.observe(amperes(0.0, measured), beat_);
+      supervisor_.observe(amperes(0.0, measured), beat_, beat_);
     }
   }
   /// What follows happens a moment later.
@@ -225,7 +225,7 @@ TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
   for (const double now : {10.0, 10.1}) {
     for (int n = 0; n < 4; ++n) {
-      supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n);
+      supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n, now + 0.005 * n);
     }
   }
   EXPECT_NE(supervisor.fault(), "");
@@ -256,7 +256,7 @@ TEST(SupervisedCurrents, AZeroByTheWatchdogEndsNoError) {
     for (; now < until; now += 0.005) {
       fed = supervisor.mayBeat() ? now : fed;
       supervisor.setting(amperes(0.0));
-      supervisor.observe(amperes(measured), now);
+      supervisor.observe(amperes(measured), now, now);
     }
   };
   beats(10.5, 0.0);
@@ -287,7 +287,7 @@ TEST(SupervisedCurrents, ALinkThatIsLostAgainWithCurrentIsAnError) {
   double now = 30.0;
   const auto measured = [&](double current) {
     for (int beat = 0; beat < 4; ++beat, now += 0.005) {
-      supervisor.observe(amperes(current), now);
+      supervisor.observe(amperes(current), now, now);
     }
     return supervisor.fault();
   };
@@ -309,7 +309,7 @@ TEST(SupervisedCurrents, CurrentDuringAnErrorOfTheLinkIsTheGraverOne) {
   }
   ASSERT_NE(supervisor.fault(), "");
   for (double now = 12.0; now < 13.0; now += 0.005) {
-    supervisor.observe(amperes(2.0), now);
+    supervisor.observe(amperes(2.0), now, now);
   }
   EXPECT_EQ(supervisor.faults(), 1);
   EXPECT_NE(supervisor.fault().find("carries 2.00 A"), std::string::npos) << supervisor.fault();
@@ -319,7 +319,7 @@ TEST(SupervisedCurrents, CurrentDuringAnErrorOfTheLinkIsTheGraverOne) {
 TEST(SupervisedCurrents, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
   for (int n = 0; n < 4; ++n) {
-    supervisor.observe(amperes(0.0, 2.0), 0.005 * n);
+    supervisor.observe(amperes(0.0, 2.0), 0.005 * n, 0.005 * n);
   }
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
   EXPECT_FALSE(supervisor.command(10.0));
@@ -357,7 +357,7 @@ TEST(SupervisedCurrents, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
       for (int n = 0; n < flow.beats; ++n) {
         now += ending.beat;
         supervisor.setting(amperes(flow.set));
-        supervisor.observe(amperes(0.0, flow.measured), now);
+        supervisor.observe(amperes(0.0, flow.measured), now, now);
       }
     }
     EXPECT_EQ(supervisor.isZeroConfirmed(), ending.confirms) << ending.what;
@@ -368,7 +368,7 @@ TEST(SupervisedCurrents, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
 TEST(SupervisedCurrents, TellsTheCurrentThatKeepsZeroFromBeingConfirmed) {
   CurrentSupervisor supervisor(limits(), 2);
   EXPECT_NE(supervisor.unconfirmedReason(), "");
-  supervisor.observe(amperes(0.0, -0.2), 10.0);
+  supervisor.observe(amperes(0.0, -0.2), 10.0, 10.0);
   EXPECT_NE(supervisor.unconfirmedReason().find("0.20 A"), std::string::npos);
 }
 

@@ -61,7 +61,7 @@ class CoilDriver {
   Beat exchange(const BeatClock& clock);
   void follow(double now, Beat& result);
   Heartbeat heartbeat() const;
-  Eigen::VectorXd measure(double now);
+  Eigen::VectorXd measure(const BeatClock& clock);
   void forget();
   void fail(double now);
   void setZero();

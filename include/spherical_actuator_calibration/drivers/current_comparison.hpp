@@ -29,9 +29,9 @@ class CurrentComparison {
 
   /// These setpoints [A] go to the amplifier next.
   void setting(const Eigen::VectorXd& setpoints);
-  /// These currents [A] were measured now, after the last setpoints were written. Returns the first
-  /// coil that deviates, from 0.
-  std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double steady);
+  /// These currents [A] were measured between two times, after the last setpoints were written.
+  /// Returns the first coil that deviates, from 0.
+  std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double begin, double end);
   /// Half the way to a coil that deviates, or 0.1 s before it: an honest amplifier does not come so
   /// far.
   bool isSuspicious() const;
@@ -50,11 +50,12 @@ class CurrentComparison {
     Eigen::ArrayXXd highest;
   };
 
-  void advance(double steady);
+  void advance(double until);
+  Span settled(double from, double to, double elapsed);
   void remember(const Span& span);
   Eigen::ArrayXd tolerances() const;
-  double weightOf(double steady) const;
-  void count(const Eigen::ArrayXd& measured, double steady, double weight);
+  double weightOf(double end) const;
+  void count(const Eigen::ArrayXd& measured, double begin, double end, double weight);
 
   double tolerance_;
   double beats_;
@@ -62,8 +63,10 @@ class CurrentComparison {
   Eigen::VectorXd setpoints_;
   Eigen::ArrayXd lowest_;   ///< that was set since the last measurement [A]
   Eigen::ArrayXd highest_;  ///< likewise
-  Eigen::ArrayXXd filtered_;
-  std::optional<double> last_;  ///< measurement [s]
+  /// Of amplifiers without delay, for each coil and time constant [A].
+  Eigen::ArrayXXd lower_;
+  Eigen::ArrayXXd upper_;       ///< likewise
+  std::optional<double> last_;  ///< end of a measurement [s]
   std::deque<Span> spans_;      ///< without gaps, as far back as the longest delay
   Eigen::ArrayXXd deviating_;   ///< beats, for each coil and each lag
   double most_ = 0.0;  ///< of the coil that deviates most, by the lag that explains it best

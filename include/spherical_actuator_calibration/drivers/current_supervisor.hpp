@@ -74,9 +74,9 @@ class CurrentSupervisor {
 
   /// These setpoints [A] go to the amplifier next: from now on current may flow.
   void setting(const Eigen::VectorXd& setpoints);
-  /// These currents [A] were measured after the last setpoints were written, and are held against
-  /// what was set: see CurrentComparison. `steady`: when [s].
-  void observe(const Eigen::VectorXd& measured, double steady);
+  /// These currents [A] were measured between two times [s], after the last setpoints were written,
+  /// and are held against what was set: see CurrentComparison.
+  void observe(const Eigen::VectorXd& measured, double begin, double end);
   /// The link was lost, or the answers came too late, after what was set last, so that it was not
   /// measured. Twice within 3 s with current it is an error: each time there was some for as long
   /// as answers may take, and nobody saw it. It ends as the other one does, whenever zero is
@@ -114,9 +114,9 @@ class CurrentSupervisor {
   bool isOwner(const CoilCommand& command) const {
     return command.caller == owner_ && command.connection == owner_connection_;
   }
-  bool maySustain() const;
   void fail(const std::string& reason);
   std::string deviation(std::size_t coil, double measured) const;
+  bool maySustain() const;
   void watchZero(double steady);
   void endFault();
 
