@@ -99,17 +99,21 @@ void CoilDriver::follow(double now, Beat& result) {
   const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
   if (command && is_measured_) {
     supervisor_.setting(limiter_.follow(*command, elapsed));
-    amplifier_.write(limiter_.setpoints(), OutputStages::kOn, heartbeat());
+    amplifier_.write(limiter_.setpoints(), OutputStages::kOn, heartbeat(now));
     return;
   }
   result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
   result.fault = !supervisor_.fault().empty();
   supervisor_.setting(limiter_.stop());
-  amplifier_.write(limiter_.setpoints(), OutputStages::kOff, heartbeat());
+  amplifier_.write(limiter_.setpoints(), OutputStages::kOff, heartbeat(now));
 }
 
-Heartbeat CoilDriver::heartbeat() const {
-  return is_measured_ && supervisor_.mayBeat() ? Heartbeat::kGiven : Heartbeat::kWithheld;
+Heartbeat CoilDriver::heartbeat(double now) {
+  if (!is_measured_ || !supervisor_.mayBeat()) {
+    return Heartbeat::kWithheld;
+  }
+  supervisor_.beating(now);
+  return Heartbeat::kGiven;
 }
 
 Eigen::VectorXd CoilDriver::measure(const BeatClock& clock) {

@@ -195,6 +195,11 @@ void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
   }
 }
 
+void CurrentSupervisor::beating(double steady) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  fed_at_ = steady;
+}
+
 void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, double end) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
@@ -210,11 +215,8 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, d
     return;
   }
   if (!fault_.empty()) {
-    watchZero(begin);
+    watchZero(end);
     endFault();
-  }
-  if (maySustain()) {
-    fed_at_ = begin;
   }
 }
 
@@ -274,10 +276,6 @@ std::optional<std::size_t> CurrentSupervisor::countStrays(const Eigen::VectorXd&
 
 bool CurrentSupervisor::mayBeat() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return maySustain();
-}
-
-bool CurrentSupervisor::maySustain() const {
   const bool is_quiet =
       was_set_ || (measured_ && measured_->cwiseAbs().maxCoeff() <= limits_.deviation);
   const bool is_right = fault_.empty() || (is_loss_ && isZeroNow());

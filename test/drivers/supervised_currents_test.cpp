@@ -155,6 +155,9 @@ class FaultOfCurrents : public ::testing::Test {
     for (int n = 0; n < beats; ++n) {
       supervisor_.setting(amperes(0.0));
       beat_ += 0.005;
+      if (supervisor_.mayBeat()) {
+        supervisor_.beating(beat_);
+      }
       supervisor_.observe(amperes(0.0, measured), beat_, beat_);
     }
   }
@@ -254,7 +257,10 @@ TEST(SupervisedCurrents, AZeroByTheWatchdogEndsNoError) {
   double fed = 0.0;
   const auto beats = [&](double until, double measured) {
     for (; now < until; now += 0.005) {
-      fed = supervisor.mayBeat() ? now : fed;
+      if (supervisor.mayBeat()) {
+        fed = now;
+        supervisor.beating(now);
+      }
       supervisor.setting(amperes(0.0));
       supervisor.observe(amperes(measured), now, now);
     }

@@ -60,7 +60,7 @@ class CoilDriver {
   void connect();
   Beat exchange(const BeatClock& clock);
   void follow(double now, Beat& result);
-  Heartbeat heartbeat() const;
+  Heartbeat heartbeat(double now);
   Eigen::VectorXd measure(const BeatClock& clock);
   void forget();
   void fail(double now);

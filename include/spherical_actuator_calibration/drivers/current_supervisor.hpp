@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -74,6 +75,8 @@ class CurrentSupervisor {
 
   /// These setpoints [A] go to the amplifier next: from now on current may flow.
   void setting(const Eigen::VectorXd& setpoints);
+  /// The heartbeat goes to the amplifier now, or is on its way for a moment.
+  void beating(double steady);
   /// These currents [A] were measured between two times [s], after the last setpoints were written,
   /// and are held against what was set: see CurrentComparison.
   void observe(const Eigen::VectorXd& measured, double begin, double end);
@@ -116,7 +119,6 @@ class CurrentSupervisor {
   }
   void fail(const std::string& reason);
   std::string deviation(std::size_t coil, double measured) const;
-  bool maySustain() const;
   void watchZero(double steady);
   void endFault();
 
@@ -152,7 +154,8 @@ class CurrentSupervisor {
   std::string fault_;
   bool is_loss_ = false;  ///< it is one of the link
   int faults_ = 0;        ///< others
-  double fed_at_ = 0.0;   ///< last measurement that allowed a heartbeat, by the steady clock [s]
+  /// The last heartbeat, by the steady clock [s].
+  double fed_at_ = -std::numeric_limits<double>::infinity();
   std::optional<double> lost_at_;  ///< with current, by the steady clock [s]
   bool obeyed_ = false;  ///< zero was measured before the amplifier's watchdog can have acted
   int zero_beats_ = 0;   ///< in a row, since the fault
