@@ -25,7 +25,7 @@ constexpr std::array<std::pair<Quantity, const char*>, 2> kQuantities = {{
 }};
 
 [[noreturn]] void throwUnknown(const std::string& word) {
-  throw DataError("The session database holds the unknown word \"" + word + "\".");
+  throw RowDefect("the unknown word \"" + word + "\"");
 }
 
 template <typename Table, typename Value>
@@ -189,6 +189,9 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   report.orientation_uncertainty = row.number();
   report.torque_uncertainty = row.number();
   readErrors(database, id, report);
+  if (report.success && report.error_history.empty()) {
+    throw RowDefect("cycle " + std::to_string(id) + " has succeeded, and has no errors");
+  }
   readEstimates(database, id, report);
   readResiduals(database, id, report);
   return report;

@@ -31,7 +31,8 @@ std::vector<CycleReport> withUnits(std::vector<CycleReport> reports, const Param
   return reports;
 }
 
-/// Whether two samples are the same measurements, whatever their ids.
+/// Whether a sample holds the same measurements as one in use, whatever its id. That one may be
+/// held out by its turn, which is another one's by now.
 bool isSameCapture(const Sample& a, const Sample& b) {
   return a.stamp == b.stamp && a.duration == b.duration && a.measurements == b.measurements &&
          a.validation == b.validation && a.joint_position == b.joint_position &&
@@ -39,6 +40,21 @@ bool isSameCapture(const Sample& a, const Sample& b) {
          (!a.has_orientation || a.R_stator_rotor == b.R_stator_rotor) &&
          (!a.has_torque || a.torque == b.torque) && a.current.size() == b.current.size() &&
          a.current == b.current;
+}
+
+/// Those that hold what no sample can are told with the file's name.
+std::vector<Sample> samplesOf(const SessionDatabase& database,
+                              const std::string& path,
+                              std::size_t coils) {
+  std::vector<Sample> samples = database.samplesInUse();
+  for (const Sample& sample : samples) {
+    try {
+      validate(sample, coils);
+    } catch (const DataError& error) {
+      throw DataError(path + ": " + error.what());
+    }
+  }
+  return samples;
 }
 
 }  // namespace
@@ -50,7 +66,11 @@ LiveSession::LiveSession(const CalibratedDescription& start,
     : software_(software),
       database_(database_path, {start, config, software}),
       revision_(database_.current()),
-      session_(start, database_.samplesInUse(), config, revision_.state, {}) {
+      session_(start,
+               samplesOf(database_, database_path, start.actuator.coils.size()),
+               config,
+               revision_.state,
+               {}) {
   putInForce(revision_);
 }
 

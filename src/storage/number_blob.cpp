@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "spherical_actuator_calibration/base/error.hpp"
+#include "row_access.hpp"
 
 namespace sac {
 namespace {
@@ -46,7 +46,7 @@ std::string blobOf(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd matrixOf(const std::string& blob, Eigen::Index rows, Eigen::Index columns) {
   if (blob.size() != static_cast<std::size_t>(rows * columns) * kBytes) {
-    throw DataError("A stored matrix has not the size of its parameters.");
+    throw RowDefect("a stored matrix has not the size of its parameters");
   }
   Eigen::MatrixXd matrix(rows, columns);
   std::size_t offset = 0;

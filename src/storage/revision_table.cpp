@@ -39,6 +39,9 @@ CalibrationState readState(RowReader& row) {
   CalibrationState state;
   state.belief.x = matrixOf(coordinates, size, 1);
   state.belief.covariance = symmetricOf(covariance, size);
+  if (!state.belief.x.allFinite() || !state.belief.covariance.allFinite()) {
+    throw RowDefect("parameters that are not finite");
+  }
   state.identified.reserve(identified.size());
   for (const char byte : identified) {
     state.identified.push_back(byte != '\0');
@@ -90,7 +93,7 @@ void insert(const SQLite::Database& database, const Revision& revision, const Li
 std::uint32_t newestNumber(const SQLite::Database& database) {
   RowReader row(database, "SELECT number FROM revisions ORDER BY number DESC LIMIT 1");
   if (!row.next()) {
-    throw DataError("The session database holds no parameters: put a copy of it back.");
+    throw RowDefect("no parameters");
   }
   return row.count();
 }

@@ -10,12 +10,13 @@
 #include "file_content.hpp"
 #include "page_watch.hpp"
 #include "process_lock.hpp"
+#include "row_access.hpp"
 #include "storage_error.hpp"
 
 namespace sac {
 
-/// The open file of a session database, locked against other writers. Turns the errors of SQLite
-/// into DataError.
+/// The open file of a session database, locked against other writers. Turns the errors of SQLite,
+/// and rows that hold what they cannot hold, into DataError that names the file.
 class SessionConnection {
  public:
   /// Opens the file, or makes it with the session's tables and what `fill` writes into them. Throws
@@ -33,6 +34,8 @@ class SessionConnection {
       return action();
     } catch (const SQLite::Exception& error) {
       fail(failure, error);
+    } catch (const RowDefect& defect) {
+      throwDamaged(path_, defect.what());
     }
   }
 

@@ -55,16 +55,6 @@ struct SessionDatabase::Tables {
   std::string software;
 
   const SQLite::Database& database() const { return connection.database(); }
-
-  /// What `read` makes of rows; those that hold something else are named with the file.
-  template <typename Read>
-  auto rows(Read read) const {
-    try {
-      return connection.read(kNotRead, read);
-    } catch (const RowDefect& defect) {
-      throwDamaged(connection.path(), defect.what());
-    }
-  }
 };
 
 SessionDatabase::SessionDatabase(const std::string& path, const SessionIdentity& identity)
@@ -91,7 +81,8 @@ void SessionDatabase::confirmSample(std::uint32_t id) {
 }
 
 std::vector<Sample> SessionDatabase::samplesInUse() const {
-  return tables_->rows([this] { return sample_table::inUse(tables_->database()); });
+  return tables_->connection.read(kNotRead,
+                                  [this] { return sample_table::inUse(tables_->database()); });
 }
 
 bool SessionDatabase::removeSample(std::uint32_t id, const std::string& date) {
@@ -111,7 +102,8 @@ std::size_t SessionDatabase::clearSamples(const std::string& date) {
 }
 
 std::uint32_t SessionDatabase::nextSampleId() const {
-  return tables_->rows([this] { return sample_table::nextId(tables_->database()); });
+  return tables_->connection.read(kNotRead,
+                                  [this] { return sample_table::nextId(tables_->database()); });
 }
 
 void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {
@@ -190,7 +182,7 @@ Revision SessionDatabase::current() const {
     const SQLite::Database& database = tables_->database();
     const auto newest = revision_table::find(database, revision_table::newestNumber(database));
     if (!newest) {
-      throwDamaged(tables_->connection.path(), "the newest parameters have no number");
+      throw RowDefect("the newest parameters have no number");
     }
     return *newest;
   });

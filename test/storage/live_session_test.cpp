@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
 #include "support/moving_rotor.hpp"
 #include "support/scenarios.hpp"
@@ -156,6 +157,16 @@ TEST_F(LiveSessionTest, StoresTheSameCaptureOnce) {
   // Taken out of use, it may be captured again.
   EXPECT_TRUE(session.removeSample(1, kDate));
   EXPECT_EQ(session.addSample(samples()[0], kDate).id, 3U);
+}
+
+TEST_F(LiveSessionTest, SamplesThatAreNoneAreToldWithTheirFile) {
+  {
+    LiveSession session = open();
+    addAll(session);
+  }
+  database_examples::change(folder_.path("session.db"), "UPDATE samples SET r11 = 7 WHERE id = 3");
+  const std::string message = errorMessage<DataError>([this] { open(); });
+  EXPECT_EQ(message, folder_.path("session.db") + ": Sample 3: orientation is not a rotation.");
 }
 
 TEST_F(LiveSessionTest, NumbersSamplesAnew) {

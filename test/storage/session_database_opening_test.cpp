@@ -187,6 +187,31 @@ TEST_F(OpeningTest, TheLastNumberOfASampleIsFollowedByNone) {
             std::string::npos);
 }
 
+// The parameters in force, and the cycles that led to them, which the node reads when it starts.
+TEST_F(OpeningTest, RowsThatHoldNoParametersAreTold) {
+  const std::string nan = "x'000000000000f87f'";
+  for (const std::string& sql : {
+           "UPDATE revisions SET coordinates = CAST(" + nan + " || substr(coordinates, 9) AS BLOB)",
+           "UPDATE revisions SET covariance = CAST(" + nan + " || substr(covariance, 9) AS BLOB)",
+           std::string("UPDATE revisions SET covariance = x'00'"),
+           std::string("DELETE FROM cycle_errors"),
+           std::string("UPDATE cycles SET cycle = 'unknown'"),
+           std::string("UPDATE cycles SET iterations = -1"),
+           std::string("PRAGMA foreign_keys = OFF; DELETE FROM revisions"),
+       }) {
+    std::filesystem::remove(path());
+    make();
+    database_examples::change(path(), sql);
+    const SessionDatabase database(path(), identity());
+    const std::string message = errorMessage<DataError>([&] {
+      database.current();
+      database.cyclesOfRevision(1);
+    });
+    EXPECT_NE(message.find(path() + ": the file is damaged"), std::string::npos)
+        << sql << ": " << message;
+  }
+}
+
 TEST_F(OpeningTest, AnEmptyFileBecomesADatabase) {
   // What is left when the process ends before the first transaction.
   folder_.write("session.db", "");
