@@ -35,7 +35,7 @@ std::vector<CycleReport> withUnits(std::vector<CycleReport> reports, const Param
 /// held out by its turn, which is another one's by now.
 bool isSameCapture(const Sample& a, const Sample& b) {
   return a.stamp == b.stamp && a.duration == b.duration && a.measurements == b.measurements &&
-         a.validation == b.validation && a.joint_position == b.joint_position &&
+         (a.validation || !b.validation) && a.joint_position == b.joint_position &&
          a.has_orientation == b.has_orientation && a.has_torque == b.has_torque &&
          (!a.has_orientation || a.R_stator_rotor == b.R_stator_rotor) &&
          (!a.has_torque || a.torque == b.torque) && a.current.size() == b.current.size() &&
@@ -82,7 +82,7 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   Sample stored = session_.prepared(sample);
   // Asked again after an answer that was lost or failed: it is stored once. Only the last one can
   // be asked for again; the same measurements later come from a recording that is played once more.
-  if (!session_.samples().empty() && isSameCapture(session_.samples().back(), stored)) {
+  if (!session_.samples().empty() && isSameCapture(session_.samples().back(), sample)) {
     database_.confirmSample(session_.samples().back().id);
     return session_.samples().back();
   }

@@ -159,6 +159,21 @@ TEST_F(LiveSessionTest, StoresTheSameCaptureOnce) {
   EXPECT_EQ(session.addSample(samples()[0], kDate).id, 3U);
 }
 
+// Neither one that was held out by its turn, nor one whose turn it is when it is asked for again.
+TEST_F(LiveSessionTest, StoresTheSameCaptureOnceWhereEachSecondIsHeldOut) {
+  CalibrationConfig config;
+  config.hold_out_every = 2;
+  LiveSession session({scenarios::paperNominal()}, config, folder_.path("session.db"), "0.1.0");
+  for (std::size_t n = 0; n < 4; ++n) {
+    for (int time = 0; time < 2; ++time) {
+      const Sample stored = session.addSample(samples()[n], kDate);
+      EXPECT_EQ(stored.id, n + 1);
+      EXPECT_EQ(stored.validation, n % 2 == 1);
+    }
+  }
+  EXPECT_EQ(session.database().samplesInUse().size(), 4U);
+}
+
 TEST_F(LiveSessionTest, SamplesThatAreNoneAreToldWithTheirFile) {
   {
     LiveSession session = open();
