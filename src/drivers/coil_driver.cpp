@@ -143,17 +143,19 @@ void CoilDriver::setZero() {
 
 // Two ways to zero, each by a link of its own if need be: an amplifier that cannot answer the first
 // request any more may still take the second. Should both fail, connect() begins with zero, and
-// until then the amplifier's own watchdog must act. Returns why one failed.
-std::string CoilDriver::tryToDisable() {
-  std::string failure;
+// until then the amplifier's own watchdog must act.
+CoilDriver::Disabling CoilDriver::tryToDisable() {
+  Disabling result;
   for (const auto way : {&CurrentAmplifier::switchOff, &CurrentAmplifier::zero}) {
     allowOneBeat();
     const std::string reason = tryTo(way);
     // The link may have been dead already: a new one has what is left of the time.
     const std::string again = reason.empty() ? reason : tryTo(way);
-    failure = again.empty() ? failure : reason;
+    result.failure = again.empty() ? result.failure : reason;
+    const bool is_way = way == &CurrentAmplifier::zero || options_.enable_address;
+    result.is_taken = result.is_taken || (is_way && again.empty());
   }
-  return failure;
+  return result;
 }
 
 std::string CoilDriver::tryTo(void (CurrentAmplifier::*way)()) {
@@ -171,7 +173,11 @@ std::string CoilDriver::stop(double now) {
   const BeatClock clock(now);
   supervisor_.close();
   forget();
-  std::string failure = tryToDisable();
+  const Disabling disabling = tryToDisable();
+  if (!disabling.is_taken) {
+    // What is measured now to be zero may be so by the amplifier's watchdog alone.
+    return disabling.failure;
+  }
   try {
     allowOneBeat();
     transport_.open();
@@ -180,7 +186,7 @@ std::string CoilDriver::stop(double now) {
     transport_.close();
     return error.what();
   }
-  return failure.empty() ? supervisor_.unconfirmedReason() : failure;
+  return disabling.failure.empty() ? supervisor_.unconfirmedReason() : disabling.failure;
 }
 
 }  // namespace sac

@@ -51,5 +51,38 @@ TEST(CoilDriverHeartbeat, AZeroByTheWatchdogDuringATripEndsNoError) {
   EXPECT_EQ(heartbeat(), last);
 }
 
+// It refuses every setpoint and switch, so that its watchdog alone has ended the current: with the
+// next heartbeat, of whomever, it would be back.
+TEST(CoilDriverHeartbeat, AZeroByTheWatchdogIsNoConfirmationForADriverThatEnds) {
+  for (const bool has_switch : {true, false}) {
+    CurrentAmplifierOptions options =
+        readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml"));
+    if (!has_switch) {
+      options.enable_address.reset();
+    }
+    ScriptedTransport bus;
+    CoilDriver driver(options, kCoils, bus);
+    double now = 100.0;
+    for (; now < 100.5; now += kBeat) {
+      driver.offer({"/operator", now, Eigen::VectorXd::Constant(kCoils, 0.1)}, {now, now});
+      driver.beat(now);
+    }
+    bus.setRefusing(true);
+    driver.beat(now);
+    std::string reason;
+    for (int n = 0; n < 100; ++n, now += kBeat) {
+      reason = driver.stop(now);
+    }
+    EXPECT_NE(reason, "");
+    EXPECT_FALSE(driver.supervisor().isZeroConfirmed()) << has_switch;
+    bus.setRefusing(false);
+    for (int n = 0; n < 100; ++n, now += kBeat) {
+      reason = driver.stop(now);
+    }
+    EXPECT_EQ(reason, "");
+    EXPECT_TRUE(driver.supervisor().isZeroConfirmed()) << has_switch;
+  }
+}
+
 }  // namespace
 }  // namespace sac

@@ -44,6 +44,9 @@ class ScriptedTransport : public ModbusTransport {
     is_open_ = is_open_ && reachable;
   }
 
+  /// While it refuses, it takes no words, and can be read.
+  void setRefusing(bool refusing) { is_refusing_ = refusing; }
+
   /// Reading from this address on takes so long [s], from now on.
   void setSlow(int address, double seconds) {
     slow_address_ = address;
@@ -88,6 +91,9 @@ class ScriptedTransport : public ModbusTransport {
 
   void write(int unit, int address, const std::vector<std::uint16_t>& words) override {
     request();
+    if (is_refusing_) {
+      throw TransportError(TransportFailure::kRefused, "the device takes no words");
+    }
     writes_.push_back({unit, address, words});
     set(unit, RegisterTable::kHolding, address, words);
   }
@@ -113,6 +119,7 @@ class ScriptedTransport : public ModbusTransport {
   std::vector<Write> writes_;
   bool reachable_ = true;
   bool is_open_ = false;
+  bool is_refusing_ = false;
   int reads_ = 0;
   int opened_ = 0;
   int spans_ = 0;

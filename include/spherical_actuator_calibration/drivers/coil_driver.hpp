@@ -66,7 +66,12 @@ class CoilDriver {
   void fail(double now);
   void setZero();
   void allowOneBeat() { transport_.allow(options_.link.response_timeout); }
-  std::string tryToDisable();
+  /// What became of both ways to zero.
+  struct Disabling {
+    std::string failure;    ///< why one failed; empty: none did
+    bool is_taken = false;  ///< the amplifier has acknowledged one
+  };
+  Disabling tryToDisable();
   /// Returns why not.
   std::string tryTo(void (CurrentAmplifier::*way)());
 
