@@ -15,6 +15,7 @@ catkin_install_python(
     scripts/plot_tracking
     scripts/render_report
     scripts/run_motion
+    scripts/session_engine
     scripts/track_orientation
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION}
 )

@@ -2,9 +2,12 @@
 
 import os
 import pathlib
+import signal
 import tempfile
 import unittest
+import xmlrpc.client
 
+import rosgraph
 import rospy
 import yaml
 from calibration_client import DEADLINE, NAMESPACE, CalibrationClient, wait_for
@@ -87,6 +90,14 @@ class EmulatedLab:
             self._timer.shutdown()
         if self._launch:
             self._launch.stop()
+
+    @staticmethod
+    def kill(node):
+        """By SIGKILL: no program of its own hears of it."""
+        name = f"{NAMESPACE}/{node}"
+        address = rosgraph.Master(rospy.get_name()).lookupNode(name)
+        _, _, process = xmlrpc.client.ServerProxy(address).getPid(rospy.get_name())
+        os.kill(process, signal.SIGKILL)
 
     def _keep(self, message):
         self._position = message.position

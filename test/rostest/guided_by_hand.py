@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """A plan of plan_session carried out by hand: a script is the hand that turns the rotor where the terminal says, not
-quite, and pushes it away once in the middle of a pose."""
+quite, and pushes it away once in the middle of a pose. The laboratory has no engine: the session brings its own."""
 
 import math
 import pathlib
@@ -55,7 +55,7 @@ class Hand:
 class GuidedByHand(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.make_lab(seed=7, commands=False)
+        cls.make_lab(seed=7, commands=False, engine=False)
         cls.start_lab()
 
     def planned(self):

@@ -15,7 +15,7 @@ from geometry_msgs.msg import PoseStamped, QuaternionStamped
 from launch_client import Launch, configuration_of, launch_file, missing_programs, nodes_of
 from recorder_links import received
 
-NODES = ["calibration", "coil_driver", "joint_sensor", "tracker_bridge"]
+NODES = ["calibration", "coil_driver", "joint_sensor", "session_engine", "tracker_bridge"]
 RECORDED = {"measured_orientation", "parameters", "status", "tracker/pose"}
 REGISTRATION = "0 0 0.1 0 0 0 1"
 
@@ -40,7 +40,8 @@ class LaunchLab(unittest.TestCase):
     def test_arguments_choose_what_is_started(self):
         path = launch_file("lab.launch")
         self.assertEqual(names(nodes_of(path)), NODES)
-        self.assertEqual(names(nodes_of(path, drivers=False)), ["calibration", "tracker_bridge"])
+        self.assertEqual(names(nodes_of(path, drivers=False)), ["calibration", "session_engine", "tracker_bridge"])
+        self.assertNotIn("session_engine", names(nodes_of(path, engine=False)))
         self.assertIn("rviz", names(nodes_of(path, rviz=True)))
         self.assertEqual({node.namespace for node in nodes_of(path, ns="second")}, {"/second/"})
 

@@ -22,6 +22,7 @@ PROGRAMS = (
     "plot_tracking",
     "render_report",
     "run_motion",
+    "session_engine",
     "track_orientation",
 )
 

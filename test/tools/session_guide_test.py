@@ -5,12 +5,14 @@ import io
 import threading
 import unittest
 from types import SimpleNamespace
-from unittest import mock
 
-from spherical_actuator_calibration.session_guide import laboratory, progress, session
+from spherical_actuator_calibration.session_guide import laboratory, progress
+from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.calibration import excitations_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
+from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
+from spherical_actuator_calibration.session_guide.task import Task
 from spherical_actuator_calibration.session_guide.terminal import Terminal
 from spherical_actuator_calibration.srv import CapturePlannedResponse
 
@@ -43,22 +45,24 @@ class PlannedPatterns(unittest.TestCase):
 class Excitation(unittest.TestCase):
     def test_commands_the_signs_of_a_pattern(self):
         bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
-        bench._coils, bench._lock = 4, threading.Lock()
+        bench._coils, bench._lock, bench._is_held = 4, threading.Lock(), False
+        bench.excite((1,), 1.5)
+        self.assertEqual(bench._command, [0.0] * 4)
+        bench.hold()
         bench.excite((1, -3), 1.5)
         self.assertEqual(bench._command, [1.5, 0.0, -1.5, 0.0])
         bench.excite((), 0.0)
         self.assertEqual(bench._command, [0.0] * 4)
 
     def test_with_less_than_the_node_tells_from_none_is_refused(self):
-        guided = session.Session.__new__(session.Session)
-        guided._options, guided._calibration = Options(), SimpleNamespace(status=lambda: STATUS)
+        course = PoseCourse(SimpleNamespace(status=lambda: STATUS), None, Options(), Task(), Account())
         poses = [Pose((0.0, 0.0, 0.0), ((1,),))]
-        guided._current = 0.05
+        course.current = 0.05
         with self.assertRaisesRegex(RuntimeError, "take 0.09 A or more"):
-            guided._require_current(poses)
-        guided._require_current([Pose((0.0, 0.0, 0.0), ())])
-        guided._current = 0.09
-        guided._require_current(poses)
+            course.require_current(poses)
+        course.require_current([Pose((0.0, 0.0, 0.0), ())])
+        course.current = 0.09
+        course.require_current(poses)
 
 
 class MissingPatterns(unittest.TestCase):
@@ -142,14 +146,14 @@ class ProgressOfASession(unittest.TestCase):
         now = [100.0]
         done = Progress(10, lambda: now[0])
         self.assertIsNone(done.remaining_time())
-        self.assertEqual(done.text(10), "[..........] 0/10")
         now[0] = 120.0
         done.advance(4)
         self.assertAlmostEqual(done.remaining_time(), 30.0)
-        self.assertEqual(done.text(10), "[####......] 4/10, 30 s left")
 
-    def test_of_a_session_without_captures_is_complete(self):
-        self.assertEqual(Progress(0, lambda: 0.0).text(4), "[####] 0/0")
+    def test_as_a_bar(self):
+        self.assertEqual(progress.bar(0, 10, -1.0, 10), "[..........] 0/10")
+        self.assertEqual(progress.bar(4, 10, 30.0, 10), "[####......] 4/10, 30 s left")
+        self.assertEqual(progress.bar(0, 0, None, 4), "[####] 0/0")
 
     def test_durations_are_for_people(self):
         texts = [progress.duration(seconds) for seconds in (0.4, 99.0, 200.0, 3600.0 * 2 + 300.0)]
@@ -195,39 +199,46 @@ class Coils:
         assert pattern == self._pattern == (3,)
         if self._clock[0] >= self._cured_at and not self._needs_zero:
             return SimpleNamespace(flaw="", message="Stored.")
-        return SimpleNamespace(flaw=CapturePlannedResponse.EXCITATION, message="Coil 3 does not carry its current: check the amplifier.")
+        message = "Coil 3 does not carry its current: check the amplifier."
+        return SimpleNamespace(flaw=CapturePlannedResponse.EXCITATION, message=message)
 
     @staticmethod
     def driver_complaint():
         return "coil 3 carries 0.00 A"
 
 
+class Hour(Task):
+    """A task whose time passes only while it waits."""
+
+    def __init__(self, clock):
+        super().__init__()
+        self._clock = clock
+
+    def time(self):
+        return self._clock[0]
+
+    def pause(self, seconds):
+        self._clock[0] += seconds
+        self.check()
+
+
 class WaitingForCurrent(unittest.TestCase):
     def waited(self, cured_at, needs_zero=False, timeout=60.0):
         """Time [s] until the coils carried current, and what was said meanwhile."""
         clock = [0.0]
-
-        def sleep(seconds):
-            clock[0] += seconds
-
-        screen = Screen(False)
-        guided = session.Session.__new__(session.Session)
-        guided._options = Options(current_timeout=timeout)
-        guided._current = guided._options.current
-        guided._terminal = Terminal(screen)
-        guided._laboratory = guided._calibration = Coils(clock, cured_at, needs_zero)
-        fake = SimpleNamespace(get_time=lambda: clock[0], sleep=sleep)
-        with mock.patch.object(session, "rospy", fake):
-            try:
-                self.assertEqual(guided._answer_with_current(Bench.POSE, (3,)).message, "Stored.")
-            except RuntimeError as error:
-                return clock[0], str(error)
-        return clock[0], screen.getvalue()
+        account = Account()
+        coils = Coils(clock, cured_at, needs_zero)
+        course = PoseCourse(coils, coils, Options(current_timeout=timeout), Hour(clock), account)
+        try:
+            self.assertEqual(course._answer_with_current(Bench.POSE, (3,)).message, "Stored.")
+        except RuntimeError as error:
+            return clock[0], str(error)
+        return clock[0], "\n".join([*account.message().sentences, ""])
 
     def test_says_nothing_of_a_moment(self):
         waited, said = self.waited(0.5)
         self.assertLess(waited, 1.0)
-        self.assertEqual(said, "")
+        self.assertEqual(said.strip(), "")
 
     def test_tells_once_why_and_goes_on(self):
         waited, said = self.waited(30.0)
@@ -267,7 +278,9 @@ class Bench:
         self.log.append(pattern)
         if flaw is None or not flaw:
             self.held.append(Measured(pose.joints, pattern, pose.validation))
-        return None if flaw is None else SimpleNamespace(success=not flaw, message=f"Flaw: {flaw}.", flaw=flaw)
+        if flaw is None:
+            return None
+        return SimpleNamespace(success=not flaw, message=f"Flaw: {flaw}.", flaw=flaw, sample=(pose, pattern))
 
     def measured(self):
         return self.held
@@ -277,19 +290,15 @@ class Bench:
         return TOLERANCE
 
 
-
 class CapturingAPose(unittest.TestCase):
     def captured(self, flaws):
         """The bench after a pose, and what was said."""
-        bench, screen = Bench(flaws), Screen(False)
-        guided = session.Session.__new__(session.Session)
-        guided._options, guided._current = Options(), 2.0
-        guided._terminal, guided._laboratory, guided._calibration = Terminal(screen), bench, bench
-        guided._wait_for_rest = lambda pose: bench.log.append("rest" if not bench.pattern else "current is on")
-        with mock.patch.object(session, "rospy", SimpleNamespace(get_time=lambda: 0.0, sleep=lambda _: None)):
-            for pattern in progress.patterns_to_capture(Bench.POSE, [], TOLERANCE):
-                guided._capture(Bench.POSE, pattern)
-        return bench, screen.getvalue()
+        bench, account = Bench(flaws), Account()
+        course = PoseCourse(bench, bench, Options(), Hour([0.0]), account)
+        course.wait_for_rest = lambda pose: bench.log.append("rest" if not bench.pattern else "current is on")
+        for pattern in course.to_capture(Bench.POSE, []):
+            course.capture(Bench.POSE, pattern)
+        return bench, "\n".join(account.message().sentences)
 
     def test_in_one_rest(self):
         bench, said = self.captured(["", ""])

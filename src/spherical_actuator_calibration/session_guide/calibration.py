@@ -6,6 +6,7 @@ from spherical_actuator_calibration.srv import Calibrate, Capture, CapturePlanne
 from std_srvs.srv import Trigger
 
 from .progress import Measured, Pose, excited_coils, service_of
+from .task import Task
 
 SERVICES = {
     "calibrate_coil": Calibrate,
@@ -26,12 +27,18 @@ LATEST = 1.0  # [s] after which a status counts as new, whatever its time
 class Calibration:
     """Calls the services of the calibration node, and waits for it where it is gone."""
 
-    def __init__(self, ns, terminal):
+    def __init__(self, ns, narrator):
         self._node = ns + "/calibration"
-        self._terminal = terminal
+        self._narrator = narrator
+        self._task = Task()
         self._status = None
         self._answered = rospy.Time()  # time of what the node answered last
         self._subscriber = rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep)
+
+    def serve(self, task, narrator):
+        """From now on calls are of a task, whose Cancelled they raise, and tell its narrator what they wait for."""
+        self._task = task
+        self._narrator = narrator
 
     def _keep(self, status):
         self._status = status
@@ -39,39 +46,40 @@ class Calibration:
     def wait_until_up(self):
         self._wait_for("save")
         while self._status is None:
-            rospy.sleep(0.05)
+            self._task.pause(0.05)
 
     def status(self):
         """The status that goes with the last answer: topics may be slower than services."""
-        end = rospy.get_time() + LATEST
-        while self._status.header.stamp < self._answered and rospy.get_time() < end:
-            rospy.sleep(0.02)
+        end = self._task.time() + LATEST
+        while self._status.header.stamp < self._answered and self._task.time() < end:
+            self._task.pause(0.02)
         return self._status
 
     def _wait_for(self, service):
         while True:
             try:
-                rospy.wait_for_service(f"{self._node}/{service}", PATIENCE)
+                self._task.answer_of(lambda: rospy.wait_for_service(f"{self._node}/{service}", PATIENCE))
                 return
             except rospy.ROSInterruptException:
                 raise
             except rospy.ROSException:
-                self._terminal.say_once(
+                self._narrator.say_once(
                     f"Waiting for the node {self._node}: start it, for example by lab.launch."
                 )
 
     def _call(self, service, **fields):
         """Answer of a service; None when the node went away, and is back."""
         try:
-            answer = rospy.ServiceProxy(f"{self._node}/{service}", SERVICES[service])(**fields)
+            proxy = rospy.ServiceProxy(f"{self._node}/{service}", SERVICES[service])
+            answer = self._task.answer_of(lambda: proxy(**fields))
         except rospy.ROSInterruptException:
             raise
         except (rospy.ServiceException, rospy.ROSException):
             if rospy.is_shutdown():
                 raise
-            self._terminal.say("The calibration node does not answer; its samples are safe.")
+            self._narrator.say("The calibration node does not answer; its samples are safe.")
             self._wait_for(service)
-            self._terminal.say("The calibration node is back; the session goes on.")
+            self._narrator.say("The calibration node is back; the session goes on.")
             return None
         for part in ("sample", "report"):
             if hasattr(answer, part):
@@ -106,14 +114,14 @@ class Calibration:
         service, coil = service_of(cycle)
         return self.call(service, coil=coil)
 
-    def pattern_of(self, sample):
-        """The coils that a sample excites, see excited_coils."""
-        return excited_coils(sample.current, self._status.current_threshold)
+    def excited(self, currents):
+        """The coils that currents [A] excite, see excited_coils."""
+        return excited_coils(currents, self._status.current_threshold)
 
     def measured(self):
         """Samples that are held."""
         samples = self.call("list_samples").samples
-        return [Measured(tuple(s.joint_position), self.pattern_of(s), s.validation) for s in samples]
+        return [Measured(tuple(s.joint_position), self.excited(s.current), s.validation) for s in samples]
 
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""

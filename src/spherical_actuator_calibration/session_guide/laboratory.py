@@ -14,20 +14,29 @@ STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
 
 
 class Laboratory:
-    """Commands coils and fixture, and keeps the last joint angles."""
+    """Commands coils and fixture while it is held, and keeps the last joint angles and currents."""
 
     def __init__(self, ns, coils, joint_names):
         self._coils = coils
-        self._names = list(joint_names)
+        self.names = list(joint_names)
         self._readings = JointReadings(ns, joint_names)
+        self._currents = None
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
         self._command = [0.0] * coils
+        self._is_held = False
         self._lock = threading.Lock()
         self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
         self._targets = rospy.Publisher(ns + "/fixture/target", JointState, queue_size=1, latch=True)
-        self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics)
+        self._subscribers = [
+            rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
+        ]
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
+
+    def _keep_currents(self, message):
+        with self._lock:
+            self._currents = tuple(message.current)
 
     def _keep_diagnostics(self, message):
         for status in message.status:
@@ -37,20 +46,36 @@ class Laboratory:
     def _repeat(self, _event):
         # Under the lock, so that commands go out in the order of their stamps.
         with self._lock:
-            message = CoilCurrents(current=list(self._command))
-            message.header.stamp = wall_stamp()
-            self._commands.publish(message)
+            if self._is_held:
+                self._publish()
+
+    def _publish(self):
+        message = CoilCurrents(current=list(self._command))
+        message.header.stamp = wall_stamp()
+        self._commands.publish(message)
 
     def joints(self):
         """Joint angles [rad]; None without fresh ones."""
         return self._readings.fresh()
 
-    def excite(self, pattern, current):
-        """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none."""
+    def hold(self):
+        """From now on currents are commanded, zero at first; others may not command then."""
         with self._lock:
             self._command = [0.0] * self._coils
-            for coil in pattern:
+            self._is_held = True
+
+    def excite(self, pattern, current):
+        """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none. Without effect
+        unless the laboratory is held."""
+        with self._lock:
+            self._command = [0.0] * self._coils
+            for coil in pattern if self._is_held else ():
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
+
+    def currents(self):
+        """The last measured ones [A]; empty before the first."""
+        with self._lock:
+            return self._currents or ()
 
     def driver_complaint(self):
         """What the coil driver says is wrong; empty when it says nothing."""
@@ -58,12 +83,17 @@ class Laboratory:
         return status.message if status is not None and status.level != DiagnosticStatus.OK else ""
 
     def drive_to(self, joints):
-        self._targets.publish(JointState(name=self._names, position=list(joints)))
+        self._targets.publish(JointState(name=self.names, position=list(joints)))
 
     def release(self):
-        """All currents to zero, told several times, as a last message may be lost."""
-        self.excite((), 0.0)
-        for _ in range(3):
-            self._repeat(None)
+        """All currents to zero at once, told several times, as a last message may be lost; nothing is commanded any
+        more."""
+        with self._lock:
+            was_held = self._is_held
+            self._is_held = False
+            self._command = [0.0] * self._coils
+        for _ in range(3 if was_held else 0):
+            with self._lock:
+                if not self._is_held:
+                    self._publish()
             rospy.rostime.wallsleep(0.02)
-        self._timer.shutdown()

@@ -6,6 +6,10 @@ import typing
 from spherical_actuator_calibration.command_line import parser
 
 
+FIXTURE_SETTLING = 0.3  # [s] at rest before a capture
+HAND_SETTLING = 3.0  # [s] a hand has to clamp the rotor
+
+
 class OptionError(Exception):
     """An option that cannot be used; the text names it."""
 
@@ -55,6 +59,13 @@ class Options:
             raise OptionError("--repeat: --plan says already which poses are measured.")
         if not self.ns.startswith("/") or self.ns.endswith("/"):
             raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
+
+    @property
+    def rest(self):
+        """[s] before a capture."""
+        if self.settling is not None:
+            return self.settling
+        return FIXTURE_SETTLING if self.drive_fixture else HAND_SETTLING
 
 
 def _add_what_is_measured(add, default):

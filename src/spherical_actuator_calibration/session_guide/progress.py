@@ -19,7 +19,7 @@ class Pose:
 
     def is_at(self, joints, tolerance):
         """Whether joint angles [rad] differ from the pose by no more than the tolerance."""
-        return max(abs(a - b) for a, b in zip(self.joints, joints)) <= tolerance
+        return distance(self.joints, joints) <= tolerance
 
     def patterns(self):
         """In the order of their capture; that without current comes first."""
@@ -55,6 +55,11 @@ def in_words(pattern):
 def in_degrees(angle):
     """+4.8°: an angle [rad] with its sign."""
     return f"{math.degrees(angle):+.1f}\N{DEGREE SIGN}"
+
+
+def distance(joints, others):
+    """The largest difference of joint angles [rad]."""
+    return max((abs(one - other) for one, other in zip(joints, others)), default=0.0)
 
 
 def way_to(pose, names, joints, tolerance):
@@ -126,12 +131,13 @@ class Progress:
             return None
         return (self._clock() - self._begin) / self.done * (self.total - self.done)
 
-    def text(self, width=30):
-        share = min(1.0, self.done / self.total) if self.total else 1.0
-        filled = int(round(share * width))
-        remaining = self.remaining_time()
-        left = "" if remaining is None else f", {duration(remaining)} left"
-        return f"[{'#' * filled}{'.' * (width - filled)}] {self.done}/{self.total}{left}"
+
+def bar(done, total, remaining, width=30):
+    """[####......] 4/10, 30 s left; remaining [s]: None or negative where it is not known."""
+    share = min(1.0, done / total) if total else 1.0
+    filled = int(round(share * width))
+    left = "" if remaining is None or remaining < 0.0 else f", {duration(remaining)} left"
+    return f"[{'#' * filled}{'.' * (width - filled)}] {done}/{total}{left}"
 
 
 def duration(seconds):

@@ -1,20 +1,19 @@
 """What the operator sees: sentences and one progress line. Plain text where it is no terminal."""
 
-import re
 import sys
 
 from spherical_actuator_calibration.text_files import printable
 
-NUMBER = re.compile(r"[-+\u2212]?\d+(\.\d+)?")
+from .narrator import Narrator
 
 
-class Terminal:
+class Terminal(Narrator):
     """Writes to a stream; a progress line is written over in a terminal, and left out elsewhere."""
 
     def __init__(self, stream=sys.stdout):
+        super().__init__()
         self._stream = stream
         self._line = ""
-        self._said = set()  # since the last change: sentences without their numbers
 
     def _write(self, text):
         self._stream.write(text)
@@ -25,21 +24,9 @@ class Terminal:
             self._write("\r" + " " * len(self._line) + "\r")
             self._line = ""
 
-    def _write_sentence(self, sentence):
+    def _tell(self, sentence):
         self._clear_line()
         self._write(printable(sentence) + "\n")
-
-    def say(self, sentence):
-        """Says what is new; from here on, all that goes on may be said once more."""
-        self._write_sentence(sentence)
-        self._said = {NUMBER.sub("#", sentence)}
-
-    def say_once(self, sentence):
-        """Says what goes on for a while, once, however its numbers change."""
-        shape = NUMBER.sub("#", sentence)
-        if shape not in self._said:
-            self._said.add(shape)
-            self._write_sentence(sentence)
 
     def progress(self, text):
         """A line that the next one takes the place of."""
@@ -52,4 +39,4 @@ class Terminal:
     def milestone(self, text):
         """How far things are, at a moment that is worth a line where there is no progress line."""
         if not self._stream.isatty():
-            self._write_sentence(text)
+            self._tell(text)

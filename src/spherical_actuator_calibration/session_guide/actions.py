@@ -1,0 +1,229 @@
+"""What the actions do, each with what its client hears. See job.py for how they run.
+
+An action has: name, type; work(goal, task, account), which returns whether it succeeded, and the result; the result
+failure(message, account) of work that did not come to its end; feedback(account); let_go(), which ends what it holds.
+"""
+
+from spherical_actuator_calibration import msg
+from spherical_actuator_calibration.msg import MeasurementProgress, SessionResult
+
+from .goals import checked_pattern, options_of, options_of_capture, pose_of_capture
+from .options import OptionError, Options
+from .plans import PlanError
+from .pose_course import POLL, SLOW, PoseCourse
+from .progress import Pose, in_words
+from .session import Session
+from .wanted_pose import WantedPose
+
+LONGEST_EXCITATION = 60.0  # [s]
+EXCITATION = 5.0  # [s] where none is asked for
+VALIDATING = "validating"
+
+
+class _AtTheBench:
+    """Of actions that excite coils: while one works, it holds the laboratory."""
+
+    def __init__(self, ns, calibration, laboratory):
+        self._ns = ns
+        self._calibration = calibration
+        self._laboratory = laboratory
+
+    def let_go(self):
+        self._laboratory.release()
+
+    def _take(self, task, account):
+        self._calibration.serve(task, account)
+        self._calibration.wait_until_up()
+        account.set(joint_names=self._laboratory.names)
+        self._laboratory.hold()
+        task.check()
+
+    def _progress(self, account):
+        message = account.message(self._laboratory.joints())
+        message.carries = self._carries(message.coils)
+        return message
+
+    def _carries(self, pattern):
+        """Whether the coils of a pattern carry current, of their sign, and no others."""
+        currents = self._laboratory.currents()
+        return bool(currents) and self._calibration.excited(currents) == tuple(sorted(pattern, key=abs))
+
+
+class SessionAction(_AtTheBench):
+    """A whole session."""
+
+    name = "session"
+    type = msg.SessionAction
+
+    def __init__(self, ns, calibration, laboratory, actuator):
+        super().__init__(ns, calibration, laboratory)
+        self._actuator = actuator
+        self._wanted_pose = WantedPose(ns, laboratory.names)
+
+    def work(self, goal, task, account):
+        self._take(task, account)
+        try:
+            options = options_of(goal, self._ns)
+            session = Session(self._calibration, self._laboratory, self._actuator, options, task, account)
+            is_complete = session.run()
+        except (OptionError, PlanError) as error:
+            return False, self._result(SessionResult.UNUSABLE, str(error), account)
+        finally:
+            account.lead_to(None)
+        outcome = SessionResult.COMPLETE if is_complete else SessionResult.INCOMPLETE
+        return is_complete, self._result(outcome, account.last(), account)
+
+    def failure(self, message, account):
+        return self._result(SessionResult.INCOMPLETE, message, account)
+
+    def _result(self, outcome, message, account):
+        account.set(stage=MeasurementProgress.ENDED, coils=[], pose=0)
+        return SessionResult(outcome=outcome, message=message, progress=self._progress(account))
+
+    def feedback(self, account):
+        self._wanted_pose.show(account.pose())
+        return msg.SessionFeedback(progress=self._progress(account))
+
+    def let_go(self):
+        super().let_go()
+        self._wanted_pose.show(None)
+
+
+class CaptureAction(_AtTheBench):
+    """One pose."""
+
+    name = "capture"
+    type = msg.CaptureAction
+
+    def work(self, goal, task, account):
+        self._take(task, account)
+        options = options_of_capture(goal, self._ns)
+        course = PoseCourse(self._calibration, self._laboratory, options, task, account)
+        if goal.here:
+            course.measure_here(bool(goal.validation))
+        else:
+            self._measure(course, pose_of_capture(goal), account)
+        count = len(course.samples)
+        message = f"The pose is measured: {count} sample{'' if count == 1 else 's'}."
+        return True, msg.CaptureResult(success=True, message=message, samples=course.samples)
+
+    def _measure(self, course, pose, account):
+        course.require_current([pose])
+        wanted = len(course.to_capture(pose, self._calibration.measured()))
+        account.set(pose=1, poses=1, captures_wanted=wanted)
+        if wanted:
+            course.measure(pose, "the pose", lambda: account.set(captures=len(course.samples)))
+
+    @staticmethod
+    def failure(message, _account):
+        return msg.CaptureResult(message=message)
+
+    def feedback(self, account):
+        return msg.CaptureFeedback(progress=self._progress(account))
+
+
+class ExciteAction(_AtTheBench):
+    """A look at coils."""
+
+    name = "excite"
+    type = msg.ExciteAction
+
+    def __init__(self, ns, calibration, laboratory, coils):
+        super().__init__(ns, calibration, laboratory)
+        self._coils = coils
+
+    def work(self, goal, task, account):
+        pattern = checked_pattern(goal.coils, self._coils)
+        duration = goal.duration or EXCITATION
+        if not 0.0 < duration <= LONGEST_EXCITATION:
+            raise ValueError(f"duration: {duration:g} s is outside (0, {LONGEST_EXCITATION:g}].")
+        if not goal.current > 0.0:
+            raise ValueError(f"current: {goal.current:g} A is no current.")
+        self._take(task, account)
+        options = Options(ns=self._ns, current=goal.current, total_current=max(goal.current, Options().total_current))
+        course = PoseCourse(self._calibration, self._laboratory, options, task, account)
+        course.require_current([Pose((), (pattern,))])
+        account.set(stage=MeasurementProgress.EXCITING)
+        course.excite(pattern)
+        begin = task.time()
+        was_there = False
+        while task.time() < begin + duration:
+            task.pause(POLL)
+            is_there = self._carries(pattern)
+            if not is_there and (was_there or task.time() > begin + SLOW):
+                complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
+                raise RuntimeError(f"{in_words(pattern)}: not the current that was commanded: {complaint}.")
+            was_there = was_there or is_there
+        result = msg.ExciteResult(success=was_there, measured=self._laboratory.currents())
+        result.message = f"{in_words(pattern)}: {'' if was_there else 'not '}excited; the currents are zero again."
+        return was_there, result
+
+    def failure(self, message, _account):
+        return msg.ExciteResult(message=message, measured=self._laboratory.currents())
+
+    def feedback(self, account):
+        return msg.ExciteFeedback(progress=self._progress(account), measured=self._laboratory.currents())
+
+
+class PlanAction:
+    """Poses to measure next."""
+
+    name = "plan"
+    type = msg.PlanAction
+
+    def __init__(self, calibration):
+        self._calibration = calibration
+
+    def work(self, goal, task, account):
+        self._calibration.serve(task, account)
+        self._calibration.wait_until_up()
+        request = {field: getattr(goal, field) for field in goal.__slots__}
+        answer = self._calibration.call("plan_poses", **{**request, "cycle": goal.cycle or "refine"})
+        result = msg.PlanResult(**{field: getattr(answer, field) for field in msg.PlanResult.__slots__})
+        return answer.success, result
+
+    @staticmethod
+    def failure(message, _account):
+        return msg.PlanResult(message=message)
+
+    @staticmethod
+    def feedback(account):
+        return msg.PlanFeedback(elapsed=account.elapsed())
+
+    @staticmethod
+    def let_go():
+        """It holds nothing."""
+
+
+class SaveAction:
+    """The result's files."""
+
+    name = "save"
+    type = msg.SaveAction
+
+    def __init__(self, calibration):
+        self._calibration = calibration
+
+    def work(self, goal, task, account):
+        self._calibration.serve(task, account)
+        self._calibration.wait_until_up()
+        if goal.validate:
+            account.set(stage=VALIDATING)
+            answer = self._calibration.call("validate", coil=0)
+            if not answer.success:
+                return False, msg.SaveResult(message="Not saved: " + answer.message)
+        account.set(stage=MeasurementProgress.SAVING)
+        answer = self._calibration.call("save")
+        return answer.success, msg.SaveResult(success=answer.success, message=answer.message)
+
+    @staticmethod
+    def failure(message, _account):
+        return msg.SaveResult(message=message)
+
+    @staticmethod
+    def feedback(account):
+        return msg.SaveFeedback(stage=account.message().stage, elapsed=account.elapsed())
+
+    @staticmethod
+    def let_go():
+        """It holds nothing."""

@@ -1,0 +1,91 @@
+"""The engine of guided sessions: one course of a measurement for terminal, panel and scripts."""
+
+import threading
+
+import actionlib
+import rospy
+from spherical_actuator_calibration.text_files import printable
+
+from .account import Account
+from .actions import CaptureAction, ExciteAction, PlanAction, SaveAction, SessionAction
+from .calibration import Calibration
+from .job import Job, client_of
+from .laboratory import Laboratory
+from .terminal import Terminal
+
+ENDING = 1.0  # [s] for goals under way to be answered at the end
+
+
+class Lane:
+    """Actions that do not go together: it takes one goal at a time, and refuses others with a sentence."""
+
+    def __init__(self):
+        self._servers = {}
+        self._lock = threading.Lock()
+        self._job = None
+
+    def serve(self, ns, action):
+        """Offers an action, under a name beside the services of the calibration node."""
+
+        def cancelled(handle):
+            self._cancel(handle)
+
+        def wanted(handle):
+            self._take(handle, action)
+
+        server = actionlib.ActionServer(f"{ns}/calibration/{action.name}", action.type, wanted, cancelled, False)
+        self._servers[action.name] = server
+        server.start()
+
+    def _take(self, handle, action):
+        with self._lock:
+            job = self._job
+            is_free = job is None or not job.is_running()
+            if is_free:
+                self._job = Job(handle, self._servers[action.name], action, job)
+                handle.set_accepted()
+                self._job.start()
+        if not is_free:
+            message = f"{printable(job.client)} is at it, by the action {job.name}: cancel that, or wait for its end."
+            rospy.logwarn("%s of %s is refused: %s", action.name, printable(client_of(handle)), message)
+            handle.set_rejected(action.failure(message, Account()), message)
+
+    def _cancel(self, handle):
+        with self._lock:
+            job = self._job
+        if job is not None and job.is_of(handle):
+            job.cancel("its client asked for it.")
+
+    def close(self, reason):
+        """Cancels what is under way."""
+        with self._lock:
+            job = self._job
+        if job is not None and job.is_running():
+            job.cancel(reason)
+            job.join(ENDING)
+
+
+class Engine:
+    """Serves the actions capture, excite, session, plan and save of an actuator."""
+
+    def __init__(self, ns, actuator):
+        coils = len(actuator.get("coils", []))
+        self._laboratory = Laboratory(ns, coils, [joint["name"] for joint in actuator["joints"]])
+        console = Terminal()
+        bench = Calibration(ns, console)
+        self._lanes = [Lane() for _ in range(3)]
+        actions = (
+            (CaptureAction(ns, bench, self._laboratory), 0),
+            (ExciteAction(ns, bench, self._laboratory, coils), 0),
+            (SessionAction(ns, bench, self._laboratory, actuator), 0),
+            (PlanAction(Calibration(ns, console)), 1),
+            (SaveAction(Calibration(ns, console)), 2),
+        )
+        for action, lane in actions:
+            self._lanes[lane].serve(ns, action)
+
+    def close(self):
+        """Ends what is under way; the currents are zero."""
+        for lane in self._lanes:
+            lane.close("the engine ends.")
+        self._laboratory.release()

@@ -1,0 +1,181 @@
+"""The course of one pose: arrival, rest, excitation, capture, and what to do when something disturbs it."""
+
+import math
+
+from spherical_actuator_calibration.msg import MeasurementProgress
+from spherical_actuator_calibration.srv import CapturePlannedResponse
+
+from . import progress
+from .laboratory import STILL
+
+POLL = 0.05  # [s]
+SLOW = 5.0  # [s] after which the operator is told what is waited for
+# [s] without current before it is tried again: a driver whose currents deviated follows again after zero was commanded
+# and measured.
+PAUSE = 1.0
+FIXTURE_TOLERANCE = 0.02  # [rad] of a fixture that has arrived
+
+
+class PoseCourse:
+    """Measures poses; everything measured is with the calibration node. Raises RuntimeError with a sentence where a
+    person has to see to something, and Cancelled of its task."""
+
+    def __init__(self, calibration, laboratory, options, task, account):
+        self._calibration = calibration
+        self._laboratory = laboratory
+        self._options = options
+        self._task = task
+        self._account = account
+        self.current = options.current  # [A] of an excited coil
+        self.samples = []  # that were captured
+
+    def to_capture(self, pose, measured):
+        """Patterns of a pose that samples lack."""
+        return progress.patterns_to_capture(pose, measured, self._calibration.pose_tolerance())
+
+    def require_current(self, poses):
+        """Raises RuntimeError where a coil would not be told from one that is off, or a pattern needs too much."""
+        least = self._calibration.status().least_current
+        excited = [pattern for pose in poses for pattern in pose.excitations]
+        if excited and self.current < least:
+            raise RuntimeError(
+                f"{self.current:g} A are too little to tell a coil from one that is off: take {least:g} A or more."
+            )
+        total = max((len(pattern) for pattern in excited), default=0) * self.current
+        if total > self._options.total_current:
+            raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A.")
+
+    def measure(self, pose, which, done):
+        """Measures what samples lack of a pose; calls done() after each capture. `which`: the pose in words."""
+        self._lead_to(pose, which)
+        self.wait_for_rest(pose)
+        for pattern in self.to_capture(pose, self._calibration.measured()):
+            self.capture(pose, pattern)
+            done()
+        self._account.lead_to(None)
+
+    def measure_here(self, validation):
+        """One capture without current, wherever the rotor rests."""
+        self.excite(())
+        self.wait_for_rest(None)
+        self._account.set(stage=MeasurementProgress.CAPTURING)
+        while True:
+            answer = self._calibration.capture(self._options.dwell, validation)
+            if answer is not None and answer.success:
+                self.samples.append(answer.sample)
+                return
+            if answer is not None:
+                self._account.say_once(answer.message)
+            self._task.pause(POLL)
+
+    def excite(self, pattern):
+        """Commands a pattern; empty: no current."""
+        self._laboratory.excite(pattern, self.current)
+        self._account.set(coils=list(pattern), current=self.current)
+
+    def _lead_to(self, pose, which):
+        self.excite(())
+        self._account.lead_to(pose, self._tolerance())
+        if self._options.drive_fixture:
+            self._laboratory.drive_to(pose.joints)
+            return
+        angles = zip(self._laboratory.names, pose.joints)
+        self._account.say(
+            f"Turn the rotor to {which}: {', '.join(f'{name} {progress.in_degrees(q)}' for name, q in angles)}, "
+            f"each within {math.degrees(self._calibration.pose_tolerance()):.1f}\N{DEGREE SIGN}, and clamp it. "
+            f"After {self._options.rest:g} s at rest coils are excited by itself: hands off then."
+        )
+
+    def wait_for_rest(self, pose):
+        """Until the joint sensors see the rotor at rest at the pose; None: anywhere. Raises RuntimeError when that
+        takes too long."""
+        self._account.set(stage=MeasurementProgress.TURNING, is_at_rest=False)
+        begin = still_since = self._task.time()
+        last = None
+        while True:
+            joints = self._laboratory.joints()
+            now = self._task.time()
+            way = None if joints is None else self._way(pose, joints)
+            if joints is None:
+                self._account.say_once("No joint angles arrive: check the joint sensor.")
+                still_since = now
+            elif last is None or progress.distance(joints, last) > STILL:
+                last, still_since = joints, now
+            elif now - still_since >= self._options.rest and not way:
+                self._account.set(is_at_rest=True)
+                return
+            elif way and now - begin > SLOW and self._options.drive_fixture:
+                self._account.say_once(f"The rotor is not at the pose ({way}): check fixture and joint sensor.")
+            if now - begin > self._options.pose_timeout:
+                raise RuntimeError(
+                    f"The rotor did not come to rest at the pose in {now - begin:.0f} s "
+                    f"({'no joint angles' if joints is None else way or 'it moves'}). "
+                    "See to that, and start again: it goes on."
+                )
+            self._task.pause(POLL)
+
+    def _way(self, pose, joints):
+        return "" if pose is None else progress.way_to(pose, self._laboratory.names, joints, self._tolerance())
+
+    def _tolerance(self):
+        """[rad] of arrival. A hand does not meet the angles as a fixture does; any pose nearby tells as much."""
+        return FIXTURE_TOLERANCE if self._options.drive_fixture else self._calibration.pose_tolerance()
+
+    def _answer_with_current(self, pose, pattern):
+        """To a capture while the coils carry what is commanded. Raises RuntimeError when that takes too long."""
+        begin = self._task.time()
+        while True:
+            answer = self._answer_soon(pose, pattern)
+            if answer is None or answer.flaw != CapturePlannedResponse.EXCITATION:
+                return answer
+            waited = self._task.time() - begin
+            complaint = self._laboratory.driver_complaint() or "it does not say why"
+            if waited > self._options.current_timeout:
+                raise RuntimeError(
+                    f"{answer.message} After {waited:.0f} s: {complaint}. See to that, and start again."
+                )
+            self._account.say_once(f"{answer.message} The driver: {complaint}.")
+            self.excite(())
+            self._task.pause(PAUSE)
+            self.excite(pattern)
+
+    def _answer_soon(self, pose, pattern):
+        """Answer to a capture; asked again for a moment while coils do not carry what is commanded."""
+        end = self._task.time() + SLOW
+        while True:
+            answer = self._calibration.capture_planned(pose, pattern, self.current, self._options.dwell)
+            is_amiss = answer is not None and answer.flaw == CapturePlannedResponse.EXCITATION
+            if not is_amiss or self._task.time() > end:
+                return answer
+            self._task.pause(POLL)
+
+    def capture(self, pose, pattern):
+        """Captures one pattern; repeats, and says why, until a sample of it is held."""
+        while True:
+            self._account.set(stage=MeasurementProgress.CAPTURING)
+            self.excite(pattern)
+            self._task.pause(min(self._options.rest, 0.1))
+            answer = self._answer_with_current(pose, pattern)
+            if answer is None:
+                if pattern and self._holds(pose, pattern):
+                    return
+                continue
+            if answer.success:
+                self.samples.append(answer.sample)
+                return
+            self._account.say_once(answer.message)
+            self._mend(answer.flaw, pose)
+            self._task.pause(POLL)
+
+    def _holds(self, pose, pattern):
+        """Whether a sample has the pattern, though its answer was lost."""
+        measured = self._calibration.measured()
+        return pattern not in progress.missing_patterns(pose, measured, self._calibration.pose_tolerance())
+
+    def _mend(self, flaw, pose):
+        """What is to be done about a flaw that the node tells of, beside another capture."""
+        if flaw == CapturePlannedResponse.POSE:
+            self.excite(())
+            self.wait_for_rest(pose)
+        elif flaw == CapturePlannedResponse.REST:
+            self.capture(pose, ())
