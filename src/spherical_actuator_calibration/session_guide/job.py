@@ -44,6 +44,7 @@ class Job:
         self._action = action
         self._followers = Followers(server.feedback_pub, self.client)
         self._is_answered = threading.Event()
+        self._ending = threading.Lock()
         self._thread = threading.Thread(target=self._run, args=(previous,), daemon=True)
         self._beat = threading.Thread(target=self._follow, daemon=True)
 
@@ -59,9 +60,11 @@ class Job:
         return not self._is_answered.is_set() and not self.task.is_cancelled()
 
     def cancel(self, reason):
-        """From any thread, and at once; `reason`: a sentence."""
-        self.task.cancel(reason)
-        self._action.let_go()
+        """From any thread, and at once, unless it has ended; `reason`: a sentence."""
+        with self._ending:
+            if not self._is_answered.is_set():
+                self.task.cancel(reason)
+                self._action.let_go()
 
     def join(self, seconds=None):
         """Until its work has ended, and all that it has called."""
@@ -84,8 +87,10 @@ class Job:
         try:
             answer = self._outcome()
         finally:
-            self._action.let_go()
-            self._is_answered.set()
+            # What another goal holds by now is not let go by a late cancel.
+            with self._ending:
+                self._action.let_go()
+                self._is_answered.set()
         answer()
         self.task.wait_for_calls()
 
