@@ -10,9 +10,9 @@ from spherical_actuator_calibration.session_guide import goals
 from spherical_actuator_calibration.session_guide.account import KEPT, Account
 from spherical_actuator_calibration.session_guide.client import Follower
 from spherical_actuator_calibration.session_guide.options import OptionError, Options
+from spherical_actuator_calibration.session_guide.picture import LineTerminal, LiveTerminal
 from spherical_actuator_calibration.session_guide.progress import Pose
 from spherical_actuator_calibration.session_guide.task import Cancelled, Task
-from spherical_actuator_calibration.session_guide.terminal import Terminal
 
 
 class CancelledTask(unittest.TestCase):
@@ -78,7 +78,7 @@ class Goals(unittest.TestCase):
 class Following(unittest.TestCase):
     def test_tells_each_sentence_once_also_where_feedback_was_lost(self):
         account, screen = Account(), io.StringIO()
-        follower = Follower(Terminal(screen))
+        follower = Follower(LineTerminal(screen))
         account.say("One.")
         follower.follow(account.message())
         follower.follow(account.message())
@@ -105,7 +105,7 @@ class Following(unittest.TestCase):
 
     def test_a_file_gets_a_line_for_each_pose(self):
         screen = io.StringIO()
-        follower = Follower(Terminal(screen))
+        follower = Follower(LineTerminal(screen))
         account = Account()
         for pose, captures, stage in ((1, 0, "turning"), (1, 2, "capturing"), (2, 2, "turning"), (2, 3, "capturing")):
             account.set(pose=pose, captures=captures, captures_wanted=4, stage=stage)
@@ -113,6 +113,37 @@ class Following(unittest.TestCase):
         account.set(captures=4, stage="estimating")
         follower.follow(account.message())
         self.assertEqual([line.split()[-1] for line in screen.getvalue().splitlines()], ["2/4", "4/4"])
+
+
+class Drawing(unittest.TestCase):
+    def setUp(self):
+        self.screen = io.StringIO()
+        self.terminal = LiveTerminal(self.screen, force_terminal=True, width=100)
+        self.account = Account()
+        self.account.lead_to(Pose((0.5, 0.0, -1.0), ()), 0.05)
+        self.account.set(stage="turning", pose=2, poses=7, captures=3, captures_wanted=9, joint_names=["joint_1", "joint_2", "[red]"])
+
+    def drawn(self, joints):
+        """What a new picture brings."""
+        before = len(self.screen.getvalue())
+        self.terminal.show(self.account.message(joints))
+        return self.screen.getvalue()[before:]
+
+    def test_shows_the_way_of_each_joint(self):
+        drawn = self.drawn((0.4, 0.01, -1.0))
+        for part in ("pose 2 of 7", "turn", "joint_1", "+5.7\N{DEGREE SIGN}", "###", "there", "[red]", "3/9"):
+            self.assertIn(part, drawn)
+        self.assertIn("there: clamp the rotor", self.drawn((0.49, 0.01, -1.0)))
+
+    def test_keeps_sentences_above_it_and_goes_at_the_end(self):
+        self.drawn((0.4, 0.01, -1.0))
+        self.terminal.say("[bold]One.")
+        self.assertIn("[bold]One.", self.screen.getvalue())
+        self.account.set(stage="estimating")
+        self.drawn((0.4, 0.01, -1.0))
+        self.terminal.say("Two.")
+        self.assertTrue(self.screen.getvalue().endswith("Two.\n"))
+        self.assertIn("\x1b[?25h", self.screen.getvalue())
 
 
 if __name__ == "__main__":

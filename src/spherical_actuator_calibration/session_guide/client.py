@@ -7,13 +7,12 @@ import threading
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from spherical_actuator_calibration.msg import MeasurementProgress, SessionAction, SessionResult
+from spherical_actuator_calibration.msg import SessionAction, SessionResult
 from spherical_actuator_calibration.programs import program
 
-from . import progress
+from .picture import MEASURING, line_of
 from .task import Task
 
-MEASURING = (MeasurementProgress.TURNING, MeasurementProgress.EXCITING, MeasurementProgress.CAPTURING)
 LOOK = 0.1  # [s] between two looks
 STARTING = 3.0  # [s] for an engine that is being started with the laboratory
 PATIENCE = 30.0  # [s] for an engine that must be there, on however busy a computer
@@ -41,35 +40,13 @@ class Follower:
         with self._lock:
             self.time = Task.time()
             if told.captures != self._captures and (told.pose != self._pose or told.stage not in MEASURING):
-                self._terminal.milestone(self._text(told, ""))
+                self._terminal.milestone(line_of(told))
                 self._captures = told.captures
             self._pose = told.pose
             for sentence in told.sentences[len(told.sentences) - max(0, told.told - self._told) :]:
                 self._terminal.say(sentence)
             self._told = max(self._told, told.told)
-            if told.stage in MEASURING:
-                self._terminal.progress(self._text(told, doing(told)))
-
-    @staticmethod
-    def _text(told, doing_now):
-        known = told.orientation_uncertainty
-        parts = (
-            progress.bar(told.captures, told.captures_wanted, told.remaining_time),
-            doing_now,
-            f"orientation ± {1e3 * known:.2f} mrad" if known else "",
-        )
-        return "  ".join(part for part in parts if part)
-
-
-def doing(told):
-    """What is under way at a pose, in a few words."""
-    if told.stage != MeasurementProgress.TURNING:
-        return progress.in_words(told.coils).lower() if told.coils else "without current"
-    if not told.way:
-        return ""
-    pairs = zip(told.joint_names, told.way)
-    left = ", ".join(f"{name} by {progress.in_degrees(way)}" for name, way in pairs if abs(way) > told.tolerance)
-    return f"turn {left}" if left else "there: clamp the rotor"
+            self._terminal.show(told)
 
 
 class SessionClient:
