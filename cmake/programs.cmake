@@ -11,6 +11,7 @@ catkin_install_python(
     scripts/guided_session
     scripts/import_csv
     scripts/level_1_by_coils
+    scripts/list_revisions
     scripts/plot_study
     scripts/plot_tracking
     scripts/render_report

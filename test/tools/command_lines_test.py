@@ -18,6 +18,7 @@ PROGRAMS = (
     "guided_session",
     "import_csv",
     "level_1_by_coils",
+    "list_revisions",
     "plot_study",
     "plot_tracking",
     "render_report",

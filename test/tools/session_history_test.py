@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""What list_revisions tells of sessions of one unit."""
+
+import contextlib
+import pathlib
+import sqlite3
+import tempfile
+import unittest
+
+from spherical_actuator_calibration.session_tables.export import APPLICATION, ExportError
+from spherical_actuator_calibration.session_tables.history import drift_between, history_of
+
+TABLES = """
+CREATE TABLE unit (name, serial, description, effects);
+CREATE TABLE revisions (number, date, software, source, origin, predecessor, refined, cycle);
+CREATE TABLE cycles (id, date, cycle, coil, error_measure, samples_used);
+CREATE TABLE cycle_errors (cycle, iteration, error);
+CREATE TABLE cycle_estimates (cycle, position, name, unit, nominal, initial, value, stddev, observable);
+"""
+
+
+class History(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def session(self, name, date, offset, serial="unit-7"):
+        """A session that identified one offset [rad], known to 1 mrad."""
+        path = self.folder / name
+        with contextlib.closing(sqlite3.connect(path)) as database:
+            database.executescript(TABLES)
+            database.execute(f"PRAGMA application_id = {APPLICATION}")
+            database.execute("PRAGMA user_version = 4")
+            database.execute("INSERT INTO unit VALUES ('a', ?, '', '')", [serial])
+            database.execute("INSERT INTO cycles VALUES (1, ?, 'joint', 0, 'orientation', 40)", [date])
+            for iteration, error in enumerate((0.05, 0.01, 0.002)):
+                database.execute("INSERT INTO cycle_errors VALUES (1, ?, ?)", [iteration, error])
+            estimates = (("joint_1/offset", offset, 1e-3, 1), ("joint_2/offset", 0.3, float("inf"), 0))
+            for position, (parameter, value, stddev, observable) in enumerate(estimates):
+                database.execute(
+                    "INSERT INTO cycle_estimates VALUES (1, ?, ?, 'rad', 0, 0, ?, ?, ?)",
+                    [position, parameter, value, stddev, observable],
+                )
+            database.execute("INSERT INTO revisions VALUES (0, ?, '', 'nominal', 'start', NULL, 0, NULL)", [date])
+            database.execute("INSERT INTO revisions VALUES (1, ?, '', 'identified', 'joint', 0, 0, 1)", [date])
+            database.commit()
+        return path
+
+    def test_lists_revisions_with_their_errors(self):
+        lines = list(history_of([self.session("a.db", "2026-01-02T03:04:05Z", 0.1)]))
+        self.assertEqual(len(lines), 3)
+        self.assertEqual(lines[1].split(), ["0", "2026-01-02T03:04:05Z", "start"])
+        self.assertIn("joint", lines[2])
+        self.assertIn("50 \u2192 2 mrad, 40 samples", lines[2])
+
+    def test_tells_the_drift_in_the_order_of_dates(self):
+        later = self.session("later.db", "2026-03-01T00:00:00Z", 0.1 + 5e-3)
+        earlier = self.session("earlier.db", "2026-01-01T00:00:00Z", 0.1)
+        lines = list(history_of([later, earlier]))
+        self.assertIn("earlier.db", lines[0])
+        self.assertEqual(
+            lines[-1].strip(),
+            "furthest from the session before: joint_1/offset by +0.005 rad, 3.5 standard deviations of the change",
+        )
+
+    def test_refuses_sessions_of_two_units(self):
+        sessions = [self.session("a.db", "2026-01-01", 0.1), self.session("b.db", "2026-01-02", 0.1, "unit-8")]
+        with self.assertRaisesRegex(ExportError, "b.db: is of another unit"):
+            list(history_of(sessions))
+
+    def test_an_angle_drifts_the_short_way(self):
+        drift = drift_between({"a": (3.1415, 1e-3, "rad")}, {"a": (-3.1415, 1e-3, "rad")})
+        self.assertLess(abs(drift.change), 1e-3)
+        self.assertIsNone(drift_between({}, {"a": (0.0, 1.0, "rad")}))
+
+
+if __name__ == "__main__":
+    unittest.main()
