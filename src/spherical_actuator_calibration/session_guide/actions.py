@@ -1,7 +1,8 @@
 """What the actions do, each with what its client hears. See job.py for how they run.
 
-An action has: name, type; work(goal, task, account), which returns whether it succeeded, and the result; the result
-failure(message, account) of work that did not come to its end; feedback(account); let_go(), which ends what it holds.
+An action has: name, type; end: what is so when it was cancelled, in a sentence; work(goal, task, account), which returns
+whether it succeeded, and the result; failure(message, account): the result of work that did not come to its end;
+feedback(account); let_go(), which ends what it holds.
 """
 
 from spherical_actuator_calibration import msg
@@ -22,6 +23,8 @@ VALIDATING = "validating"
 
 class _AtTheBench:
     """Of actions that excite coils: while one works, it holds the laboratory."""
+
+    end = "The currents are zero; what was captured stays."
 
     def __init__(self, ns, calibration, laboratory):
         self._ns = ns
@@ -112,7 +115,7 @@ class CaptureAction(_AtTheBench):
         wanted = len(course.to_capture(pose, self._calibration.measured()))
         account.set(pose=1, poses=1, captures_wanted=wanted)
         if wanted:
-            course.measure(pose, "the pose", lambda: account.set(captures=len(course.samples)))
+            course.measure(pose, "", lambda: account.set(captures=len(course.samples)))
 
     @staticmethod
     def failure(message, _account):
@@ -169,6 +172,7 @@ class PlanAction:
     """Poses to measure next."""
 
     name = "plan"
+    end = "The calibration node still ends what it has begun."
     type = msg.PlanAction
 
     def __init__(self, calibration):
@@ -199,6 +203,7 @@ class SaveAction:
     """The result's files."""
 
     name = "save"
+    end = "The calibration node still ends what it has begun."
     type = msg.SaveAction
 
     def __init__(self, calibration):

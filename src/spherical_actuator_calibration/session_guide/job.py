@@ -102,7 +102,7 @@ class Job:
             answer = self._handle.set_succeeded if is_success else self._handle.set_aborted
             return lambda: answer(result, result.message)
         except Cancelled as reason:
-            message = f"Cancelled: {reason}"
+            message = f"Cancelled: {reason} {self._action.end}"
             answer = self._handle.set_canceled
         except (RuntimeError, ValueError) as error:
             message = printable(str(error))

@@ -46,7 +46,8 @@ class PoseCourse:
             raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A.")
 
     def measure(self, pose, which, done):
-        """Measures what samples lack of a pose; calls done() after each capture. `which`: the pose in words."""
+        """Measures what samples lack of a pose; calls done() after each capture. `which`: the pose in words, for
+        a hand that is told where to turn it; empty: it is not."""
         self._lead_to(pose, which)
         self.wait_for_rest(pose)
         for pattern in self.to_capture(pose, self._calibration.measured()):
@@ -78,6 +79,7 @@ class PoseCourse:
         self._account.lead_to(pose, self._tolerance())
         if self._options.drive_fixture:
             self._laboratory.drive_to(pose.joints)
+        if self._options.drive_fixture or not which:
             return
         angles = zip(self._laboratory.names, pose.joints)
         self._account.say(
