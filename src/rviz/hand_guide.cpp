@@ -3,13 +3,11 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include "spherical_actuator_calibration/Capture.h"
-#include "spherical_actuator_calibration/CapturePlanned.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
@@ -19,8 +17,6 @@ namespace {
 
 constexpr int kMostPoses = 100;
 constexpr double kLargestCurrent = 100.0;  // [A]; the coil driver has its own limits
-/// Beside the capture: for currents to come, and for the node to answer [s].
-constexpr double kLongestBeside = 15.0;
 
 /// Names of the joints in the description that the nodes read; `otherwise` where there is none.
 std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
@@ -43,17 +39,6 @@ std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
   return names;
 }
 
-CaptureOutcome::Flaw flawOf(const ServiceAnswer& answer) {
-  using Flaw = CaptureOutcome::Flaw;
-  if (answer.flaw == msg::CapturePlannedResponse::EXCITATION) {
-    return Flaw::kExcitation;
-  }
-  if (answer.flaw == msg::CapturePlannedResponse::REST) {
-    return Flaw::kRestInterrupted;
-  }
-  return answer.flaw.empty() ? Flaw::kNone : Flaw::kOther;
-}
-
 }  // namespace
 
 HandGuide::HandGuide(const ros::NodeHandle& node,
@@ -64,7 +49,7 @@ HandGuide::HandGuide(const ros::NodeHandle& node,
       model_(model),
       hold_out_(std::move(hold_out)),
       duration_(std::move(duration)),
-      exciter_(node),
+      capture_(node),
       wanted_pose_(node_.advertise<sensor_msgs::JointState>("wanted_pose", 1, true)) {
   build();
   listen();
@@ -126,29 +111,12 @@ void HandGuide::listen() {
 
 void HandGuide::refresh() {
   guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
-  measurement_.requireAtLeast(model_.leastCurrent());
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
-    take(*answer);
+    takePlan(*answer);
   }
-  if (measurement_.isRunning()) {
-    goOn();
-  } else if (exciter_.coil() != 0) {
-    finish();
-  }
+  showMeasurement();
   tellTarget();
   showAdvice();
-}
-
-void HandGuide::take(const ServiceAnswer& answer) {
-  const double now = ros::SteadyTime::now().toSec();
-  switch (asked_) {
-    case Asked::kPlan:
-      takePlan(answer);
-      break;
-    case Asked::kCapture:
-      measurement_.captured({answer.success, answer.message, flawOf(answer)}, now);
-      break;
-  }
 }
 
 void HandGuide::plan() {
@@ -158,7 +126,6 @@ void HandGuide::plan() {
   msg::PlanPoses::Request request;
   request.cycle = "refine";
   request.max_poses = static_cast<std::uint32_t>(poses_->value());
-  asked_ = Asked::kPlan;
   outcome_->setText("Planning …");
   caller_.call<msg::PlanPoses>(node_.resolveName("calibration/plan_poses"), request);
 }
@@ -172,9 +139,8 @@ void HandGuide::takePlan(const ServiceAnswer& answer) {
 }
 
 void HandGuide::measureOrStop() {
-  if (measurement_.isRunning()) {
-    measurement_.end("Stopped; the currents are zero.");
-    finish();
+  if (capture_.isRunning()) {
+    capture_.cancel();
     return;
   }
   measure();
@@ -185,65 +151,41 @@ void HandGuide::measure() {
   if (caller_.isBusy()) {
     return;
   }
-  std::vector<std::uint32_t> patterns = {0};
-  pose_.reset();
-  if (const std::optional<std::size_t> here = guide_.here()) {
-    patterns = guide_.missing(*here);
-    pose_ = guide_.joints(*here);
+  msg::CaptureGoal goal;
+  goal.current = current_->value();
+  goal.duration = duration_();
+  goal.validation = static_cast<std::uint8_t>(hold_out_());
+  pose_ = guide_.here();
+  goal.here = static_cast<std::uint8_t>(!pose_);
+  if (pose_) {
+    const std::vector<std::uint32_t> missing = guide_.missing(*pose_);
+    if (missing.empty()) {
+      outcome_->setText("This pose is measured already.");
+      return;
+    }
+    const std::array<double, 3>& joints = guide_.joints(*pose_);
+    std::copy(joints.begin(), joints.end(), goal.pose.joint_position.begin());
+    std::copy_if(
+        missing.begin(), missing.end(), std::back_inserter(goal.pose.coils), [](auto coil) {
+          return coil != 0;
+        });
   }
-  if (patterns.empty()) {
-    outcome_->setText("This pose is measured already.");
+  if (!goal.pose.coils.empty() && goal.current == 0.0) {
+    outcome_->setText("Choose the current of the planned coils first.");
     return;
   }
-  measurement_.begin(std::move(patterns), current_->value(), ros::SteadyTime::now().toSec());
-  goOn();
+  capture_.begin(goal);
 }
 
-void HandGuide::goOn() {
-  const double seconds = duration_() + kLongestBeside;
-  if (measurement_.coil() != exciter_.coil()) {
-    exciter_.excite(measurement_.coil(), model_.coils(), measurement_.current(), seconds);
+void HandGuide::showMeasurement() {
+  if (const std::optional<CaptureEnd> end = capture_.takeEnd()) {
+    if (end->success && pose_) {
+      guide_.noteMeasured(*pose_);
+    }
+    outcome_->setText(QString::fromStdString(end->message));
+  } else if (capture_.isRunning()) {
+    outcome_->setText(QString::fromStdString(capture_.progress()));
   }
-  switch (measurement_.step(ros::SteadyTime::now().toSec())) {
-    case PoseMeasurement::Action::kCapture:
-      askForCapture();
-      break;
-    case PoseMeasurement::Action::kEnd:
-      finish();
-      break;
-    case PoseMeasurement::Action::kNothing:
-      outcome_->setText(measurement_.coil() == 0
-                            ? QString("Measuring without current …")
-                            : QString("Measuring with coil %1 …").arg(measurement_.coil()));
-      break;
-  }
-}
-
-void HandGuide::askForCapture() {
-  asked_ = Asked::kCapture;
-  const auto validation = static_cast<std::uint8_t>(hold_out_());
-  if (!pose_) {
-    msg::Capture::Request request;
-    request.duration = duration_();
-    request.validation = validation;
-    caller_.call<msg::Capture>(node_.resolveName("calibration/capture"), request);
-    return;
-  }
-  msg::CapturePlanned::Request request;
-  std::copy(pose_->begin(), pose_->end(), request.joint_position.begin());
-  if (measurement_.coil() != 0) {
-    const auto coil = static_cast<std::int32_t>(measurement_.coil());
-    request.coils = {measurement_.current() < 0.0 ? -coil : coil};
-    request.current = std::abs(measurement_.current());
-  }
-  request.duration = duration_();
-  request.validation = validation;
-  caller_.call<msg::CapturePlanned>(node_.resolveName("calibration/capture_planned"), request);
-}
-
-void HandGuide::finish() {
-  exciter_.stop();
-  outcome_->setText(QString::fromStdString(measurement_.outcome()));
 }
 
 void HandGuide::tellTarget() {
@@ -267,12 +209,12 @@ void HandGuide::showAdvice() {
     advice_->setText(advice);
   }
   // A new text takes the shortcut away.
-  const char* what = measurement_.isRunning() ? "Stop" : "Measure pose";
+  const char* what = capture_.isRunning() ? "Stop" : "Measure pose";
   if (measure_->text() != what) {
     measure_->setText(what);
     measure_->setShortcut(QKeySequence("F3"));
   }
-  plan_->setEnabled(!caller_.isBusy() && !measurement_.isRunning());
+  plan_->setEnabled(!caller_.isBusy() && !capture_.isRunning());
 }
 
 }  // namespace sac

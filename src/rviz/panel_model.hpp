@@ -83,8 +83,6 @@ class PanelModel {
 
   /// A coil below it counts as off [A].
   double currentThreshold() const { return status_.current_threshold; }
-  /// A coil is excited with at least this [A].
-  double leastCurrent() const { return status_.least_current; }
   /// Joint angles that differ by at most this from a planned pose are at it [rad].
   double poseTolerance() const { return status_.pose_tolerance; }
 

@@ -72,6 +72,13 @@ void PoseGuide::receive(const msg::CalibrationSample& sample) {
   }
 }
 
+void PoseGuide::noteMeasured(std::size_t pose) {
+  Pose& at = poses_.at(pose);
+  at.has_sample = true;
+  at.measured.insert(0);
+  at.measured.insert(at.coils.begin(), at.coils.end());
+}
+
 bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) const {
   return std::equal(one.begin(), one.end(), other.begin(), [this](double a, double b) {
     return std::abs(a - b) <= tolerance_;

@@ -35,6 +35,9 @@ class PoseGuide {
   /// pattern its opposite, which tells the same.
   void receive(const msg::CalibrationSample& sample);
 
+  /// All that is to be measured at a pose is held, whoever measured it.
+  void noteMeasured(std::size_t pose);
+
   bool hasPlan() const { return !poses_.empty(); }
   /// Index of the first pose that is not measured; nothing where none is left.
   std::optional<std::size_t> next() const;

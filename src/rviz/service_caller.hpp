@@ -11,7 +11,6 @@
 
 #include <ros/service.h>
 
-#include "spherical_actuator_calibration/CapturePlanned.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
@@ -22,7 +21,6 @@ struct ServiceAnswer {
   bool success = false;
   std::string message;                  ///< one sentence
   std::vector<msg::PlannedPose> poses;  ///< of plan_poses
-  std::string flaw;                     ///< of capture_planned
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -38,18 +36,14 @@ class ServiceCaller {
       service.request = request;
       constexpr bool kTellAbsence = false;
       if (!ros::service::exists(name, kTellAbsence)) {
-        return {
-            false, "The calibration node does not answer (" + name + "): is it running?", {}, {}};
+        return {false, "The calibration node does not answer (" + name + "): is it running?", {}};
       }
       if (!ros::service::call(name, service)) {
-        return {false, "The connection to " + name + " was lost before its answer.", {}, {}};
+        return {false, "The connection to " + name + " was lost before its answer.", {}};
       }
-      ServiceAnswer answer{service.response.success != 0, service.response.message, {}, {}};
+      ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
       if constexpr (std::is_same_v<Service, msg::PlanPoses>) {
         answer.poses = service.response.poses;
-      }
-      if constexpr (std::is_same_v<Service, msg::CapturePlanned>) {
-        answer.flaw = service.response.flaw;
       }
       return answer;
     });

@@ -79,6 +79,12 @@ TEST_F(PoseGuideTest, GoesOnWhenAllIsMeasured) {
   EXPECT_EQ(guide_.advice(), "All 2 poses are measured: calibrate.");
 }
 
+TEST_F(PoseGuideTest, GoesOnWhereAnotherSaysThatAllIsHeld) {
+  guide_.noteMeasured(0);
+  EXPECT_TRUE(guide_.missing(0).empty());
+  EXPECT_EQ(guide_.next(), 1U);
+}
+
 TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {
   guide_.receive(joints(0.14, -0.04, -1.04));
   EXPECT_EQ(guide_.here(), 0U);
