@@ -137,8 +137,9 @@ class Drawing(unittest.TestCase):
 
     def test_keeps_sentences_above_it_and_goes_at_the_end(self):
         self.drawn((0.4, 0.01, -1.0))
-        self.terminal.say("[bold]One.")
-        self.assertIn("[bold]One.", self.screen.getvalue())
+        sentence = "[bold]" + 30 * "long " + "sentence."
+        self.terminal.say(sentence)
+        self.assertIn(sentence, self.screen.getvalue())
         self.account.set(stage="estimating")
         self.drawn((0.4, 0.01, -1.0))
         self.terminal.say("Two.")

@@ -64,7 +64,7 @@ class LiveTerminal(Terminal):
         self._is_live = False
 
     def _tell(self, sentence):
-        self._console.print(Text(printable(sentence)))
+        self._console.print(Text(printable(sentence)), soft_wrap=True)
 
     def milestone(self, text):
         """Is drawn anyway."""
