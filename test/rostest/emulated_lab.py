@@ -92,12 +92,12 @@ class EmulatedLab:
             self._launch.stop()
 
     @staticmethod
-    def kill(node):
-        """By SIGKILL: no program of its own hears of it."""
+    def kill(node, number=signal.SIGKILL):
+        """Sends a signal to a node; by SIGKILL it does not hear of it."""
         name = f"{NAMESPACE}/{node}"
         address = rosgraph.Master(rospy.get_name()).lookupNode(name)
         _, _, process = xmlrpc.client.ServerProxy(address).getPid(rospy.get_name())
-        os.kill(process, signal.SIGKILL)
+        os.kill(process, number)
 
     def _keep(self, message):
         self._position = message.position

@@ -3,6 +3,7 @@
 refused, and nothing measured twice; coils excited for a look; plans and files."""
 
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -125,7 +126,7 @@ class SessionEngine(LabCase):
         self.lab.kill("session_engine")
         program.wait_until_it_says("The engine has been started anew")
         self.wait_for_excitation()
-        self.assertEqual(program.signal(2), 1)
+        self.assertEqual(program.signal(signal.SIGINT), 1)
         self.assertTrue(program.says("Interrupted; currents are zero."), program.lines)
 
     def second_is_refused(self):
@@ -170,6 +171,16 @@ class SessionEngine(LabCase):
         self.time_to_zero()
         self.send(excite, msg.ExciteGoal(coils=[25], current=1.5))
         self.assertIn("numbers from 1 to 24", self.result(excite, GoalStatus.ABORTED).message)
+        self.engine_ends(excite)
+
+    def engine_ends(self, excite):
+        """In order: its client hears of it, and it is started again."""
+        self.send(excite, msg.ExciteGoal(coils=[3], current=1.5, duration=30.0))
+        wait_for(lambda: self.feedback and self.feedback.progress.carries, "an excited coil")
+        self.lab.kill("session_engine", signal.SIGTERM)
+        self.assertIn("the engine ends. The currents are zero", self.result(excite, GoalStatus.PREEMPTED).message)
+        self.time_to_zero()
+        self.assertTrue(self.action("excite").wait_for_server(DEADLINE))
 
     def test_poses_one_by_one(self):
         plan = self.action("plan")

@@ -168,19 +168,30 @@ class ExciteAction(_AtTheBench):
         return msg.ExciteFeedback(progress=self._progress(account), measured=self._laboratory.currents())
 
 
-class PlanAction:
-    """Poses to measure next."""
+class _OfTheNode:
+    """Of actions that only ask the calibration node."""
 
-    name = "plan"
     end = "The calibration node still ends what it has begun."
-    type = msg.PlanAction
 
     def __init__(self, calibration):
         self._calibration = calibration
 
-    def work(self, goal, task, account):
+    def let_go(self):
+        """It holds nothing."""
+
+    def _take(self, task, account):
         self._calibration.serve(task, account)
         self._calibration.wait_until_up()
+
+
+class PlanAction(_OfTheNode):
+    """Poses to measure next."""
+
+    name = "plan"
+    type = msg.PlanAction
+
+    def work(self, goal, task, account):
+        self._take(task, account)
         request = {field: getattr(goal, field) for field in goal.__slots__}
         answer = self._calibration.call("plan_poses", **{**request, "cycle": goal.cycle or "refine"})
         result = msg.PlanResult(**{field: getattr(answer, field) for field in msg.PlanResult.__slots__})
@@ -194,24 +205,15 @@ class PlanAction:
     def feedback(account):
         return msg.PlanFeedback(elapsed=account.elapsed())
 
-    @staticmethod
-    def let_go():
-        """It holds nothing."""
 
-
-class SaveAction:
+class SaveAction(_OfTheNode):
     """The result's files."""
 
     name = "save"
-    end = "The calibration node still ends what it has begun."
     type = msg.SaveAction
 
-    def __init__(self, calibration):
-        self._calibration = calibration
-
     def work(self, goal, task, account):
-        self._calibration.serve(task, account)
-        self._calibration.wait_until_up()
+        self._take(task, account)
         if goal.validate:
             account.set(stage=VALIDATING)
             answer = self._calibration.call("validate", coil=0)
@@ -228,7 +230,3 @@ class SaveAction:
     @staticmethod
     def feedback(account):
         return msg.SaveFeedback(stage=account.message().stage, elapsed=account.elapsed())
-
-    @staticmethod
-    def let_go():
-        """It holds nothing."""
