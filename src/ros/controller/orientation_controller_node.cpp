@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kWarningPeriod = 2.0;  // [s]
 constexpr std::uint32_t kQueueLength = 100;
-constexpr double kMicro = 1e6;
 constexpr double kStatusPeriod = 0.1;  // [s]
 /// Of looks whether readings still come: few milliseconds beside the age that is allowed [Hz].
 constexpr double kWatchRate = 200.0;
@@ -285,7 +284,7 @@ void OrientationControllerNode::command(double reading_interval) {
   if (controller_.state() != ControlState::kActive) {
     return;
   }
-  CommandTime time;
+  LoopTurn time;
   time.begin = steadySeconds();
   // A flood of readings must not become one of commands.
   if (time.begin - last_command_ < kLeastPeriod) {
@@ -297,8 +296,8 @@ void OrientationControllerNode::command(double reading_interval) {
   if (controller_.state() == ControlState::kActive) {
     publish(currents);
     time.end = steadySeconds();
-    time.reading_age = secondsBetween(last_stamp_, now);
-    time.reading_interval = reading_interval;
+    time.age = secondsBetween(last_stamp_, now);
+    time.interval = reading_interval;
     timing_.add(time);
   }
   commandEnd();
@@ -369,16 +368,10 @@ void OrientationControllerNode::diagnose(DiagnosticStatus& status) {
 
 void OrientationControllerNode::diagnoseTiming(DiagnosticStatus& status) {
   const TimingReport report = timing_.take();
-  status.add("commands", report.commands);
-  status.add("rate [Hz]", report.rate);
-  status.add("jitter of the period [us]", kMicro * report.jitter);
-  status.add("longest period [us]", kMicro * report.longest_period);
-  status.add("mean age of the reading [us]", kMicro * report.mean_age);
-  status.add("largest age of the reading [us]", kMicro * report.largest_age);
-  status.add("mean computation [us]", kMicro * report.mean_computation);
-  status.add("longest computation [us]", kMicro * report.longest_computation);
-  status.add("commands since start", timing_.commands());
-  status.add("of them on an old reading", timing_.oldReadings());
+  status.add("commands", report.turns);
+  addTiming(status, report, "reading", "computation");
+  status.add("commands since start", timing_.turns());
+  status.add("of them on an old reading", timing_.oldTurns());
 }
 
 }  // namespace sac

@@ -21,11 +21,11 @@
 #include "spherical_actuator_calibration/FollowMotion.h"
 #include "spherical_actuator_calibration/MotionStatus.h"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/control/control_timing.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/node/loop_timing.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 
@@ -87,7 +87,7 @@ class OrientationControllerNode {
   JointStateReader target_reader_;
   msg::CoilCurrents message_;
   OrientationController controller_;
-  ControlTiming timing_;
+  LoopTiming timing_;
   std::string last_refusal_;
   bool was_active_ = false;
   MotionPhase told_phase_ = MotionPhase::kNone;
