@@ -79,33 +79,39 @@ void CoilDriver::connect() {
 
 CoilDriver::Beat CoilDriver::exchange(const BeatClock& clock) {
   Beat result;
-  if (amplifier_.isTripped()) {
+  bool is_tripped = !amplifier_.tellsTripsByReadings() && amplifier_.isTripped();
+  if (!is_tripped) {
+    is_tripped = follow(clock, result);
+  }
+  if (is_tripped) {
     forget();
     setZero();
+    last_beat_ = clock.begin();
     result.zero_reason = "the amplifier has tripped";
     result.fault = true;
-  } else {
-    follow(clock.now(), result);
+    observe(amplifier_.read(), clock, result);
   }
-  last_beat_ = clock.begin();
-  const double reading_began = clock.now();
-  result.measured = measure(clock);
-  result.reading_time = clock.now() - reading_began;
   return result;
 }
 
-void CoilDriver::follow(double now, Beat& result) {
+bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
+  const double now = clock.now();
   const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
+  last_beat_ = clock.begin();
   const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
-  if (command && is_measured_) {
-    supervisor_.setting(limiter_.follow(*command, elapsed));
-    amplifier_.write(limiter_.setpoints(), OutputStages::kOn, heartbeat(now));
-    return;
+  const bool may_flow = command && is_measured_;
+  if (may_flow) {
+    limiter_.follow(*command, elapsed);
+  } else {
+    result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
+    result.fault = !supervisor_.fault().empty();
+    limiter_.stop();
   }
-  result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
-  result.fault = !supervisor_.fault().empty();
-  supervisor_.setting(limiter_.stop());
-  amplifier_.write(limiter_.setpoints(), OutputStages::kOff, heartbeat(now));
+  supervisor_.setting(limiter_.setpoints());
+  const OutputStages stages = may_flow ? OutputStages::kOn : OutputStages::kOff;
+  const AmplifierReading reading = amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
+  observe(reading, clock, result);
+  return reading.tripped;
 }
 
 Heartbeat CoilDriver::heartbeat(double now) {
@@ -116,12 +122,12 @@ Heartbeat CoilDriver::heartbeat(double now) {
   return Heartbeat::kGiven;
 }
 
-Eigen::VectorXd CoilDriver::measure(const BeatClock& clock) {
-  const double begin = clock.now();
-  Eigen::VectorXd measured = amplifier_.read();
-  supervisor_.observe(measured, begin, clock.now());
+void CoilDriver::observe(const AmplifierReading& reading, const BeatClock& clock, Beat& result) {
+  const double end = clock.now();
+  supervisor_.observe(reading.currents, end - reading.duration, end);
   is_measured_ = true;
-  return measured;
+  result.measured = reading.currents;
+  result.reading_time = reading.duration;
 }
 
 void CoilDriver::forget() {
@@ -181,7 +187,10 @@ std::string CoilDriver::stop(double now) {
   try {
     allowOneBeat();
     transport_.open();
-    measure(clock);
+    const AmplifierReading reading = amplifier_.read();
+    const double end = clock.now();
+    supervisor_.observe(reading.currents, end - reading.duration, end);
+    is_measured_ = true;
   } catch (const Error& error) {
     transport_.close();
     return error.what();

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/drivers/current_amplifier.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -9,10 +10,6 @@
 
 namespace sac {
 namespace {
-
-// Words that fit into one request (Modbus application protocol).
-constexpr std::size_t kLargestWrite = 123;
-constexpr std::size_t kLargestRead = 125;
 
 constexpr std::int64_t kLargestAddress = 65535;
 
@@ -69,35 +66,28 @@ void requireHeartbeat(const YamlMap& map) {
 }
 
 /// Registers of a device that belong together.
-struct RegisterBlock {
+struct RegisterBlock : RegisterRequest {
   std::string name;  ///< as in a configuration
-  int unit = 0;
-  RegisterTable table = RegisterTable::kHolding;
-  int first = 0;
-  int count = 1;
 
-  int end() const { return first + count; }
   bool overlaps(const RegisterBlock& other) const {
-    return unit == other.unit && table == other.table && first < other.end() && other.first < end();
+    return isOfSameTable(other) && address < other.end() && other.address < end();
   }
 };
 
 std::vector<RegisterBlock> blocksOf(const CurrentAmplifierOptions& options, int coils) {
-  const auto block = [](const std::string& name, const RegisterField& field, int numbers) {
-    return RegisterBlock{name, field.unit, field.table, field.address, numbers * field.words()};
-  };
-  std::vector<RegisterBlock> blocks{block("setpoints", options.setpoints, coils),
-                                    block("currents", options.currents, coils)};
+  std::vector<RegisterBlock> blocks{{requestFor(options.setpoints, coils), "setpoints"},
+                                    {requestFor(options.currents, coils), "currents"}};
   const int unit = options.setpoints.unit;
   if (options.enable_address) {
-    blocks.push_back({"enable_address", unit, RegisterTable::kHolding, *options.enable_address});
+    blocks.push_back(
+        {{unit, RegisterTable::kHolding, *options.enable_address, 1}, "enable_address"});
   }
   if (options.heartbeat_address) {
     blocks.push_back(
-        {"heartbeat_address", unit, RegisterTable::kHolding, *options.heartbeat_address});
+        {{unit, RegisterTable::kHolding, *options.heartbeat_address, 1}, "heartbeat_address"});
   }
   if (options.tripped) {
-    blocks.push_back(block("tripped", *options.tripped, 1));
+    blocks.push_back({requestFor(*options.tripped), "tripped"});
   }
   return blocks;
 }
@@ -105,7 +95,7 @@ std::vector<RegisterBlock> blocksOf(const CurrentAmplifierOptions& options, int 
 void requireRegistersApart(const CurrentAmplifierOptions& options, std::size_t coils) {
   const std::vector<RegisterBlock> blocks = blocksOf(options, static_cast<int>(coils));
   for (auto block = blocks.begin(); block != blocks.end(); ++block) {
-    const std::string range = block->name + " has the registers " + std::to_string(block->first) +
+    const std::string range = block->name + " has the registers " + std::to_string(block->address) +
                               " to " + std::to_string(block->end() - 1);
     if (block->end() - 1 > kLargestAddress) {
       throw ConfigError(range + "; the last one of a device is 65535.");
@@ -114,15 +104,26 @@ void requireRegistersApart(const CurrentAmplifierOptions& options, std::size_t c
       return before.overlaps(*block);
     });
     if (other != block) {
-      throw ConfigError(range + ", and " + other->name + " has " + std::to_string(other->first) +
+      throw ConfigError(range + ", and " + other->name + " has " + std::to_string(other->address) +
                         " to " + std::to_string(other->end() - 1) + " of the same device.");
     }
   }
 }
 
-/// Numbers of one field that a request of so many words holds.
-std::size_t perRequest(const RegisterField& field, std::size_t words) {
-  return words / static_cast<std::size_t>(field.words());
+bool saysTripped(const RegisterField& field, const std::uint16_t* words) {
+  return decodeRegisters(words, field.type, field.order) != 0.0;
+}
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Both, and what is between them.
+RegisterRequest spanOf(const RegisterRequest& a, const RegisterRequest& b) {
+  const int first = std::min(a.address, b.address);
+  return {a.unit, a.table, first, std::max(a.end(), b.end()) - first};
 }
 
 }  // namespace
@@ -155,6 +156,7 @@ CurrentAmplifierOptions readCurrentAmplifierOptions(const YamlMap& map) {
   if (map.has("tripped")) {
     options.tripped = readRegisterField(map.map("tripped"));
   }
+  options.one_request = map.boolean("one_request", options.one_request);
   return options;
 }
 
@@ -163,51 +165,132 @@ CurrentAmplifier::CurrentAmplifier(const CurrentAmplifierOptions& options,
                                    ModbusTransport& transport)
     : options_(options), coils_(coils), transport_(transport) {
   requireRegistersApart(options, coils);
+  const RegisterRequest block = requestFor(options.currents, static_cast<int>(coils));
+  if (options.one_request) {
+    joined_ = options.tripped ? spanOf(block, requestFor(*options.tripped)) : block;
+    requireOneRequest();
+  } else if (options.tripped) {
+    const std::vector<RegisterRequest> joined =
+        joinedRequests({block, requestFor(*options.tripped)});
+    if (joined.size() == 1) {
+      joined_ = joined.front();
+    }
+  }
+}
+
+void CurrentAmplifier::requireOneRequest() const {
+  const RegisterRequest setpoints = requestFor(options_.setpoints, static_cast<int>(coils_));
+  const std::string refusal = "one_request: one request cannot hold all, because ";
+  for (const RegisterBlock& block : blocksOf(options_, static_cast<int>(coils_))) {
+    if (!block.isOfSameTable(setpoints)) {
+      throw ConfigError(refusal + block.name +
+                        " is not among the holding registers of the unit of setpoints.");
+    }
+  }
+  if (options_.heartbeat_address && !isHeartbeatNext()) {
+    throw ConfigError(refusal + "heartbeat_address is not right after the setpoints, at " +
+                      std::to_string(setpoints.end()) + ".");
+  }
+  if (setpoints.count + (options_.heartbeat_address ? 1 : 0) > kMostWordsWrittenAndRead) {
+    throw ConfigError(refusal + "it writes at most " + std::to_string(kMostWordsWrittenAndRead) +
+                      " words.");
+  }
+  if (joined_->count > kMostWordsRead) {
+    throw ConfigError(refusal + "currents and tripped together span " +
+                      std::to_string(joined_->count) + " words, and it reads at most " +
+                      std::to_string(kMostWordsRead) + ".");
+  }
+}
+
+CurrentAmplifier::Words CurrentAmplifier::setpointWords(const Eigen::VectorXd& currents) const {
+  Words words;
+  words.reserve(coils_ * static_cast<std::size_t>(options_.setpoints.words()) + 1);
+  for (const double current : currents) {
+    const Words number = options_.setpoints.encode(current);
+    words.insert(words.end(), number.begin(), number.end());
+  }
+  return words;
+}
+
+bool CurrentAmplifier::isHeartbeatNext() const {
+  return options_.heartbeat_address ==
+         requestFor(options_.setpoints, static_cast<int>(coils_)).end();
 }
 
 void CurrentAmplifier::write(const Eigen::VectorXd& currents,
                              OutputStages stages,
                              Heartbeat heartbeat) {
-  const RegisterField& field = options_.setpoints;
-  std::vector<std::uint16_t> words;
-  words.reserve(coils_ * static_cast<std::size_t>(field.words()));
-  for (const double current : currents) {
-    const std::vector<std::uint16_t> number = field.encode(current);
-    words.insert(words.end(), number.begin(), number.end());
-  }
+  Words words = setpointWords(currents);
   const bool is_given = options_.heartbeat_address && heartbeat == Heartbeat::kGiven;
-  const int next = field.address + static_cast<int>(words.size());
   // A heartbeat that follows the setpoints goes with them: each request is a round trip.
-  const bool is_next = is_given && *options_.heartbeat_address == next;
+  const bool is_next = is_given && isHeartbeatNext();
   if (is_next) {
     words.push_back(++heartbeat_);
   }
   writeSetpoints(words);
   if (is_given && !is_next) {
-    transport_.write(field.unit, *options_.heartbeat_address, {++heartbeat_});
+    transport_.write(options_.setpoints.unit, *options_.heartbeat_address, {++heartbeat_});
   }
-  if (options_.enable_address && stages_ != stages) {
-    const std::uint16_t word = stages == OutputStages::kOn ? 1 : 0;
-    transport_.write(field.unit, *options_.enable_address, {word});
-    stages_ = stages;
-  }
+  switchStages(stages);
 }
 
-Eigen::VectorXd CurrentAmplifier::read() {
-  const RegisterField& field = options_.currents;
-  const auto words_each = static_cast<std::size_t>(field.words());
-  const std::size_t most = perRequest(field, kLargestRead);
-  Eigen::VectorXd currents(static_cast<Eigen::Index>(coils_));
-  for (std::size_t first = 0; first < coils_; first += most) {
-    const std::size_t count = std::min(most, coils_ - first);
-    const std::vector<std::uint16_t> words =
-        transport_.read(field.unit,
-                        field.table,
-                        field.address + static_cast<int>(first * words_each),
-                        static_cast<int>(count * words_each));
-    for (std::size_t n = 0; n < count; ++n) {
-      currents[static_cast<Eigen::Index>(first + n)] = field.decode(&words[n * words_each]);
+void CurrentAmplifier::switchStages(OutputStages stages) {
+  if (options_.enable_address && stages_ != stages) {
+    const std::uint16_t word = stages == OutputStages::kOn ? 1 : 0;
+    transport_.write(options_.setpoints.unit, *options_.enable_address, {word});
+  }
+  stages_ = stages;
+}
+
+AmplifierReading CurrentAmplifier::exchange(const Eigen::VectorXd& currents,
+                                            OutputStages stages,
+                                            Heartbeat heartbeat) {
+  if (!options_.one_request || stages_ != stages) {
+    write(currents, stages, heartbeat);
+    return read();
+  }
+  Words words = setpointWords(currents);
+  if (options_.heartbeat_address && heartbeat == Heartbeat::kGiven) {
+    words.push_back(++heartbeat_);
+  }
+  const Clock::time_point begin = Clock::now();
+  AmplifierReading reading = readingOf(transport_.writeAndRead(options_.setpoints.unit,
+                                                               options_.setpoints.address,
+                                                               words,
+                                                               joined_->address,
+                                                               joined_->count));
+  reading.duration = secondsSince(begin);
+  return reading;
+}
+
+AmplifierReading CurrentAmplifier::read() {
+  const Clock::time_point begin = Clock::now();
+  AmplifierReading reading;
+  if (joined_) {
+    reading =
+        readingOf(transport_.read(joined_->unit, joined_->table, joined_->address, joined_->count));
+  } else {
+    const RegisterField& field = options_.currents;
+    const RegisterRequest block = requestFor(field, static_cast<int>(coils_));
+    const int most = kMostWordsRead / field.words() * field.words();
+    Words words;
+    for (int first = block.address; first < block.end(); first += most) {
+      const Words some =
+          transport_.read(field.unit, field.table, first, std::min(most, block.end() - first));
+      words.insert(words.end(), some.begin(), some.end());
     }
+    reading.currents = decoded(words.data());
+  }
+  reading.duration = secondsSince(begin);
+  return reading;
+}
+
+Eigen::VectorXd CurrentAmplifier::decoded(const std::uint16_t* words) const {
+  const RegisterField& field = options_.currents;
+  Eigen::VectorXd currents(static_cast<Eigen::Index>(coils_));
+  for (double& current : currents) {
+    current = field.decode(words);
+    words += field.words();
   }
   if (!currents.allFinite()) {
     throw TransportError(TransportFailure::kGarbled,
@@ -216,14 +299,27 @@ Eigen::VectorXd CurrentAmplifier::read() {
   return currents;
 }
 
+AmplifierReading CurrentAmplifier::readingOf(const Words& words) const {
+  const auto place = [&](const RegisterField& field) {
+    return words.data() + (field.address - joined_->address);
+  };
+  AmplifierReading reading;
+  reading.currents = decoded(place(options_.currents));
+  reading.tripped = options_.tripped && saysTripped(*options_.tripped, place(*options_.tripped));
+  return reading;
+}
+
 bool CurrentAmplifier::isTripped() {
   if (!options_.tripped) {
     return false;
   }
   const RegisterField& field = *options_.tripped;
-  const std::vector<std::uint16_t> words =
-      transport_.read(field.unit, field.table, field.address, field.words());
-  return decodeRegisters(words.data(), field.type, field.order) != 0.0;
+  return saysTripped(field,
+                     transport_.read(field.unit, field.table, field.address, field.words()).data());
+}
+
+bool CurrentAmplifier::tellsTripsByReadings() const {
+  return !options_.tripped || (joined_ && stages_ == OutputStages::kOn);
 }
 
 void CurrentAmplifier::switchOff() {
@@ -235,19 +331,12 @@ void CurrentAmplifier::switchOff() {
 }
 
 void CurrentAmplifier::zero() {
-  const RegisterField& field = options_.setpoints;
-  std::vector<std::uint16_t> words;
-  const std::vector<std::uint16_t> zero = field.encode(0.0);
-  for (std::size_t coil = 0; coil < coils_; ++coil) {
-    words.insert(words.end(), zero.begin(), zero.end());
-  }
-  writeSetpoints(words);
+  writeSetpoints(setpointWords(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils_))));
 }
 
-void CurrentAmplifier::writeSetpoints(const std::vector<std::uint16_t>& words) {
+void CurrentAmplifier::writeSetpoints(const Words& words) {
   const RegisterField& field = options_.setpoints;
-  const std::size_t most =
-      perRequest(field, kLargestWrite) * static_cast<std::size_t>(field.words());
+  const auto most = static_cast<std::size_t>(kMostWordsWritten / field.words() * field.words());
   for (std::size_t first = 0; first < words.size(); first += most) {
     const std::size_t last = std::min(first + most, words.size());
     transport_.write(field.unit,

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -13,45 +13,19 @@
 namespace sac {
 namespace {
 
-/// Words that may be read in vain to save a request, and the most that one request holds.
-constexpr int kLargestGap = 8;
-constexpr int kLargestRequest = 125;
-
 /// Tilts beyond it make the second one undefined [rad].
 constexpr double kLargestTilt = 1.5;
 
-std::vector<RegisterField> fieldsOf(const JointSensorOptions& options) {
-  std::vector<RegisterField> fields;
+std::vector<RegisterRequest> requestsFor(const JointSensorOptions& options) {
+  std::vector<RegisterRequest> requests;
   if (options.tilt) {
-    fields.push_back(options.tilt->x);
-    fields.push_back(options.tilt->y);
+    requests.push_back(requestFor(options.tilt->x));
+    requests.push_back(requestFor(options.tilt->y));
   }
   for (const EncoderOptions& encoder : options.encoders) {
-    fields.push_back(encoder.field);
+    requests.push_back(requestFor(encoder.field));
   }
-  return fields;
-}
-
-/// Neighbouring registers of one device are read at once.
-std::vector<RegisterRequest> requestsFor(std::vector<RegisterField> fields) {
-  std::sort(fields.begin(), fields.end(), [](const RegisterField& a, const RegisterField& b) {
-    return std::tie(a.unit, a.table, a.address) < std::tie(b.unit, b.table, b.address);
-  });
-  std::vector<RegisterRequest> requests;
-  for (const RegisterField& field : fields) {
-    const int end = field.address + field.words();
-    if (!requests.empty()) {
-      RegisterRequest& last = requests.back();
-      if (last.unit == field.unit && last.table == field.table &&
-          field.address <= last.address + last.count + kLargestGap &&
-          end - last.address <= kLargestRequest) {
-        last.count = std::max(last.count, end - last.address);
-        continue;
-      }
-    }
-    requests.push_back({field.unit, field.table, field.address, field.words()});
-  }
-  return requests;
+  return joinedRequests(std::move(requests));
 }
 
 TiltSensorOptions readTilt(const YamlMap& map) {
@@ -123,7 +97,7 @@ JointSensorOptions readJointSensorOptions(const YamlMap& map) {
 JointSensor::JointSensor(const JointSensorOptions& options, ModbusTransport& transport)
     : options_(options),
       transport_(transport),
-      requests_(requestsFor(fieldsOf(options))),
+      requests_(requestsFor(options)),
       answers_(requests_.size()),
       last_angles_(options.encoders.size()) {}
 
@@ -156,9 +130,7 @@ Eigen::Vector3d JointSensor::read() {
 const std::uint16_t* JointSensor::words(const RegisterField& field) const {
   for (std::size_t n = 0; n < requests_.size(); ++n) {
     const RegisterRequest& request = requests_[n];
-    if (request.unit == field.unit && request.table == field.table &&
-        field.address >= request.address &&
-        field.address + field.words() <= request.address + request.count) {
+    if (request.holds(requestFor(field))) {
       return &answers_[n][static_cast<std::size_t>(field.address - request.address)];
     }
   }

@@ -43,7 +43,7 @@ TransportFailure failureOf(int error) {
   return is_exception ? TransportFailure::kRefused : TransportFailure::kUnreachable;
 }
 
-const char* tableName(RegisterTable table) {
+std::string tableName(RegisterTable table) {
   return table == RegisterTable::kHolding ? "holding register " : "input register ";
 }
 
@@ -106,6 +106,27 @@ class LibmodbusTransport final : public ModbusTransport {
     if (modbus_write_registers(context_.get(), address, count, words.data()) != count) {
       fail(unit, tableName(RegisterTable::kHolding) + std::to_string(address));
     }
+  }
+
+  std::vector<std::uint16_t> writeAndRead(int unit,
+                                          int address,
+                                          const std::vector<std::uint16_t>& words,
+                                          int read_address,
+                                          int count) override {
+    select(unit);
+    std::vector<std::uint16_t> answer(static_cast<std::size_t>(count));
+    if (modbus_write_and_read_registers(context_.get(),
+                                        address,
+                                        static_cast<int>(words.size()),
+                                        words.data(),
+                                        read_address,
+                                        count,
+                                        answer.data()) != count) {
+      fail(unit,
+           "function 23, " + tableName(RegisterTable::kHolding) + std::to_string(address) +
+               " and " + std::to_string(read_address));
+    }
+    return answer;
   }
 
  private:

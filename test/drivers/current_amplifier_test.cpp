@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
     EXPECT_EQ(write.words.size() % 2, 0U);
     bus.set(kUnit, RegisterTable::kInput, write.address, write.words);
   }
-  EXPECT_EQ(amplifier.read(), currents);
+  EXPECT_EQ(amplifier.read().currents, currents);
 }
 
 TEST(CurrentAmplifier, WritesAHeartbeatThatFollowsTheSetpointsWithThem) {
@@ -77,6 +78,131 @@ TEST(CurrentAmplifier, WritesAHeartbeatThatNoRequestHoldsBesideTheSetpoints) {
   amplifier.write(Eigen::VectorXd::Zero(123), OutputStages::kOn);
   EXPECT_EQ(bus.writes().size(), 2U);
   EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 123), 1);
+}
+
+/// The amplifier of the second example: all in holding registers.
+CurrentAmplifierOptions inOneRequest() {
+  CurrentAmplifierOptions options = shippedOptions();
+  options.heartbeat_address = 24;
+  options.enable_address = 25;
+  options.currents.table = RegisterTable::kHolding;
+  options.currents.address = 100;
+  options.tripped->table = RegisterTable::kHolding;
+  options.tripped->address = 124;
+  options.one_request = true;
+  return options;
+}
+
+TEST(CurrentAmplifier, ReadsATripThatIsNextToTheCurrentsWithThem) {
+  CurrentAmplifierOptions options = shippedOptions();
+  ScriptedTransport bus;
+  bus.open();
+  const auto readsAt = [&](RegisterTable table, int address, int unit) {
+    options.tripped->table = table;
+    options.tripped->address = address;
+    options.tripped->unit = unit;
+    CurrentAmplifier amplifier(options, 24, bus);
+    amplifier.write(Eigen::VectorXd::Zero(24), OutputStages::kOn);
+    bus.set(kUnit, RegisterTable::kInput, 3, {1250});
+    bus.set(unit, table, address, {1});
+    const int before = bus.reads();
+    const bool has_asked = !amplifier.tellsTripsByReadings() && amplifier.isTripped();
+    const AmplifierReading reading = amplifier.read();
+    EXPECT_NEAR(reading.currents[3], 1.25, 1e-12);
+    EXPECT_NE(has_asked, reading.tripped);
+    bus.set(unit, table, address, {0});
+    EXPECT_FALSE(amplifier.read().tripped);
+    return bus.reads() - before - 1;
+  };
+  EXPECT_EQ(readsAt(RegisterTable::kInput, 24, kUnit), 1);
+  EXPECT_EQ(readsAt(RegisterTable::kInput, 32, kUnit), 1);
+  // A device need not have the registers between.
+  EXPECT_EQ(readsAt(RegisterTable::kInput, 33, kUnit), 2);
+  EXPECT_EQ(readsAt(RegisterTable::kHolding, 30, kUnit), 2);
+  EXPECT_EQ(readsAt(RegisterTable::kInput, 24, kUnit + 1), 2);
+}
+
+// It must be known before they are switched on.
+TEST(CurrentAmplifier, IsAskedForATripWhileItsStagesAreOff) {
+  ScriptedTransport bus;
+  bus.open();
+  CurrentAmplifier amplifier(inOneRequest(), 24, bus);
+  EXPECT_FALSE(amplifier.tellsTripsByReadings());
+  amplifier.write(Eigen::VectorXd::Zero(24), OutputStages::kOff);
+  EXPECT_FALSE(amplifier.tellsTripsByReadings());
+  amplifier.write(Eigen::VectorXd::Zero(24), OutputStages::kOn);
+  EXPECT_TRUE(amplifier.tellsTripsByReadings());
+  amplifier.switchOff();
+  EXPECT_FALSE(amplifier.tellsTripsByReadings());
+}
+
+TEST(CurrentAmplifier, ExchangesAllByOneRequestWhereThatIsAskedFor) {
+  ScriptedTransport bus;
+  bus.open();
+  CurrentAmplifier amplifier(inOneRequest(), 24, bus);
+  const Eigen::VectorXd currents = Eigen::VectorXd::LinSpaced(24, -1.15, 1.15);
+  // The output stages are switched by a request of their own, after the setpoints.
+  amplifier.exchange(currents, OutputStages::kOn, Heartbeat::kGiven);
+  EXPECT_EQ(bus.exchanges(), 0);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 25), 1);
+  for (int coil = 0; coil < 24; ++coil) {
+    bus.set(kUnit, RegisterTable::kHolding, 100 + coil, {static_cast<std::uint16_t>(10 * coil)});
+  }
+  bus.set(kUnit, RegisterTable::kHolding, 124, {7});
+  const std::size_t writes = bus.writes().size();
+  const int reads = bus.reads();
+  const AmplifierReading reading =
+      amplifier.exchange(-currents, OutputStages::kOn, Heartbeat::kGiven);
+  EXPECT_EQ(bus.exchanges(), 1);
+  EXPECT_EQ(bus.writes().size(), writes + 1);
+  EXPECT_EQ(bus.reads(), reads);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 0), 1150);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 24), 2);
+  EXPECT_LT((reading.currents - Eigen::VectorXd::LinSpaced(24, 0.0, 0.23)).norm(), 1e-12);
+  EXPECT_TRUE(reading.tripped);
+  amplifier.exchange(currents, OutputStages::kOn, Heartbeat::kWithheld);
+  EXPECT_EQ(bus.exchanges(), 2);
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, 24), 2);
+}
+
+TEST(CurrentAmplifier, TellsWhyOneRequestCannotHoldAll) {
+  using Change = std::function<void(CurrentAmplifierOptions&)>;
+  const std::vector<std::pair<Change, std::string>> cases{
+      {[](auto&) {}, ""},
+      {[](auto& options) { options.tripped.reset(); }, ""},
+      {[](auto& options) { options.heartbeat_address.reset(); }, ""},
+      {[](auto& options) { options.tripped->address = 224; }, ""},
+      {[](auto& options) { options.tripped->address = 225; }, "126 words"},
+      {[](auto& options) { options.tripped->address = 50; }, ""},
+      {[](auto& options) { options.heartbeat_address = 26; }, "heartbeat_address"},
+      {[](auto& options) { options.currents.table = RegisterTable::kInput; }, "currents"},
+      {[](auto& options) { options.currents.unit = 3; }, "currents"},
+      {[](auto& options) { options.tripped->table = RegisterTable::kInput; }, "tripped"},
+  };
+  ScriptedTransport bus;
+  for (const auto& [change, part] : cases) {
+    CurrentAmplifierOptions options = inOneRequest();
+    change(options);
+    if (part.empty()) {
+      EXPECT_NO_THROW(CurrentAmplifier(options, 24, bus));
+      continue;
+    }
+    const std::string refusal =
+        errorMessage<ConfigError>([&] { CurrentAmplifier(options, 24, bus); });
+    EXPECT_NE(refusal.find("one_request"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find(part), std::string::npos) << part << ": " << refusal;
+  }
+  // 121 words are the most that such a request writes.
+  CurrentAmplifierOptions many = inOneRequest();
+  many.enable_address.reset();
+  many.heartbeat_address = 120;
+  many.currents.address = 200;
+  many.tripped->address = 320;
+  EXPECT_NO_THROW(CurrentAmplifier(many, 120, bus));
+  many.heartbeat_address = 121;
+  many.tripped->address = 321;
+  EXPECT_NE(errorMessage<ConfigError>([&] { CurrentAmplifier(many, 121, bus); }).find("121 words"),
+            std::string::npos);
 }
 
 TEST(CurrentAmplifier, WritesNothingOfACommandThatDoesNotFit) {

@@ -137,7 +137,7 @@ TEST_F(EmulatedAmplifierTest, FollowsSetpointsWithItsLag) {
   device_.advance(0.1);
   EXPECT_LT((device_.currents() - pattern(1.5)).norm(), 1e-9);
   device_.show(device_.currents());
-  EXPECT_LT((driver_.read() - pattern(1.5)).cwiseAbs().maxCoeff(), 0.51e-3);
+  EXPECT_LT((driver_.read().currents - pattern(1.5)).cwiseAbs().maxCoeff(), 0.51e-3);
 }
 
 TEST_F(EmulatedAmplifierTest, ASetpointWorksAfterItsDelay) {
@@ -171,6 +171,33 @@ TEST_F(EmulatedAmplifierTest, TripsAndRecovers) {
   EXPECT_LT(device_.currents().norm(), 1e-9);
   device_.setTripped(false);
   EXPECT_FALSE(driver_.isTripped());
+}
+
+TEST_F(EmulatedAmplifierTest, AnswersOneRequestForAll) {
+  CurrentAmplifierOptions options = options_;
+  options.heartbeat_address = 24;
+  options.currents.table = RegisterTable::kHolding;
+  options.currents.address = 200;
+  options.tripped->table = RegisterTable::kHolding;
+  options.tripped->address = 224;
+  options.one_request = true;
+  EmulatedAmplifier device(options, {2e-3, 0.5}, kCoils, server_);
+  CurrentAmplifier driver(options, kCoils, *transport_);
+  driver.exchange(pattern(0.0), OutputStages::kOn, Heartbeat::kGiven);
+  int requests = 0;
+  server_.beforeRequest([&] { ++requests; });
+  EXPECT_TRUE(
+      driver.exchange(pattern(1.5), OutputStages::kOn, Heartbeat::kGiven).currents.isZero());
+  device.advance(0.1);
+  device.show(device.currents());
+  device.setTripped(true);
+  const AmplifierReading reading =
+      driver.exchange(pattern(-0.5), OutputStages::kOn, Heartbeat::kGiven);
+  server_.beforeRequest({});
+  EXPECT_EQ(requests, 2);
+  EXPECT_LT((reading.currents - pattern(1.5)).cwiseAbs().maxCoeff(), 0.51e-3);
+  EXPECT_TRUE(reading.tripped);
+  EXPECT_EQ(server_.words(2, RegisterTable::kHolding, 24, 1).front(), 3);
 }
 
 TEST_F(EmulatedAmplifierTest, ItsOwnWatchdogEndsTheCurrent) {

@@ -55,6 +55,8 @@ class ScriptedTransport : public ModbusTransport {
 
   const std::vector<Write>& writes() const { return writes_; }
   int reads() const { return reads_; }
+  /// Writes that read, too.
+  int exchanges() const { return exchanges_; }
   int opened() const { return opened_; }
 
   /// How often a span of time began, and its length [s].
@@ -81,12 +83,7 @@ class ScriptedTransport : public ModbusTransport {
   std::vector<std::uint16_t> read(int unit, RegisterTable table, int address, int count) override {
     request();
     ++reads_;
-    if (address == slow_address_) {
-      std::this_thread::sleep_for(std::chrono::duration<double>(slow_time_));
-    }
-    std::vector<std::uint16_t> words(static_cast<std::size_t>(count));
-    std::generate(words.begin(), words.end(), [&] { return at(unit, table, address++); });
-    return words;
+    return wordsAt(unit, table, address, count);
   }
 
   void write(int unit, int address, const std::vector<std::uint16_t>& words) override {
@@ -98,7 +95,27 @@ class ScriptedTransport : public ModbusTransport {
     set(unit, RegisterTable::kHolding, address, words);
   }
 
+  std::vector<std::uint16_t> writeAndRead(int unit,
+                                          int address,
+                                          const std::vector<std::uint16_t>& words,
+                                          int read_address,
+                                          int count) override {
+    write(unit, address, words);
+    ++exchanges_;
+    return wordsAt(unit, RegisterTable::kHolding, read_address, count);
+  }
+
  private:
+  /// As they are read.
+  std::vector<std::uint16_t> wordsAt(int unit, RegisterTable table, int address, int count) const {
+    if (address == slow_address_) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(slow_time_));
+    }
+    std::vector<std::uint16_t> words(static_cast<std::size_t>(count));
+    std::generate(words.begin(), words.end(), [&] { return at(unit, table, address++); });
+    return words;
+  }
+
   void request() {
     if (!is_open_) {
       throw TransportError(TransportFailure::kUnreachable, "the link is closed");
@@ -121,6 +138,7 @@ class ScriptedTransport : public ModbusTransport {
   bool is_open_ = false;
   bool is_refusing_ = false;
   int reads_ = 0;
+  int exchanges_ = 0;
   int opened_ = 0;
   int spans_ = 0;
   double span_ = 0.0;

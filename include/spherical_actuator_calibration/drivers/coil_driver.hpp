@@ -59,9 +59,10 @@ class CoilDriver {
 
   void connect();
   Beat exchange(const BeatClock& clock);
-  void follow(double now, Beat& result);
+  /// Sets what is to be set, and measures. Returns whether the amplifier says that it has tripped.
+  bool follow(const BeatClock& clock, Beat& result);
   Heartbeat heartbeat(double now);
-  Eigen::VectorXd measure(const BeatClock& clock);
+  void observe(const AmplifierReading& reading, const BeatClock& clock, Beat& result);
   void forget();
   void fail(double now);
   void setZero();

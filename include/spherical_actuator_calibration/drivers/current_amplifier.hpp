@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/drivers/current_supervisor.hpp"
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
+#include "spherical_actuator_calibration/drivers/register_request.hpp"
 
 namespace sac {
 
@@ -31,6 +32,9 @@ struct CurrentAmplifierOptions {
   /// Only an operator who accepts that nothing ends the currents when the driver is killed goes
   /// without.
   std::optional<int> heartbeat_address;
+  /// Setpoints, heartbeat, `currents` and `tripped` go by one request (function 23), where the
+  /// output stages stay as they are.
+  bool one_request = false;
   /// More memory than it has at its start the program that drives it must not take [MB]. One lying
   /// length on a link of ROS asks for up to 1000.
   double memory_limit = 2000.0;
@@ -46,11 +50,19 @@ enum class OutputStages { kOff, kOn };
 /// Whether the amplifier's own watchdog is told that all is well.
 enum class Heartbeat { kGiven, kWithheld };
 
+/// What an amplifier tells of its coils.
+struct AmplifierReading {
+  Eigen::VectorXd currents;  ///< measured, of every coil [A]
+  bool tripped = false;      ///< it said so in the same answer
+  double duration = 0.0;     ///< of the requests that read the currents [s]
+};
+
 /// The current amplifier over a Modbus link. Not thread-safe.
 class CurrentAmplifier {
  public:
   /// Keeps a reference to the transport. Throws ConfigError when registers overlap: then a
-  /// heartbeat would be a setpoint, or a setpoint its own measurement.
+  /// heartbeat would be a setpoint, or a setpoint its own measurement; and when they are not such
+  /// that one request holds them, where that is asked for.
   CurrentAmplifier(const CurrentAmplifierOptions& options,
                    std::size_t coils,
                    ModbusTransport& transport);
@@ -61,22 +73,41 @@ class CurrentAmplifier {
   void write(const Eigen::VectorXd& currents,
              OutputStages stages,
              Heartbeat heartbeat = Heartbeat::kGiven);
-  /// Measured current of every coil [A]. Throws TransportError, also when one is not finite.
-  Eigen::VectorXd read();
+  /// Throws TransportError, also when a current is not finite.
+  AmplifierReading read();
+  /// write(), then read(): by one request where that is asked for. Throws what they do.
+  AmplifierReading exchange(const Eigen::VectorXd& currents,
+                            OutputStages stages,
+                            Heartbeat heartbeat);
   /// Whether the amplifier says that it has tripped; false where it cannot say. Throws
   /// TransportError.
   bool isTripped();
+  /// Whether isTripped() has nothing to tell: readings tell it, or the amplifier cannot. While the
+  /// output stages are off it has: before they are switched on.
+  bool tellsTripsByReadings() const;
   /// Output stages off, where they can be switched. Throws TransportError.
   void switchOff();
   /// Zero currents. Throws TransportError.
   void zero();
 
  private:
-  void writeSetpoints(const std::vector<std::uint16_t>& words);
+  using Words = std::vector<std::uint16_t>;
+
+  void requireOneRequest() const;
+  Words setpointWords(const Eigen::VectorXd& currents) const;
+  /// Whether a heartbeat right after the setpoints goes with them.
+  bool isHeartbeatNext() const;
+  void writeSetpoints(const Words& words);
+  void switchStages(OutputStages stages);
+  Eigen::VectorXd decoded(const std::uint16_t* words) const;
+  AmplifierReading readingOf(const Words& words) const;
 
   CurrentAmplifierOptions options_;
   std::size_t coils_;
   ModbusTransport& transport_;
+  /// What reads `currents` and `tripped` at once, where they are neighbours or one request is asked
+  /// for.
+  std::optional<RegisterRequest> joined_;
   std::optional<OutputStages> stages_;  ///< as written last; nothing: not known
   std::uint16_t heartbeat_ = 0;
 };

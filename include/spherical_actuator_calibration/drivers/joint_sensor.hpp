@@ -10,6 +10,7 @@
 
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
+#include "spherical_actuator_calibration/drivers/register_request.hpp"
 
 namespace sac {
 
@@ -42,14 +43,6 @@ struct JointSensorOptions {
 /// Reads a configuration (config/joint_sensor.yaml) from a map whose other keys are the caller's.
 /// Throws ConfigError that names the key.
 JointSensorOptions readJointSensorOptions(const YamlMap& map);
-
-/// Words of one device, in one request.
-struct RegisterRequest {
-  int unit = 1;
-  RegisterTable table = RegisterTable::kHolding;
-  int address = 0;
-  int count = 0;
-};
 
 /// The joint sensors of one machine over a Modbus link. Not thread-safe.
 class JointSensor {

@@ -40,6 +40,15 @@ class ModbusTransport {
 
   /// Writes holding registers from `address` on, 1 to 123 words, in one request.
   virtual void write(int unit, int address, const std::vector<std::uint16_t>& words) = 0;
+
+  /// Writes holding registers from `address` on, 1 to 121 words, then reads `count` ones from
+  /// `read_address` on, 1 ≤ count ≤ 125, all by one request (function 23). Not every device knows
+  /// it.
+  virtual std::vector<std::uint16_t> writeAndRead(int unit,
+                                                  int address,
+                                                  const std::vector<std::uint16_t>& words,
+                                                  int read_address,
+                                                  int count) = 0;
 };
 
 }  // namespace sac
