@@ -27,6 +27,9 @@ constexpr double kShareOfChange = 0.03;
 /// What a beat that agrees takes back, of one that deviates.
 constexpr double kForgiven = 0.125;
 
+/// Of a beat, as beats are a little early or late: so many whole ones are as many all the same.
+constexpr double kRounding = 0.5;
+
 /// However long a beat took: a single measurement must not decide, nor two.
 constexpr double kLargestShare = 0.34;
 
@@ -71,19 +74,24 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
   count(measured.array(), begin, end, weight);
   Eigen::Index coil = 0;
   most_ = deviating_.rowwise().minCoeff().maxCoeff(&coil);
-  if (most_ < beats_) {
+  if (most_ < beats_ - kRounding) {
     return std::nullopt;
   }
   return static_cast<std::size_t>(coil);
 }
 
 double CurrentComparison::weightOf(double end) const {
-  const double beats = (end - last_.value_or(end)) / period_;
-  return std::max(1.0, std::min(beats, kLargestShare * beats_));
+  if (!last_) {
+    return 1.0;
+  }
+  // One that was begun early, by a command, is a part of a beat.
+  const double beats = (end - *last_) / period_;
+  return std::min(beats, std::max(1.0, kLargestShare * beats_));
 }
 
 bool CurrentComparison::isSuspicious() const {
-  return most_ >= std::max(kSuspicious * beats_, beats_ - kForesight / period_);
+  const double enough = std::max(kSuspicious * beats_, beats_ - kForesight / period_);
+  return most_ >= enough - kRounding;
 }
 
 void CurrentComparison::forgive() {

@@ -216,7 +216,7 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, d
   }
   if (!fault_.empty()) {
     watchZero(end);
-    endFault();
+    endFault(end);
   }
 }
 
@@ -304,14 +304,20 @@ void CurrentSupervisor::watchZero(double steady) {
     return;
   }
   ++zero_beats_;
+  zero_beats_since_ = zero_beats_ == 1 ? steady : zero_beats_since_;
   obeyed_ = obeyed_ || (zero_beats_ == 1 && steady - fed_at_ <= kOwnZero);
 }
 
 // Whoever wants current must first have seen that there is a fault, and say so by a zero: a command
 // that goes on through it may be given blindly.
-void CurrentSupervisor::endFault() {
+void CurrentSupervisor::endFault(double steady) {
   const bool is_bearable = is_loss_ || (obeyed_ && faults_ < kMostFaults);
-  if (is_bearable && zero_commanded_ && zero_beats_ >= limits_.deviating_beats) {
+  // Beats may come faster than they usually do: the time that these take counts, too, to half a
+  // beat.
+  const double least = (limits_.deviating_beats - 1.5) * limits_.beat_period;
+  const bool is_zero_long_enough =
+      zero_beats_ >= limits_.deviating_beats && steady - zero_beats_since_ >= least;
+  if (is_bearable && zero_commanded_ && is_zero_long_enough) {
     fault_.clear();
     strays_ = 0.0;
     comparison_.forgive();

@@ -301,5 +301,27 @@ TEST(CurrentComparison, ASlowLoopTellsInHardlyMoreTime) {
   }
 }
 
+// Commands make the beats short; the time in which an honest one may lag must not shrink.
+TEST(CurrentComparison, AFastLoopTellsInTheSameTime) {
+  for (const double beat : {0.0025, 0.004, 0.005}) {
+    CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
+    const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+    double time = 0.0;
+    for (; time < 1.0; time += beat) {
+      comparison.setting(two);
+      ASSERT_FALSE(comparison.observe(two, time, time)) << beat;
+    }
+    const double begin = time;
+    bool is_told = false;
+    for (; !is_told && time < begin + 2.0; time += beat) {
+      comparison.setting(none);
+      is_told = comparison.observe(two, time, time).has_value();
+    }
+    EXPECT_GT(time - begin, 0.3) << beat;
+    EXPECT_LT(time - begin, 0.48) << beat;
+  }
+}
+
 }  // namespace
 }  // namespace sac

@@ -186,6 +186,18 @@ TEST_F(FaultOfCurrents, EndsWhenZeroWasMeasuredForAsLongAndIsCommanded) {
   EXPECT_EQ((*supervisor_.command(now_))[0], 1.0);
 }
 
+TEST_F(FaultOfCurrents, EndsNoSoonerWhereCommandsMakeBeatsFaster) {
+  command(0.0);
+  const auto fast = [&](int beats) {
+    for (int n = 0; n < beats; ++n) {
+      supervisor_.observe(amperes(0.0), beat_ += 0.0025);
+    }
+    return supervisor_.fault();
+  };
+  EXPECT_NE(fast(5), "");
+  EXPECT_EQ(fast(2), "");
+}
+
 TEST_F(FaultOfCurrents, StaysWhileAnythingButZeroIsCommanded) {
   observe(100, 0.0);
   EXPECT_NE(supervisor_.fault(), "") << "nothing was commanded";

@@ -41,7 +41,8 @@ class CoilDriver {
     return supervisor_.offer(command, now);
   }
 
-  /// One beat: opens a lost link when it is time to, writes setpoints, reads currents. What devices
+  /// One beat: opens a lost link when it is time to, writes setpoints, reads currents. Beats may
+  /// come at any time: what is judged is judged by the time that passes. What devices
   /// and links do wrong ends in zero currents and `zero_reason`, never in an exception.
   Beat beat(double now);
 

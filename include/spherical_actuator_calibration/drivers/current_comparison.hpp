@@ -17,8 +17,8 @@ namespace sac {
 /// every current lies within.
 ///
 /// For each lag the beats are counted whose current lies beyond the tolerance. A beat that agrees
-/// takes back only an eighth of one: current that comes and goes is an error, too. A loop that an
-/// amplifier slows down counts the time that passes: a beat that took long counts for several.
+/// takes back only an eighth of one: current that comes and goes is an error, too. The time that
+/// passes counts: a beat that took long counts for several, one that was begun early for less.
 ///
 /// Times are seconds of a steady clock. Not thread-safe.
 class CurrentComparison {

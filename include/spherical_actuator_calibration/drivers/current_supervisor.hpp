@@ -88,10 +88,10 @@ class CurrentSupervisor {
   /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
   /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
   /// watchdog acts. It ends when zero was measured in all coils for `deviating_beats` beats in a
-  /// row, the first of them within 0.2 s of the last heartbeat, and the last command that was
-  /// accepted since it began is zero: then it was the amplifier that obeyed, and not its watchdog
-  /// that acted, after which it would have current again with the next heartbeat. The third one
-  /// stays.
+  /// row and for the time that these take, the first of them within 0.2 s of the last heartbeat,
+  /// and the last command that was accepted since it began is zero: then it was the amplifier that
+  /// obeyed, and not its watchdog that acted, after which it would have current again with the next
+  /// heartbeat. The third one stays.
   std::string fault() const;
   /// Whether the amplifier may have its heartbeat: nothing is wrong, nor likely to be; and before
   /// anything was commanded nothing flows, so that a driver that starts revives no current which
@@ -120,7 +120,7 @@ class CurrentSupervisor {
   void fail(const std::string& reason);
   std::string deviation(std::size_t coil, double measured) const;
   void watchZero(double steady);
-  void endFault();
+  void endFault(double steady);
 
   const SupervisorLimits limits_;
   const std::size_t coils_;
@@ -159,7 +159,8 @@ class CurrentSupervisor {
   std::optional<double> lost_at_;  ///< with current, by the steady clock [s]
   bool obeyed_ = false;  ///< zero was measured before the amplifier's watchdog can have acted
   int zero_beats_ = 0;   ///< in a row, since the fault
-  bool zero_commanded_ = false;  ///< by the last command that was accepted since the fault
+  double zero_beats_since_ = 0.0;  ///< by the steady clock [s]
+  bool zero_commanded_ = false;    ///< by the last command that was accepted since the fault
 };
 
 }  // namespace sac

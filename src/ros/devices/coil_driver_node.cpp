@@ -103,8 +103,9 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       },
       [this](const std::string& reason) { commands_.refuse(reason); },
       ros::TransportHints().tcpNoDelay());
-  receiver_.start();
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { beat(); });
+  // Whoever is heard may wake the thread.
+  receiver_.start();
 }
 
 CoilDriverNode::~CoilDriverNode() {
@@ -167,6 +168,7 @@ void CoilDriverNode::receive(const msg::CoilCurrents& message, const MessageSend
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, "coil_command is refused: " << printable(refusal));
     return;
   }
+  thread_->wake();
   commands_.accept(ros::Time::now());
 }
 

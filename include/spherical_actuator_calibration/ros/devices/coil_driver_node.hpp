@@ -28,7 +28,8 @@ struct MessageSender;
 /// the key.
 CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& private_node);
 
-/// Follows `coil_command` within the limits and publishes the measured `coil_currents`. See
+/// Follows `coil_command` within the limits and publishes the measured `coil_currents`: a command
+/// that counts is set as soon as it comes, see PeriodicThread::wake(). See
 /// CoilDriver for when currents are zero; they are, too, when the node ends in any way but a kill,
 /// which only the amplifier's own watchdog can answer. Commands are judged by the wall clock, even
 /// where /use_sim_time is set: coils are real.
