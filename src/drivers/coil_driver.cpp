@@ -98,9 +98,14 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
   const double now = clock.now();
   const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
   last_beat_ = clock.begin();
+  const std::optional<double> given_at = supervisor_.givenAt(now);
   const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
   const bool may_flow = command && is_measured_;
   if (may_flow) {
+    if (given_at && given_at != last_given_at_) {
+      result.command_age = now - *given_at;
+      last_given_at_ = given_at;
+    }
     limiter_.follow(*command, elapsed);
   } else {
     result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);

@@ -149,6 +149,11 @@ std::optional<Eigen::VectorXd> CurrentSupervisor::command(double steady) const {
   return may_flow ? command_ : std::nullopt;
 }
 
+std::optional<double> CurrentSupervisor::givenAt(double steady) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return isInForce(steady) ? std::optional<double>(expires_at_ - limits_.watchdog) : std::nullopt;
+}
+
 std::string CurrentSupervisor::zeroReason(double steady) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!fault_.empty()) {

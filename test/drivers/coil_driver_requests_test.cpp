@@ -117,6 +117,17 @@ TEST_P(CoilDriverRequests, ATripWithholdsTheOutputStages) {
   EXPECT_EQ(holding(100), 1);
 }
 
+TEST_P(CoilDriverRequests, TellsTheAgeOfACommandOnceWhenItIsSet) {
+  follow(0.0);
+  now_ += kBeat;
+  ASSERT_EQ(driver_.offer({"/operator", now_, Eigen::VectorXd::Zero(kCoils)}, {now_, now_}), "");
+  const CoilDriver::Beat first = driver_.beat(now_ + 0.003);
+  ASSERT_TRUE(first.command_age);
+  EXPECT_NEAR(*first.command_age, 0.003, 0.002);
+  EXPECT_GE(*first.command_age, 0.003);
+  EXPECT_FALSE(driver_.beat(now_ + 0.008).command_age);
+}
+
 INSTANTIATE_TEST_SUITE_P(Amplifiers,
                          CoilDriverRequests,
                          ::testing::Values(Registers{RegisterTable::kInput, 0, false},

@@ -30,6 +30,8 @@ class CoilDriver {
     bool fault = false;       ///< the device is the reason, not the want of commands
     /// That reading the currents took, at the end of the beat [s].
     double reading_time = 0.0;
+    /// Of a command when it was set for the first time, since its stamp [s].
+    std::optional<double> command_age = std::nullopt;
   };
 
   /// Keeps a reference to the transport, which may be closed. Throws ConfigError when the options
@@ -84,7 +86,8 @@ class CoilDriver {
   CurrentSupervisor supervisor_;
   LinkSupervisor link_;
   std::optional<double> last_beat_;
-  bool is_measured_ = false;  ///< currents were, by the last beat
+  std::optional<double> last_given_at_;  ///< the last command that was set, by the steady clock [s]
+  bool is_measured_ = false;             ///< currents were, by the last beat
 };
 
 }  // namespace sac

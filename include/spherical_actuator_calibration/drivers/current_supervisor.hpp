@@ -64,6 +64,8 @@ class CurrentSupervisor {
   std::string offer(const CoilCommand& command, const Instant& now);
   /// The command in force [A]; nothing when the currents must be zero, see zeroReason().
   std::optional<Eigen::VectorXd> command(double steady) const;
+  /// When it was given, by its stamp, on the steady clock [s]; nothing: there is none in force.
+  std::optional<double> givenAt(double steady) const;
   /// Why there is no command in force; empty when there is one.
   std::string zeroReason(double steady) const;
   /// Who commands the coils at present; empty: nobody.

@@ -78,6 +78,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuator.coils.size()))),
       commands_("coil_command", {0.0, options.supervision.watchdog}),
       currents_("coil_currents", limitsOfRate(options.rate)),
+      timing_("beats", "command", "exchange"),
       link_diagnostics_(describe(options.link)),
       diagnostics_(node, private_node, actuator),
       receiver_(1, &queue_) {
@@ -87,6 +88,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add("output", [this](DiagnosticStatus& status) { diagnoseOutput(status); });
   diagnostics_.add(currents_);
+  diagnostics_.add(timing_);
   if (is_unattended_) {
     ROS_WARN_STREAM("The amplifier is unattended: " << kUnattended);
   }
@@ -180,9 +182,14 @@ void CoilDriverNode::beat() {
       driver_.stop(steadySeconds());
       return;
     }
-    const CoilDriver::Beat beat = driver_.beat(steadySeconds());
+    const double begin = steadySeconds();
+    const CoilDriver::Beat beat = driver_.beat(begin);
+    const double end = steadySeconds();
     if (beat.measured) {
       publish(*beat.measured, timeBefore(ros::Time::now(), 0.5 * beat.reading_time));
+      timing_.add({begin, end, beat.command_age});
+    } else {
+      timing_.interrupt();
     }
     tell(beat);
   } catch (const std::exception& error) {

@@ -34,6 +34,7 @@ JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
     : transport_(std::move(transport)),
       sensor_(options, *transport_),
       stream_("joint_states", limitsOfRate(options.rate)),
+      timing_("polls", "reading", "poll"),
       link_diagnostics_(describe(options.link)),
       diagnostics_(node, private_node, actuator) {
   for (const JointAxis& joint : actuator.joints) {
@@ -45,21 +46,24 @@ JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
   publisher_ = handle.advertise<sensor_msgs::JointState>("joint_states", kQueueLength);
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add(stream_);
+  diagnostics_.add(timing_);
   thread_ = std::make_unique<PeriodicThread>(options.rate, [this] { poll(); });
 }
 
 void JointSensorNode::poll() {
-  const double now = steadySeconds();
-  if (!link_.mayTry(now)) {
+  const double begin = steadySeconds();
+  if (!link_.mayTry(begin)) {
     return;
   }
   const bool was_up = link_.isUp();
   try {
     transport_->open();
-    publishReading();
+    const double age = publishReading();
+    timing_.add({begin, steadySeconds(), age});
     link_.success();
   } catch (const TransportError& error) {
-    link_.failure(now, error.what());
+    timing_.interrupt();
+    link_.failure(begin, error.what());
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, error.what());
   } catch (const Error& error) {
     // The device answers; what it says is of no use.
@@ -73,7 +77,7 @@ void JointSensorNode::poll() {
   }
 }
 
-void JointSensorNode::publishReading() {
+double JointSensorNode::publishReading() {
   const ros::Time before = ros::Time::now();
   const Eigen::Vector3d q = sensor_.read();
   const ros::Time after = ros::Time::now();
@@ -83,6 +87,7 @@ void JointSensorNode::publishReading() {
   }
   publisher_.publish(message_);
   stream_.accept(message_.header.stamp);
+  return secondsBetween(message_.header.stamp, ros::Time::now());
 }
 
 }  // namespace sac

@@ -16,6 +16,7 @@
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/devices/link_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/node/loop_timing.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
@@ -73,6 +74,7 @@ class CoilDriverNode {
   ros::Publisher publisher_;
   StreamMonitor commands_;
   StreamMonitor currents_;
+  TimingDiagnostics timing_;
   LinkDiagnostics link_diagnostics_;
   NodeDiagnostics diagnostics_;
   /// Of the commands alone: they are judged as they come, whatever else the node is busy with. A

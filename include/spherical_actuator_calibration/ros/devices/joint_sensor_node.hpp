@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
 #include "spherical_actuator_calibration/drivers/link_supervisor.hpp"
 #include "spherical_actuator_calibration/ros/devices/link_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/node/loop_timing.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
@@ -37,7 +38,8 @@ class JointSensorNode {
 
  private:
   void poll();
-  void publishReading();
+  /// Returns its age when it is published [s].
+  double publishReading();
 
   std::unique_ptr<ModbusTransport> transport_;
   JointSensor sensor_;
@@ -45,6 +47,7 @@ class JointSensorNode {
   sensor_msgs::JointState message_;
   ros::Publisher publisher_;
   StreamMonitor stream_;
+  TimingDiagnostics timing_;
   LinkDiagnostics link_diagnostics_;
   NodeDiagnostics diagnostics_;
   std::unique_ptr<PeriodicThread> thread_;  ///< last, so that it ends first
