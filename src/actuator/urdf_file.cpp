@@ -120,7 +120,7 @@ void requireChain(const RobotDescription& robot, const JointNames& names) {
 JointAxis readJoint(const RobotDescription& robot, const std::string& name) {
   const urdf::Joint& joint = robot.joint(name);
   const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
-  if (!axis.allFinite() || !(axis.norm() > 0.0)) {
+  if (!axis.allFinite() || !(axis.stableNorm() > 0.0)) {
     robot.fail(name, "its axis has no direction.");
   }
   const urdf::Rotation& origin = joint.parent_to_joint_origin_transform.rotation;
@@ -131,7 +131,7 @@ JointAxis readJoint(const RobotDescription& robot, const std::string& name) {
   // From the quaternion: the matrix's logarithm loses digits near π.
   const Eigen::AngleAxisd turn(rotation);
   const Eigen::Vector3d rotation_vector = turn.angle() * turn.axis();
-  const Eigen::Vector3d unit_axis = axis.normalized();
+  const Eigen::Vector3d unit_axis = axis.stableNormalized();
   const double offset = rotation_vector.dot(unit_axis);
   if ((rotation_vector - offset * unit_axis).norm() > kAngleTolerance) {
     robot.fail(name, "its origin turns about another axis than the joint itself.");

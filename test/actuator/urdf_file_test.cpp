@@ -253,6 +253,16 @@ TEST(UrdfFile, NamesTheJointThatIsWrong) {
   }
 }
 
+TEST(UrdfFile, AxesOfAnyLengthAreDirections) {
+  const TemporaryFolder folder;
+  for (const char* const axis : {"0 0 1e-200", "0 0 1e200"}) {
+    const std::string robot = folder.write(
+        "a.urdf",
+        replaced(kRobot, "<axis xyz=\"0 0 1\"/>", "<axis xyz=\"" + std::string(axis) + "\"/>"));
+    EXPECT_EQ(readJoints(robot, jointNames())[2].axis, Eigen::Vector3d::UnitZ()) << axis;
+  }
+}
+
 TEST(UrdfFile, RefusesWhatIsNoRobotDescription) {
   const TemporaryFolder folder;
   const auto message = [](const std::string& path) {
