@@ -105,7 +105,7 @@ class Input {
   std::size_t left_;
 };
 
-/// Gives cells of some row values of some type.
+/// Gives cells of some row values of some type, or takes rows away.
 void spoilCells(const std::string& path, Input& input) {
   const char* const tables[] = {"unit",
                                 "samples",
@@ -115,6 +115,7 @@ void spoilCells(const std::string& path, Input& input) {
                                 "cycle_estimates",
                                 "cycle_residuals",
                                 "revisions"};
+  constexpr std::uint8_t kTaken = 224;  // and above: rows are taken away
   const SQLite::Database database(path, SQLite::OPEN_READWRITE);
   SQLite::Statement(database, "PRAGMA ignore_check_constraints = ON").executeStep();
   while (!input.isEmpty()) {
@@ -128,8 +129,13 @@ void spoilCells(const std::string& path, Input& input) {
     const bool has_rowid = table != "sample_currents" && table.compare(0, 6, "cycle_") != 0;
     const std::string rows =
         has_rowid ? " WHERE rowid = " + std::to_string(input.byte() % 8) : std::string();
-    SQLite::Statement update(database, "UPDATE " + table + " SET " + column + " = ?" + rows);
     const std::uint8_t kind = input.byte();
+    if (kind >= kTaken) {
+      SQLite::Statement(database, "PRAGMA foreign_keys = OFF").executeStep();
+      SQLite::Statement(database, "DELETE FROM " + table + rows).exec();
+      continue;
+    }
+    SQLite::Statement update(database, "UPDATE " + table + " SET " + column + " = ?" + rows);
     if (kind % 5 == 0) {
       update.bind(1, static_cast<std::int64_t>(input.number(8)));
     } else if (kind % 5 == 1) {
@@ -166,11 +172,14 @@ void readAll(const std::string& path) {
     try {
       session.database().revision(revision.number);
       session.database().cyclesOfRevision(revision.number);
+      session.restore(revision.number, kDate);
+      session.description(kDate);
     } catch (const Error&) {
     }
   }
   session.lastReport();
   session.progress();
+  session.grade();
   session.addSample(sampleAt(9), kDate);
   session.run({Cycle::kJoint}, kDate);
 }
