@@ -315,6 +315,7 @@ def parse(arguments):
 def main():
     """Returns the exit status."""
     options = parse(sys.argv[1:])
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # under nohup the driver would outlive it, as it should
     master = Master(free_port())
     rospy.init_node("first_commander", disable_signals=True)
     failures = count = 0
