@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,7 @@ const char* siSymbol(const std::string& symbol) {
 
 /// `factor`: a symbol, squared or not; of a unit's denominator where `sign` is −1.
 void multiply(std::string factor, int sign, Powers& powers) {
-  static const std::string kSquare = "²";
+  constexpr std::string_view kSquare = "²";
   int exponent = sign;
   if (factor.size() > kSquare.size() &&
       factor.compare(factor.size() - kSquare.size(), kSquare.size(), kSquare) == 0) {
@@ -48,7 +49,7 @@ void multiply(std::string factor, int sign, Powers& powers) {
 }
 
 void multiplyUnit(const std::string& unit, Powers& powers) {
-  static const std::string kTimes = "·";
+  constexpr std::string_view kTimes = "·";
   if (unit == "1") {
     return;
   }
