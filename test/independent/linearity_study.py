@@ -70,7 +70,7 @@ def main():
     worst = int(np.argmax(beyond))
     print(f"{len(values)} trials, {len(names)} parameters: ends differ by {np.sqrt(np.mean(apart**2)):.3f} u rms, "
           f"{np.max(apart):.3f} u at most (chance alone: {QUANTILE_UNCERTAINTY / np.sqrt(len(values)):.3f} u each); within delta "
-          f"{np.mean(apart <= delta) * 100:.0f} %, beyond it by chance at most {100 * np.mean(beyond <= MOST):.0f} %; worst "
+          f"{np.mean(apart <= delta) * 100:.0f} %, or beyond it by no more than chance {100 * np.mean(beyond <= MOST):.0f} %; worst "
           f"{names[worst]}: {apart[worst]:.3f} u, delta {delta[worst]:.3f} u")
     return 1 if np.any(beyond > MOST) else 0
 
