@@ -115,8 +115,8 @@ class Calibration:
         return self.call(service, coil=coil)
 
     def excited(self, currents):
-        """The coils that currents [A] excite, see excited_coils."""
-        return excited_coils(currents, self._status.current_threshold)
+        """The coils that currents [A] excite, see excited_coils; none before the first status."""
+        return excited_coils(currents, self._status.current_threshold) if self._status else ()
 
     def measured(self):
         """Samples that are held."""
