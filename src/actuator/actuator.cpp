@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -51,7 +52,31 @@ void validateCorrection(const std::string& key, const ReadingCorrection& correct
   }
 }
 
+bool isPlain(const JointAxis& joint, const JointAxis& free) {
+  return joint.axis == free.axis && joint.offset == free.offset &&
+         joint.correction.linear == free.correction.linear &&
+         joint.correction.harmonics == free.correction.harmonics;
+}
+
+void validateWithoutJoints(const Actuator& actuator) {
+  const std::array<JointAxis, kJoints> free = freeRotorJoints();
+  if (!std::equal(free.begin(), free.end(), actuator.joints.begin(), isPlain)) {
+    throw ConfigError(
+        "joints: the rotor has none, so that they have no axes, offsets or "
+        "corrections either.");
+  }
+  if (actuator.orientation_map) {
+    throw ConfigError("orientation_map: the rotor has no joints, over whose readings it could be.");
+  }
+}
+
 }  // namespace
+
+std::array<JointAxis, kJoints> freeRotorJoints() {
+  return {{{"rotation_x", Eigen::Vector3d::UnitX(), 0.0},
+           {"rotation_y", Eigen::Vector3d::UnitY(), 0.0},
+           {"rotation_z", Eigen::Vector3d::UnitZ(), 0.0}}};
+}
 
 std::size_t modelledCoils(const Actuator& actuator) {
   return actuator.hasTorqueModel() ? actuator.coils.size() : 0;
@@ -63,6 +88,9 @@ std::array<std::string, kJoints> jointNames(const Actuator& actuator) {
 
 void validate(const Actuator& actuator) {
   validateJoints(actuator.joints);
+  if (!actuator.has_joints) {
+    validateWithoutJoints(actuator);
+  }
   for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
     const std::string key = entryKey("poles", i);
     validateAxis(key, actuator.poles[i]);

@@ -19,6 +19,9 @@ void requireSameCount(const std::string& what, std::size_t nominal, std::size_t 
 }  // namespace
 
 void requireSameDesign(const Actuator& nominal, const Actuator& truth) {
+  if (nominal.has_joints != truth.has_joints) {
+    throw ConfigError("Only one of truth and actuator description has joints.");
+  }
   for (std::size_t k = 0; k < kJoints; ++k) {
     if (nominal.joints[k].name != truth.joints[k].name) {
       throw ConfigError("The truth calls joint " + std::to_string(numberOf(k)) + " \"" +

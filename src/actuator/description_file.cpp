@@ -64,10 +64,17 @@ AxisStddev readAxisStddev(const YamlMap& pole_or_coil) {
 
 void readJoints(const YamlMap& map, CalibratedDescription& description) {
   const std::vector<YamlMap> items = map.maps("joints");
+  if (items.empty()) {
+    description.actuator.has_joints = false;
+    description.actuator.joints = freeRotorJoints();
+    return;
+  }
   if (items.size() != kJoints) {
     map.fail("joints",
-             "the list has " + std::to_string(items.size()) + " joints; exactly " +
-                 std::to_string(kJoints) + " are needed.");
+             "the list has " + std::to_string(items.size()) + " joints; " +
+                 std::to_string(kJoints) +
+                 " are needed, or none where only a tracker tells the "
+                 "orientation.");
   }
   std::array<JointAxis, kJoints>& joints = description.actuator.joints;
   for (std::size_t k = 0; k < kJoints; ++k) {

@@ -190,7 +190,7 @@ std::string renderDescription(const CalibratedDescription& description, const st
     writer.entry(1, "serial", yamlText(actuator.serial));
   }
   std::vector<std::string> joints;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; actuator.has_joints && k < kJoints; ++k) {
     joints.push_back(jointLine(actuator.joints[k], description.stddevs.joints[k]));
   }
   writer.list(1, "joints", joints);

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 
@@ -28,6 +29,15 @@ std::optional<Eigen::Vector3d> jointAngles(const JointGeometry& joints,
     q += step * std::min(1.0, kLargestStep / step.norm());
   }
   return std::nullopt;
+}
+
+Eigen::Vector3d freeRotorAngles(const Eigen::Matrix3d& R_stator_rotor) {
+  const Eigen::Matrix3d& R = R_stator_rotor;
+  const double q1 = std::atan2(-R(1, 2), R(2, 2));
+  // Of e^{−x̂q₁}R the second row is (sin q₃, cos q₃, 0) whatever q₁ is made of: near q₂ = ±π/2 that
+  // is rounding errors.
+  const Eigen::RowVector3d row = std::cos(q1) * R.row(1) + std::sin(q1) * R.row(2);
+  return {q1, std::atan2(R(0, 2), std::hypot(R(1, 2), R(2, 2))), std::atan2(row[0], row[1])};
 }
 
 }  // namespace sac

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -56,6 +57,12 @@ class RobotDescription {
     return *place->second;
   }
 
+  bool hasFloatingJoint() const {
+    return std::any_of(model_->joints_.begin(), model_->joints_.end(), [](const auto& named) {
+      return named.second->type == urdf::Joint::FLOATING;
+    });
+  }
+
   /// The XML element of a joint that the model has.
   tinyxml2::XMLElement& element(const std::string& name) {
     tinyxml2::XMLElement* joint = xml_.RootElement()->FirstChildElement("joint");
@@ -70,6 +77,9 @@ class RobotDescription {
 
   std::string text() const { return textOf(xml_); }
 
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw ConfigError(path_ + ": " + sentence);
+  }
   [[noreturn]] void fail(const std::string& joint, const std::string& sentence) const {
     throw ConfigError(path_ + ": joint \"" + joint + "\": " + sentence);
   }
@@ -167,6 +177,12 @@ std::string calibratedText(RobotDescription& robot,
                            const Actuator& calibrated) {
   validate(nominal);
   validate(calibrated);
+  if (!nominal.has_joints) {
+    if (!robot.hasFloatingJoint()) {
+      robot.fail("the actuator description has no joints, but no joint here is floating.");
+    }
+    return robot.text();
+  }
   requireChain(robot, namesOf(nominal));
   for (std::size_t k = 0; k < kJoints; ++k) {
     requireNominal(robot, nominal.joints[k]);

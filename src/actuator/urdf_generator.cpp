@@ -164,10 +164,16 @@ class RobotWriter {
     robot_->SetAttribute("name", actuator_.name.c_str());
     addMaterials();
     addStator();
-    addLink("joint_1");
-    addLink("joint_2");
+    if (actuator_.has_joints) {
+      addLink("joint_1");
+      addLink("joint_2");
+    }
     addRotor();
-    addJoints();
+    if (actuator_.has_joints) {
+      addJoints();
+    } else {
+      addJoint(kFloatingJoint, "floating", "stator", "rotor");
+    }
     tinyxml2::XMLPrinter printer;
     xml_.Print(&printer);
     return printer.CStr();
@@ -238,6 +244,9 @@ class RobotWriter {
                       kRodRadius,
                       top - plate);
     }
+    if (!actuator_.has_joints) {
+      return;
+    }
     stator.cylinder(
         "post", "frame", {{0.0, 0.0, 0.5 * plate}, Eigen::Vector3d::Zero()}, kPostRadius, -plate);
     stator.sphere("ball", "frame", kBallRadius);
@@ -257,11 +266,13 @@ class RobotWriter {
     }
     const double hoop_inside = d_.rotor_radius - d_.hoop_thickness;
     rotor.cylinder("carrier", "carrier", {}, hoop_inside - d_.pole_height, kCarrierHeight);
-    rotor.cylinder("shaft",
-                   "carrier",
-                   {{0.0, 0.0, 0.5 * d_.shaft_length}, Eigen::Vector3d::Zero()},
-                   d_.shaft_radius,
-                   d_.shaft_length);
+    if (actuator_.has_joints) {
+      rotor.cylinder("shaft",
+                     "carrier",
+                     {{0.0, 0.0, 0.5 * d_.shaft_length}, Eigen::Vector3d::Zero()},
+                     d_.shaft_radius,
+                     d_.shaft_length);
+    }
     rotor.ring("hoop", "iron", hoop_inside, d_.rotor_radius, d_.hoop_height, 0.0);
     addCylinder(addChild(link, "collision"), d_.rotor_radius, d_.hoop_height);
   }
@@ -283,16 +294,25 @@ class RobotWriter {
     }
   }
 
+  XMLElement& addJoint(const std::string& name,
+                       const char* type,
+                       const char* parent,
+                       const char* child) {
+    XMLElement& joint = addChild(*robot_, "joint");
+    joint.SetAttribute("name", name.c_str());
+    joint.SetAttribute("type", type);
+    addChild(joint, "origin").SetAttribute("xyz", "0 0 0");
+    addChild(joint, "parent").SetAttribute("link", (prefix_ + parent).c_str());
+    addChild(joint, "child").SetAttribute("link", (prefix_ + child).c_str());
+    return joint;
+  }
+
   void addJoints() {
     const std::array<const char*, kJoints + 1> links = {"stator", "joint_1", "joint_2", "rotor"};
     for (std::size_t k = 0; k < kJoints; ++k) {
       const bool is_spin = k + 1 == kJoints;
-      XMLElement& joint = addChild(*robot_, "joint");
-      joint.SetAttribute("name", actuator_.joints[k].name.c_str());
-      joint.SetAttribute("type", is_spin ? "continuous" : "revolute");
-      addChild(joint, "origin").SetAttribute("xyz", "0 0 0");
-      addChild(joint, "parent").SetAttribute("link", (prefix_ + links[k]).c_str());
-      addChild(joint, "child").SetAttribute("link", (prefix_ + links[k + 1]).c_str());
+      XMLElement& joint = addJoint(
+          actuator_.joints[k].name, is_spin ? "continuous" : "revolute", links[k], links[k + 1]);
       writeJointAxis(joint, actuator_.joints[k]);
       XMLElement& limit = addChild(joint, "limit");
       if (!is_spin) {

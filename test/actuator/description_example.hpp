@@ -45,6 +45,13 @@ inline std::string spoilt(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
+/// kDescription with other lines in the place of its joints.
+inline std::string withoutJoints(const std::string& instead = "joints: []\n") {
+  std::string text = kDescription;
+  const std::size_t first = text.find("joints:");
+  return text.replace(first, text.find("  poles:") - first, instead);
+}
+
 /// What is told about a text that is refused; it stands for f.yaml.
 inline std::string messageFor(const std::string& text) {
   return errorMessage<ConfigError>([&] { parseDescription(text, "f.yaml"); });

@@ -124,9 +124,18 @@ TEST(DescriptionFile, RejectsKeysThatAreUnknownOrRepeated) {
   }
 }
 
-TEST(DescriptionFile, NeedsExactlyThreeJoints) {
+TEST(DescriptionFile, NeedsThreeJointsOrNone) {
   EXPECT_EQ(messageFor(spoilt("    - {name: joint_3, axis: [0, 0, 1], offset: 0.0}\n", "")),
-            "f.yaml:4: actuator.joints: the list has 2 joints; exactly 3 are needed.");
+            "f.yaml:4: actuator.joints: the list has 2 joints; 3 are needed, or none where only "
+            "a tracker tells the orientation.");
+}
+
+TEST(DescriptionFile, RefusesAnOrientationMapWithoutJoints) {
+  const std::string map =
+      "joints: []\n  orientation_map: {length: [1, 1, 1], amplitude: [1e-3, 1e-3, 1e-3], noise: "
+      "[1e-4, 1e-4, 1e-4], readings: [[0, 0, 0]], rotations: [[0, 0, 0]]}\n";
+  const std::string message = messageFor(withoutJoints(map));
+  EXPECT_NE(message.find("orientation_map: the rotor has no joints"), std::string::npos) << message;
 }
 
 }  // namespace

@@ -245,6 +245,33 @@ TEST(DescriptionFile, RefusesStandardDeviationsOfAnotherActuator) {
             "coils: 3 standard deviations do not belong to 1 coils.");
 }
 
+TEST(DescriptionFile, ARotorWithoutJointsIsReadAndWrittenAsSuch) {
+  CalibratedDescription description = parseDescription(withoutJoints(), "f.yaml");
+  EXPECT_FALSE(description.actuator.has_joints);
+  EXPECT_TRUE(parseDescription(kDescription, "f.yaml").actuator.has_joints);
+  description.stddevs.poles[1] = {1e-5, 2e-5};
+  const std::string text = renderDescription(description, "f.yaml");
+  EXPECT_NE(text.find("  joints: []\n"), std::string::npos) << text;
+  const CalibratedDescription again = parseDescription(text, "f.yaml");
+  EXPECT_FALSE(again.actuator.has_joints);
+  EXPECT_EQ(again.actuator.poles.size(), 2U);
+  EXPECT_EQ(again.stddevs.poles[1].azimuth, 2e-5);
+  description.actuator.joints[1].offset = 1e-9;
+  EXPECT_EQ(
+      errorMessage<ConfigError>([&] { validate(description.actuator); }),
+      "joints: the rotor has none, so that they have no axes, offsets or corrections either.");
+}
+
+TEST(DescriptionFile, TheShippedReactionSphereHasNoJoints) {
+  const Actuator sphere = loadActuator(SOURCE_DIR "/config/reaction_sphere.yaml");
+  EXPECT_FALSE(sphere.has_joints);
+  EXPECT_TRUE(sphere.hasTorqueModel());
+  EXPECT_EQ(sphere.poles.size(), 8U);
+  EXPECT_EQ(sphere.coils.size(), 20U);
+  // Of the stretched curve: that of the shipped actuator at half the angle.
+  EXPECT_NEAR(TorqueCurve(*sphere.torque_curve).value(20.0 * kOneDegree), 0.2843, 1e-3);
+}
+
 TEST(DescriptionFile, EveryShippedDescriptionLoads) {
   int descriptions = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/config")) {

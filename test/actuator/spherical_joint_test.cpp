@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/numeric_jacobian.hpp"
 #include "support/scenarios.hpp"
@@ -45,6 +47,22 @@ TEST(SphericalJoint, LinearizationIsTheDerivativeInAxesAndOffsets) {
     const auto first = static_cast<Eigen::Index>(3 + 3 * k);
     EXPECT_LT((linear.d_axis[k] - numeric.middleCols<3>(first)).cwiseAbs().maxCoeff(), 1e-9);
   }
+}
+
+TEST(InverseKinematics, AnglesOfAFreeRotorGiveItsOrientationEverywhere) {
+  const JointGeometry joints = jointGeometry(freeRotorJoints());
+  const double lock = 0.5 * kPi;
+  for (const double q2 : {0.0, 0.4, lock - 1e-4, lock - 1e-12, lock, -lock, -lock + 1e-9}) {
+    for (const double q1 : {-3.1, -0.5, 0.0, 2.0, kPi}) {
+      for (const double q3 : {-kPi, -1.0, 0.0, 3.0}) {
+        const Eigen::Matrix3d R = rotorOrientation(joints, {q1, q2, q3});
+        const Eigen::Vector3d q = freeRotorAngles(R);
+        EXPECT_LT((rotorOrientation(joints, q) - R).norm(), 1e-14) << q1 << " " << q2 << " " << q3;
+      }
+    }
+  }
+  const Eigen::Vector3d q(0.3, -0.2, 2.0);
+  EXPECT_LT((freeRotorAngles(rotorOrientation(joints, q)) - q).norm(), 1e-15);
 }
 
 }  // namespace

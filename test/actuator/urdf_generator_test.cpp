@@ -13,7 +13,9 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 #include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
@@ -128,6 +130,38 @@ TEST(UrdfGenerator, TheShippedRobotIsTheOneOfTheShippedDescription) {
                        loadDimensions(SOURCE_DIR "/config/actuator_dimensions.yaml")))
       << "Write it anew: generate_urdf --actuator config/pm_spherical_8x24.yaml --output "
          "urdf/pm_spherical_8x24.urdf --force";
+}
+
+TEST(UrdfGenerator, TheShippedSphereIsTheOneOfTheShippedDescription) {
+  EXPECT_EQ(contentOf(SOURCE_DIR "/urdf/reaction_sphere.urdf"),
+            renderUrdf(loadActuator(SOURCE_DIR "/config/reaction_sphere.yaml"),
+                       loadDimensions(SOURCE_DIR "/config/actuator_dimensions.yaml")))
+      << "Write it anew: generate_urdf --actuator config/reaction_sphere.yaml --output "
+         "urdf/reaction_sphere.urdf --force";
+}
+
+TEST(UrdfGenerator, WithoutJointsTheRotorFloats) {
+  const Actuator sphere = loadActuator(SOURCE_DIR "/config/reaction_sphere.yaml");
+  const urdf::ModelInterfaceSharedPtr robot = parsed(sphere, "unit_2/");
+  ASSERT_EQ(robot->joints_.size(), 1U);
+  const urdf::JointConstSharedPtr joint = robot->getJoint(kFloatingJoint);
+  ASSERT_TRUE(joint);
+  EXPECT_EQ(joint->type, urdf::Joint::FLOATING);
+  EXPECT_EQ(joint->parent_link_name, "unit_2/stator");
+  EXPECT_EQ(joint->child_link_name, "unit_2/rotor");
+  EXPECT_EQ(countOf(*robot, "unit_2/stator", "coil_"), 20);
+  EXPECT_EQ(countOf(*robot, "unit_2/stator", "post"), 0);
+  EXPECT_EQ(countOf(*robot, "unit_2/rotor", "pole_"), 8);
+  expectPossibleInertia(sphere);
+}
+
+TEST(UrdfGenerator, WithoutJointsNothingIsCalibratedInIt) {
+  const Actuator sphere = loadActuator(SOURCE_DIR "/config/reaction_sphere.yaml");
+  const std::string text = renderUrdf(sphere, {});
+  EXPECT_EQ(renderCalibratedUrdf(text, "r", sphere, sphere), text);
+  const std::string jointed = renderUrdf(scenarios::paperNominal(), {});
+  EXPECT_EQ(errorMessage<ConfigError>([&] { renderCalibratedUrdf(jointed, "r", sphere, sphere); }),
+            "r: the actuator description has no joints, but no joint here is floating.");
 }
 
 TEST(UrdfGenerator, PolesAndCoilsStandOnTheirAxes) {

@@ -14,7 +14,9 @@
 
 namespace sac {
 
-/// Number of joints of the spherical joint.
+/// Number of joints of the spherical joint: the rotational degrees of freedom of a rigid body,
+/// hence the same for every actuator. How many poles and coils there are, the description alone
+/// says.
 inline constexpr std::size_t kJoints = 3;
 
 /// What the angle of one joint has beside its reading: linear·(q₁, q₂, q₃) + a₁ cos q + b₁ sin q +
@@ -49,7 +51,9 @@ struct CoilAxis {
 
 /// Where the rotor may go.
 struct Workspace {
-  double tilt_limit = 0.6;  ///< largest |q₁| and |q₂| [rad], in (0, π/2)
+  /// Largest |q₁| and |q₂| [rad], in (0, π/2); of a rotor without joints, those of
+  /// freeRotorJoints().
+  double tilt_limit = 0.6;
 };
 
 /// One actuator: geometry, torque curve, workspace. Poles, coils and curve may be absent; then only
@@ -58,6 +62,10 @@ struct Actuator {
   std::string name;
   std::string serial;  ///< one physical unit; empty when the description names none
   std::array<JointAxis, kJoints> joints;
+  /// False for `joints: []`: the rotor is levitated or borne by air, and its orientation is what an
+  /// external tracker measures. `joints` are then freeRotorJoints(), which are exact: no reading
+  /// tells them, nothing identifies or reports them.
+  bool has_joints = true;
   std::vector<PoleAxis> poles;
   std::vector<CoilAxis> coils;
   std::optional<TorqueCurveDescription> torque_curve;
@@ -76,11 +84,16 @@ struct Actuator {
 /// Number of coils that torques are modelled with: 0 when the description lacks poles or curve.
 std::size_t modelledCoils(const Actuator& actuator);
 
+/// The angles that stand for the orientation of a rotor without joints: about x, then y, then z of
+/// frames that coincide where all of them are zero. Wherever other rotors have raw sensor angles q,
+/// such as in samples and plans, this one has these, see freeRotorAngles().
+std::array<JointAxis, kJoints> freeRotorJoints();
+
 /// Names of the joints, from the stator to the rotor.
 std::array<std::string, kJoints> jointNames(const Actuator& actuator);
 
 /// Throws ConfigError, naming the key, when a value is not finite or out of range, an axis is not
-/// unit to 1e-3, or two joints share a name.
+/// unit to 1e-3, two joints share a name, or a rotor without joints has something of theirs.
 void validate(const Actuator& actuator);
 
 /// Unit vector of an elevation and azimuth: (cosθ cosφ, cosθ sinφ, sinθ), paper (19).

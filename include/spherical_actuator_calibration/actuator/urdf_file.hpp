@@ -22,7 +22,9 @@ std::array<JointAxis, kJoints> readJoints(const std::string& path, const JointNa
 
 /// Copies a robot description and puts the axes and offsets of `calibrated` into its three joints;
 /// positions of their origins and everything else (unknown elements, attributes, comments, their
-/// order) stay. Read back, axes and offsets are exact to 1e-12.
+/// order) stay. Read back, axes and offsets are exact to 1e-12. Of a rotor without joints nothing
+/// that was identified is in a robot description: the template, which must have a floating joint,
+/// stays as it is.
 ///
 /// Throws ConfigError as readJoints(), and when the joints of the template differ from `nominal` by
 /// more than 1e-6 rad: it describes another actuator then, or is calibrated already. Throws
