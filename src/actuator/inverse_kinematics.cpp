@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -38,6 +40,14 @@ Eigen::Vector3d freeRotorAngles(const Eigen::Matrix3d& R_stator_rotor) {
   // is rounding errors.
   const Eigen::RowVector3d row = std::cos(q1) * R.row(1) + std::sin(q1) * R.row(2);
   return {q1, std::atan2(R(0, 2), std::hypot(R(1, 2), R(2, 2))), std::atan2(row[0], row[1])};
+}
+
+Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor) {
+  if (!isUnit(q_stator_rotor)) {
+    throw DataError("The quaternion has norm " + shortestText(q_stator_rotor.norm()) +
+                    " instead of 1.");
+  }
+  return freeRotorAngles(q_stator_rotor.normalized().toRotationMatrix());
 }
 
 }  // namespace sac

@@ -321,7 +321,10 @@ void Certificate::measurementResults() {
   methods();
   const Element results(printer_, "dcc:results");
   const Element result(printer_, "dcc:result");
-  content("dcc:name", {"Offsets and axes of joints, angles of poles and coils"});
+  content("dcc:name",
+          {session_.start().actuator.has_joints
+               ? "Offsets and axes of joints, angles of poles and coils"
+               : "Angles of poles and coils"});
   const Element data(printer_, "dcc:data");
   const Element quantity(printer_, "dcc:quantity");
   content("dcc:name", {"Identified parameters, labelled by their names"});

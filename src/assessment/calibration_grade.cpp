@@ -172,10 +172,14 @@ class Examiner {
     if (last_success_ == nullptr) {
       return {};
     }
-    std::string text = format(" Expected error over the workspace: orientation %.2g mrad",
-                              1e3 * last_success_->orientation_uncertainty);
-    if (session_.model().hasTorqueModel()) {
-      text += format(", torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
+    const CalibrationModel& model = session_.model();
+    std::string text = " Expected error over the workspace:";
+    if (model.space().joints() > 0) {
+      text += format(" orientation %.2g mrad", 1e3 * last_success_->orientation_uncertainty);
+      text += model.hasTorqueModel() ? "," : "";
+    }
+    if (model.hasTorqueModel()) {
+      text += format(" torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
     }
     return text + " (1 sigma, 95 % of all poses are better).";
   }

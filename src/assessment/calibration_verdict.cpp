@@ -107,14 +107,15 @@ class Judge {
       }
     }
     const EstimationOptions& estimation = session_.config().estimation;
-    const std::vector<std::string> advice =
-        adviceForUnobservable(session_.model(),
-                              session_.samples(),
-                              selectObservations(session_.samples(), {Cycle::kRefine}, estimation),
-                              {Cycle::kPoles, polesCoil()},
-                              session_.state().belief.x,
-                              estimation.current_threshold,
-                              coordinates);
+    const std::vector<std::string> advice = adviceForUnobservable(
+        session_.model(),
+        session_.samples(),
+        selectObservations(
+            session_.model().space(), session_.samples(), {Cycle::kRefine}, estimation),
+        {Cycle::kPoles, polesCoil()},
+        session_.state().belief.x,
+        estimation.current_threshold,
+        coordinates);
     steps.insert(steps.end(), advice.begin(), advice.end());
   }
 

@@ -22,7 +22,8 @@ void sumUp(const CalibrationSession& session, ModelFit& fit) {
   EstimationProblem problem;
   problem.model = &session.model();
   problem.samples = &session.samples();
-  problem.observations = selectObservations(session.samples(), {Cycle::kRefine}, options);
+  problem.observations =
+      selectObservations(session.model().space(), session.samples(), {Cycle::kRefine}, options);
   problem.prior = session.state().belief;
   const ObservationEvaluator evaluator(problem, options);
   const ModelPoint point = evaluator.at(problem.prior.x);
@@ -67,7 +68,8 @@ std::optional<double> heldOutError(const CalibrationSession& session) {
     const ModelPoint point(session.model(), outcome.state.belief.x);
     for (std::size_t n = 0; outcome.report.success && n < others.size(); ++n) {
       const Sample& sample = session.samples()[n];
-      if (regions[n] == region && sample.has_orientation && !sample.validation) {
+      if (regions[n] == region && session.model().observesOrientation(sample) &&
+          !sample.validation) {
         sum += point.orientationResidual(sample).squaredNorm();
         ++count;
       }

@@ -124,7 +124,7 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
   writer.entry(4, "orientation_chi_square", yamlNumber(motion.orientation_chi_square));
 }
 
-void writeCycle(YamlWriter& writer, const CycleReport& report) {
+void writeCycle(YamlWriter& writer, const CycleReport& report, bool has_joints) {
   writer.line(2, "- cycle: " + cycleName(report.cycle));
   writer.entry(3, "title", cycleTitle(report.cycle, report.coil));
   writer.entry(3, "title_of_kind", cyclesTitle(report.cycle));
@@ -142,7 +142,9 @@ void writeCycle(YamlWriter& writer, const CycleReport& report) {
   writer.entry(3, "degrees_of_freedom", std::to_string(report.degrees_of_freedom));
   writer.entry(3, "condition_number", yamlNumber(report.condition_number));
   writer.entry(3, "solve_time", yamlNumber(report.solve_time));
-  writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));
+  if (has_joints) {
+    writer.entry(3, "orientation_uncertainty", yamlNumber(report.orientation_uncertainty));
+  }
   writer.entry(3, "torque_uncertainty", yamlNumber(report.torque_uncertainty));
   if (report.motion) {
     writeMotion(writer, *report.motion);
@@ -202,7 +204,8 @@ void writeSamples(YamlWriter& writer, const CalibrationSession& session) {
     }
     YamlLine line;
     line.add("id", std::to_string(sample.id));
-    line.add("joint_position", yamlNumbers(sample.joint_position));
+    const bool has_joints = session.model().space().joints() > 0;
+    line.add(has_joints ? "joint_position" : "turns", yamlNumbers(sample.joint_position));
     line.add("orientation", yamlBoolean(sample.has_orientation));
     line.add("torque", yamlBoolean(sample.has_torque));
     line.add("coils", yamlList(coils));
@@ -219,7 +222,7 @@ void writeCoverage(YamlWriter& writer, const CalibrationSession& session) {
                                                  session.config().estimation.current_threshold);
   const Actuator& actuator = session.model().space().nominal();
   std::vector<std::string> joints;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < session.model().space().joints(); ++k) {
     YamlLine line;
     line.add("name", yamlText(actuator.joints[k].name));
     line.add("lowest", yamlNumber(coverage.joints[k].lowest));
@@ -245,7 +248,7 @@ void writeJointAxes(YamlWriter& writer, const CalibrationSession& session) {
   const ParameterSpace& space = session.model().space();
   const Actuator identified = space.actuatorAt(session.state().belief.x);
   std::vector<std::string> lines;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < space.joints(); ++k) {
     YamlLine line;
     line.add("name", yamlText(space.nominal().joints[k].name));
     line.add("nominal", yamlNumbers(space.nominal().joints[k].axis));
@@ -259,7 +262,8 @@ void writeWorkspace(YamlWriter& writer, const CalibrationSession& session) {
   const WorkspaceMap map = workspaceMap(session.model(), session.state().belief);
   writer.map(1, "workspace");
   writer.entry(2, "tilt", yamlNumbers(map.tilt));
-  writer.list(2, "orientation", matrixLines(map.orientation));
+  const bool has_joints = session.model().space().joints() > 0;
+  writer.list(2, "orientation", matrixLines(has_joints ? map.orientation : Eigen::MatrixXd()));
   writer.list(2, "torque", matrixLines(map.torque));
 }
 
@@ -361,13 +365,15 @@ std::string renderReport(const CalibrationSession& session,
   writeSamples(writer, session);
   writer.line(1, session.reports().empty() ? "cycles: []" : "cycles:");
   for (const CycleReport& report : session.reports()) {
-    writeCycle(writer, report);
+    writeCycle(writer, report, session.model().space().joints() > 0);
   }
   if (const auto validation = session.validation()) {
     writeValidation(writer, *validation);
   }
   writeParameters(writer, session);
-  writeJointAxes(writer, session);
+  if (session.model().space().joints() > 0) {
+    writeJointAxes(writer, session);
+  }
   writeCoverage(writer, session);
   writeWorkspace(writer, session);
   writeInfluences(writer, influences);

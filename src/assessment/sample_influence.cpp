@@ -76,7 +76,8 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
   EstimationProblem problem;
   problem.model = &model;
   problem.samples = &samples;
-  problem.observations = selectObservations(samples, {report.cycle, report.coil}, options);
+  problem.observations =
+      selectObservations(model.space(), samples, {report.cycle, report.coil}, options);
   problem.prior = after.belief;
   const ChosenCoordinates chosen(model.space().size(), coordinates);
   const std::vector<Used> used = usedObservations(problem, report, chosen, after.belief.x, options);

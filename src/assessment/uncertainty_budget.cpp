@@ -29,8 +29,8 @@ class Budget {
         observed_(static_cast<Eigen::Index>(chosen_.size())) {
     problem_.model = &session.model();
     problem_.samples = &session.samples();
-    problem_.observations =
-        selectObservations(session.samples(), {report.cycle, report.coil}, options_);
+    problem_.observations = selectObservations(
+        session.model().space(), session.samples(), {report.cycle, report.coil}, options_);
     problem_.prior = belief_;
     held_.assign(static_cast<std::size_t>(space_.size()), true);
     for (const Eigen::Index p : chosen_) {
@@ -59,6 +59,9 @@ class Budget {
     Eigen::MatrixXd held;      ///< covariance that held coordinates add, block by block
     std::vector<bool> is_orientation;
   };
+
+  /// What the reading of a sample is: of a rotor without joints the tracker's orientation.
+  const char* reading() const { return space_.joints() > 0 ? "joint_reading" : "orientation"; }
 
   Eigen::MatrixXd& of(const std::string& source) {
     const auto size = static_cast<Eigen::Index>(chosen_.size());
@@ -157,12 +160,12 @@ void Budget::add(const Dwell& dwell) {
     of(dwell.is_orientation[k] ? "orientation" : "torque") += part.transpose() * part;
     const Eigen::MatrixXd own =
         dwell.readings.middleRows<3>(row).transpose() * weighed.middleRows<3>(row);
-    of("joint_reading") += own.transpose() * own;
+    of(reading()) += own.transpose() * own;
   }
   const Eigen::MatrixXd shares = weighed.transpose() * dwell.loading;
   const auto joints = shares.leftCols<3>();
   const auto torques = shares.rightCols<3>();
-  of("joint_reading") += joints * joints.transpose();
+  of(reading()) += joints * joints.transpose();
   of("torque_without_current") += torques * torques.transpose();
 }
 

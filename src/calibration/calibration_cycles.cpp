@@ -93,13 +93,13 @@ std::string prepare(const CalibrationState& state,
                     CycleCoordinates& coordinates) {
   const CalibrationModel& model = *problem.model;
   const std::vector<Sample>& samples = *problem.samples;
-  problem.observations = selectObservations(samples, request, options);
+  problem.observations = selectObservations(model.space(), samples, request, options);
   std::string reason = refusal(model, state, request, problem.observations);
   if (!reason.empty()) {
     return reason;
   }
   coordinates.requested = selectCoordinates(model.space(), samples, request, options);
-  if (coordinates.requested.front() == 0) {  // the joints are among them
+  if (coordinates.requested.front() < model.space().pole(0)) {  // the joints are among them
     coordinates.unexcited =
         unexcitedAxes(model.space(), samples, problem.observations, options.min_joint_motion);
   }

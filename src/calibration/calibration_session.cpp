@@ -27,11 +27,19 @@ bool isHeldOut(std::size_t index, const CalibrationConfig& config) {
   return every > 0 && index % every == every - 1;
 }
 
+/// A sample as the model reads it.
+Sample checked(Sample sample, const Actuator& actuator, const CalibrationConfig& config) {
+  validate(sample, actuator.coils.size());
+  return actuator.has_joints
+             ? sample
+             : trackedSample(std::move(sample), config.estimation.default_orientation_stddev);
+}
+
 std::vector<Sample> prepared(std::vector<Sample> samples,
                              const Actuator& actuator,
                              const CalibrationConfig& config) {
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    validate(samples[n], actuator.coils.size());
+    samples[n] = checked(std::move(samples[n]), actuator, config);
     samples[n].validation = samples[n].validation || isHeldOut(n, config);
   }
   return samples;
@@ -79,15 +87,15 @@ CalibrationSession::CalibrationSession(CalibratedDescription start,
                                        CalibrationState state,
                                        std::vector<CycleReport> reports)
     : CalibrationSession(std::move(start), {}, std::move(config)) {
-  for (const Sample& sample : samples) {
-    validate(sample, start_.actuator.coils.size());
+  for (Sample& sample : samples) {
+    sample = checked(std::move(sample), start_.actuator, config_);
   }
   samples_ = std::move(samples);
   resume(std::move(state), std::move(reports));
 }
 
 Sample CalibrationSession::prepared(Sample sample) const {
-  validate(sample, start_.actuator.coils.size());
+  sample = checked(std::move(sample), start_.actuator, config_);
   sample.validation = sample.validation || isHeldOut(samples_.size(), config_);
   return sample;
 }
@@ -252,7 +260,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   };
 
   CalibratedDescription result = start_;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < space.joints(); ++k) {
     const Eigen::Index at = space.joint(k);
     result.actuator.joints[k].offset = calibrated.joints[k].offset;
     if (moved(at + 1, 2)) {
@@ -301,7 +309,9 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
       continue;
     }
     record.cycles.push_back(cycleRecord(report));
-    record.orientation_uncertainty = report.orientation_uncertainty;
+    if (model_.space().joints() > 0) {
+      record.orientation_uncertainty = report.orientation_uncertainty;
+    }
     if (model_.hasTorqueModel()) {
       record.torque_uncertainty = report.torque_uncertainty;
     }

@@ -45,7 +45,7 @@ class Diagonal {
       : space_(space), variance_(Eigen::VectorXd::Zero(space.size())) {}
 
   Eigen::VectorXd of(const ParameterStddevs& stddevs) {
-    for (std::size_t k = 0; k < kJoints; ++k) {
+    for (std::size_t k = 0; k < space_.joints(); ++k) {
       enter(space_.joint(k), stddevs.joints[k].offset, 1.0);
       enter(space_.joint(k) + 1, stddevs.joints[k].axis_u, 1.0);
       enter(space_.joint(k) + 2, stddevs.joints[k].axis_v, 1.0);

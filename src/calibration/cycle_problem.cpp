@@ -42,7 +42,7 @@ std::vector<bool> excitedInCycle(const ParameterSpace& space,
   if (request.cycle != Cycle::kRefine) {
     return excited;
   }
-  for (const Observation& observation : selectObservations(samples, request, options)) {
+  for (const Observation& observation : selectObservations(space, samples, request, options)) {
     if (observation.quantity == Quantity::kTorque) {
       for (const Excitation& e :
            excitedCoils(samples[observation.sample], options.current_threshold)) {
@@ -55,7 +55,8 @@ std::vector<bool> excitedInCycle(const ParameterSpace& space,
 
 }  // namespace
 
-std::vector<Observation> selectObservations(const std::vector<Sample>& samples,
+std::vector<Observation> selectObservations(const ParameterSpace& space,
+                                            const std::vector<Sample>& samples,
                                             const CycleRequest& request,
                                             const EstimationOptions& options) {
   std::vector<Observation> observations;
@@ -65,7 +66,7 @@ std::vector<Observation> selectObservations(const std::vector<Sample>& samples,
       continue;
     }
     const bool wants_orientation =
-        request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine;
+        space.joints() > 0 && (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine);
     if (wants_orientation && sample.has_orientation) {
       observations.push_back({n, Quantity::kOrientation});
     }

@@ -65,6 +65,10 @@ std::string refusal(const CalibrationModel& model,
                     const CycleRequest& request,
                     const std::vector<Observation>& observations) {
   const ParameterSpace& space = model.space();
+  if (request.cycle == Cycle::kJoint && space.joints() == 0) {
+    return "The description has no joints: there is nothing to calibrate at level 1. Calibrate "
+           "poles and coils.";
+  }
   const bool needs_coil = request.cycle == Cycle::kPoles || request.cycle == Cycle::kCoil;
   if (needs_coil && !model.hasTorqueModel()) {
     return "The actuator description has no poles, coils or torque curve: only the joint can be "

@@ -11,6 +11,7 @@
 
 #include "frame_fit.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -347,6 +348,11 @@ FrameRegistration registerFrames(const CalibratedDescription& description,
                                  const EstimationOptions& options) {
   validate(options);
   validate(options.tolerance);
+  if (!description.actuator.has_joints) {
+    throw ConfigError(
+        "joints: the description has none, and only their readings can tell where "
+        "tracker and marker are; state both registrations.");
+  }
   return Registrar(description, poses, options).run();
 }
 

@@ -29,7 +29,7 @@ EstimationProblem heldOutProblem(const CalibrationModel& model,
       continue;
     }
     validate(samples[n], model.space().coils());
-    if (samples[n].has_orientation) {
+    if (model.observesOrientation(samples[n])) {
       problem.observations.push_back({n, Quantity::kOrientation});
     }
     if (samples[n].has_torque && model.hasTorqueModel() &&

@@ -101,7 +101,7 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
   };
   const GainGradients gains = gainGradients(space, x);
   ParameterStddevs result;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < space.joints(); ++k) {
     const Eigen::Index joint = space.joint(k);
     result.joints[k] = {at(joint), at(joint + 1), at(joint + 2)};
   }

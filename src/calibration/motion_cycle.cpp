@@ -21,6 +21,10 @@ std::string refusal(const CalibrationModel& model, const MotionRecording* record
     return "The actuator description has no poles, coils or torque curve: motion tells nothing "
            "without them.";
   }
+  if (model.space().joints() == 0) {
+    return "The description has no joints: motion is followed by their readings, which there are "
+           "none of. Calibrate from rests.";
+  }
   if (recording == nullptr || recording->empty()) {
     return "No motion is recorded: joint_states and coil_currents are needed together.";
   }

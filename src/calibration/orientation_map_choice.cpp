@@ -235,7 +235,7 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
                                           const EstimationOptions& options,
                                           MapUse use) {
   OrientationMapChoice choice;
-  if (use == MapUse::kNever) {
+  if (use == MapUse::kNever || model.space().joints() == 0) {
     return choice;
   }
   const UnexplainedRotations poses = mergedPoses(unexplained(model, samples, state.belief.x));

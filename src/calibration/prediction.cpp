@@ -34,6 +34,9 @@ double Predictor::parameterVariance(const ResidualJacobian& jacobian) const {
 Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) const {
   Sample sample;
   sample.joint_position = reading;
+  if (model_->space().joints() == 0) {
+    return {point_.orientation(sample), 0.0, true};
+  }
   sample.has_orientation = true;
   predictMeasurements(point_, sample);
   ResidualJacobian jacobian;

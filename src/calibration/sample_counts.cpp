@@ -25,7 +25,8 @@ void PoseCount::add(const Eigen::Vector3d& joint_position) {
 }
 
 SampleCounts::SampleCounts(const CalibrationModel& model, const EstimationOptions& options)
-    : current_threshold_(options.current_threshold),
+    : model_has_joints_(model.space().joints() > 0),
+      current_threshold_(options.current_threshold),
       useful_orientations_(options.min_joint_motion,
                            kMostOfAPose,
                            demandOf(Cycle::kJoint, model.space().poles()).advised),
@@ -48,7 +49,7 @@ void SampleCounts::add(const Sample& sample) {
   if (sample.validation) {
     return;
   }
-  if (sample.has_orientation) {
+  if (model_has_joints_ && sample.has_orientation) {
     ++orientations_;
     useful_orientations_.add(sample.joint_position);
     joint_poses_.add(sample.joint_position);

@@ -65,7 +65,7 @@ SessionProgress ProgressCounter::progress() const {
   progress.orientation_samples = orientation_samples_;
   progress.validation_samples = validation_samples_;
   progress.torque_samples = torque_samples_;
-  progress.joint_done = anyOf(identified_, space.joint(0), space.pole(0));
+  progress.joint_done = space.joints() == 0 || anyOf(identified_, space.joint(0), space.pole(0));
   progress.poles_done = anyOf(identified_, space.pole(0), space.coil(0));
   for (std::size_t j = 0; j < space.coils(); ++j) {
     progress.coil_done.push_back(anyOf(identified_, space.coil(j), space.coil(j + 1)));
@@ -87,10 +87,11 @@ Coverage ProgressCounter::coverage(std::size_t samples,
 void ProgressCounter::addCoverage(SessionProgress& progress) const {
   const ParameterSpace& space = model_.space();
   const SampleCoverage& seen = seen_.coverage();
-  progress.joint = coverage(counts_.usefulOrientations(),
-                            demandOf(Cycle::kJoint, space.poles()).advised,
-                            space.joint(0),
-                            space.pole(0));
+  progress.joint =
+      coverage(counts_.usefulOrientations(),
+               space.joints() == 0 ? 0 : demandOf(Cycle::kJoint, space.poles()).advised,
+               space.joint(0),
+               space.pole(0));
   for (std::size_t i = 0; i < seen.poles.size(); ++i) {
     progress.poles.push_back(
         coverage(seen.poles[i], kAdvisedTorquesPerPole, space.pole(i), space.pole(i + 1)));

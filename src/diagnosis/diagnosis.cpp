@@ -77,7 +77,8 @@ class Diagnostician {
       : config_(config), case_{nominal, samples} {
     result_.redescribed = nominal;
     for (const Sample& sample : samples) {
-      orientations_ += sample.has_orientation ? 1U : 0U;
+      // Without joints nothing but torques contradicts the tracker.
+      orientations_ += nominal.has_joints && sample.has_orientation ? 1U : 0U;
       torques_ += sample.has_torque ? 1U : 0U;
     }
     torques_ = nominal.hasTorqueModel() ? torques_ : 0;

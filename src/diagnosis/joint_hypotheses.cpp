@@ -145,6 +145,9 @@ Hypothesis index(std::size_t joint, const std::string& name, double tolerance) {
 std::vector<Hypothesis> jointHypotheses(const Actuator& actuator,
                                         const ManufacturingTolerance& tolerance) {
   std::vector<Hypothesis> all;
+  if (!actuator.has_joints) {
+    return all;
+  }
   for (std::size_t k = 0; k < kJoints; ++k) {
     all.push_back(sign(k, actuator.joints[k].name));
   }

@@ -110,7 +110,8 @@ class Fit {
   std::vector<Observation> observationsOf(const std::vector<Sample>& samples) const {
     std::vector<Observation> observations;
     for (std::size_t n = 0; n < samples.size(); ++n) {
-      if (stream_ != FittedStream::kTorques && samples[n].has_orientation) {
+      if (stream_ != FittedStream::kTorques && described_.actuator.has_joints &&
+          samples[n].has_orientation) {
         observations.push_back({n, Quantity::kOrientation});
       }
       if (stream_ != FittedStream::kOrientations && samples[n].has_torque &&

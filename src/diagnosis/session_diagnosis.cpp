@@ -127,7 +127,7 @@ std::vector<Diagnosis> effectsThatExplain(const CalibrationSession& session,
                                           const RefinedFit& unchanged) {
   std::vector<std::pair<double, Diagnosis>> found;
   for (const std::string& effect : effectNames()) {
-    if (session.config().effects.has(effect) ||
+    if (session.config().effects.has(effect) || !canHaveEffect(session.start().actuator, effect) ||
         (session.motion() != nullptr && !isToldByMotion(effect))) {
       continue;
     }

@@ -11,11 +11,11 @@
 
 #include "axis_scan.hpp"
 #include "effects_at.hpp"
-#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 
 namespace sac {
 namespace {
@@ -69,7 +69,7 @@ class ScannedModel {
   const ParameterSpace& space_;
   EffectsAt effects_;
   TorqueCurve curve_;
-  JointGeometry joints_;
+  ModelPoint point_;
   std::vector<Eigen::Vector3d> poles_rotor_;
   std::vector<Eigen::Vector3d> coils_stator_;
   std::vector<Scanned> scanned_poles_;
@@ -117,7 +117,7 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
       space_(problem.model->space()),
       effects_(space_, x),
       curve_(curveAt(*problem.model, effects_)),
-      joints_(jointGeometry(space_.actuatorAt(x))) {
+      point_(*problem.model, x) {
   for (std::size_t i = 0; i < space_.poles(); ++i) {
     const Eigen::Index at = space_.pole(i);
     poles_rotor_.emplace_back(space_.poleChart(i).axis(x[at], x[at + 1]));
@@ -151,10 +151,8 @@ ScannedModel::ScannedModel(const EstimationProblem& problem,
 }
 
 Eigen::Matrix3d ScannedModel::rotorStator(std::size_t observation) const {
-  const Sample& sample = (*problem_.samples)[problem_.observations[observation].sample];
-  const Eigen::Vector3d& reading = sample.joint_position;
-  const Eigen::Vector3d q = reading + effects_.readingColumns(reading) * effects_.values();
-  return rotorOrientation(joints_, q).transpose();
+  return point_.orientation((*problem_.samples)[problem_.observations[observation].sample])
+      .transpose();
 }
 
 /// Lists a torque with the axes that can change it.

@@ -47,7 +47,7 @@ void IncrementalEstimate::add(const Sample& sample) {
   }
   const std::vector<Sample> samples{sample};
   EstimationProblem problem{&model_, &samples, {}, {}, prior_};
-  if (sample.has_orientation) {
+  if (model_.observesOrientation(sample)) {
     problem.observations.push_back({0, Quantity::kOrientation});
   }
   if (sample.has_torque) {

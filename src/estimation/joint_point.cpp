@@ -7,15 +7,19 @@
 namespace sac {
 
 JointPoint::JointPoint(const ParameterSpace& space, const Eigen::VectorXd& x) {
+  const Eigen::Vector3d nominal = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < kJoints; ++k) {
-    const Eigen::Index at = space.joint(k);
+    const bool is_real = k < space.joints();
+    const double* const at = is_real ? x.data() + space.joint(k) : nominal.data();
+    const AxisChart chart =
+        is_real ? space.jointChart(k) : AxisChart::aroundAxis(space.nominal().joints[k].axis);
     Joint& joint = joints_[k];
-    space.jointChart(k).evaluate(x[at + 1], x[at + 2], joint.axis, joint.d_axis);
+    chart.evaluate(at[1], at[2], joint.axis, joint.d_axis);
     joint.along = joint.axis * joint.axis.transpose();
     joint.across = Eigen::Matrix3d::Identity() - joint.along;
     joint.crossed = skew(joint.axis);
     joint.d_crossed = joint.crossed * joint.d_axis;
-    joint.offset = space.nominal().joints[k].offset + x[at];
+    joint.offset = space.nominal().joints[k].offset + at[0];
   }
 }
 

@@ -21,7 +21,7 @@ class JointPoint {
   Eigen::Matrix3d orientation(const Eigen::Vector3d& q) const;
 
   /// The same, and ∂ξ/∂(offset, u, v of each joint), where R becomes e^{ξ̂}R (doc/method.md, Joint
-  /// (8), (12–14)).
+  /// (8), (12–14)); without joints they are not coordinates, but those of freeRotorJoints().
   struct Linearized {
     Eigen::Matrix3d R_stator_rotor;
     Eigen::Matrix<double, 3, kCoordinates> d_coordinates;

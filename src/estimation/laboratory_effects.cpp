@@ -41,6 +41,24 @@ bool isStatedBy(const Actuator& nominal, const EffectKind& kind) {
          relativeTableStddev(nominal.torque_curve->table) > 0.0;
 }
 
+/// Without joints the tracker's orientation is no observation: torques feel what is wrong with it.
+LaboratoryEffect::ActsOn actsOn(const EffectKind& kind, const Actuator& nominal) {
+  const bool is_of_reading =
+      !nominal.has_joints && kind.acts_on == LaboratoryEffect::ActsOn::kOrientations;
+  return is_of_reading ? LaboratoryEffect::ActsOn::kTorques : kind.acts_on;
+}
+
+bool needsTorques(const EffectKind& kind, const Actuator& nominal) {
+  const LaboratoryEffect::ActsOn acts_on = actsOn(kind, nominal);
+  return acts_on == LaboratoryEffect::ActsOn::kTorques ||
+         acts_on == LaboratoryEffect::ActsOn::kMotion;
+}
+
+/// What acts on everything does so by the readings of joints.
+bool needsJoints(const EffectKind& kind) {
+  return kind.acts_on == LaboratoryEffect::ActsOn::kEverything;
+}
+
 const std::vector<EffectKind>& kinds() {
   static const std::vector<EffectKind> kinds =
       kindsOf(static_cast<const effects::Registered*>(nullptr));
@@ -100,6 +118,12 @@ std::vector<std::string> modelledEffects(const EffectSelection& selection) {
   return names;
 }
 
+bool canHaveEffect(const Actuator& actuator, const std::string& effect) {
+  const EffectKind& kind = kindOf(effect);
+  return (actuator.has_joints || !needsJoints(kind)) &&
+         (actuator.hasTorqueModel() || !needsTorques(kind, actuator));
+}
+
 std::string describe(const EffectSelection& selection) {
   std::string names;
   for (const std::string& name : modelledEffects(selection)) {
@@ -124,20 +148,21 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
     if (!selection.has(kind.name) && !isStatedBy(nominal, kind)) {
       continue;
     }
-    const bool needs_torques = kind.acts_on == LaboratoryEffect::ActsOn::kTorques ||
-                               kind.acts_on == LaboratoryEffect::ActsOn::kMotion;
-    if (needs_torques && !nominal.hasTorqueModel()) {
+    if (needsTorques(kind, nominal) && !nominal.hasTorqueModel()) {
       if (!selection[kind.name]) {
         continue;  // stated for all, but nothing here feels it
       }
       throw ConfigError(std::string("effects.") + kind.name +
                         ": the description has no poles, coils or torque curve.");
     }
+    if (needsJoints(kind) && !nominal.has_joints) {
+      throw ConfigError(std::string("effects.") + kind.name + ": the description has no joints.");
+    }
     const std::shared_ptr<const LaboratoryEffect> effect = kind.make(nominal, selection);
     const double stated = selection.stddev(kind.name);
     effects_.push_back({kind.name,
                         kind.unit,
-                        kind.acts_on,
+                        actsOn(kind, nominal),
                         kind.belongs_to,
                         size_,
                         effect,

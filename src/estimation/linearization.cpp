@@ -37,12 +37,21 @@ Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
 
 Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
                                                const ModelPoint& point,
-                                               ResidualJacobian* jacobian) const {
+                                               LinearizedObservation* linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
-  return what.quantity == Quantity::kOrientation
-             ? point.orientationResidual(sample, jacobian)
-             : point.torqueResidual(sample, excitations(observation), jacobian);
+  ResidualJacobian* const jacobian = linear == nullptr ? nullptr : &linear->jacobian;
+  if (what.quantity == Quantity::kTorque) {
+    Eigen::Matrix3d* const d_reading = linear == nullptr ? nullptr : &linear->d_reading;
+    return point.torqueResidual(sample, excitations(observation), jacobian, d_reading);
+  }
+  const Eigen::Vector3d residual = point.orientationResidual(sample, jacobian);
+  for (std::size_t k = 0; linear != nullptr && k < kJoints; ++k) {
+    // A joint sensor's error acts as an offset of that joint does.
+    linear->d_reading.col(static_cast<Eigen::Index>(k)) =
+        linear->jacobian.col(problem_.model->space().joint(k));
+  }
+  return residual;
 }
 
 void ObservationEvaluator::linearize(std::size_t observation,
@@ -50,7 +59,7 @@ void ObservationEvaluator::linearize(std::size_t observation,
                                      LinearizedObservation& out) const {
   const ParameterSpace& space = problem_.model->space();
   const bool is_torque = problem_.observations[observation].quantity == Quantity::kTorque;
-  out.residual = evaluate(observation, point, &out.jacobian);
+  out.residual = evaluate(observation, point, &out);
   out.columns.clear();
   const auto take = [&out](Eigen::Index first, Eigen::Index last) {
     const Eigen::Index all = out.jacobian.cols();
@@ -83,15 +92,10 @@ Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
                                             const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
-  const ParameterSpace& space = problem_.model->space();
   const double stddev = this->stddev(observation);
-  Eigen::Matrix3d noise = stddev * stddev * Eigen::Matrix3d::Identity();
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    // A joint sensor's error acts as an offset of that joint does.
-    const double joint_stddev = sample.joint_stddev[static_cast<Eigen::Index>(k)];
-    const Eigen::Vector3d effect = joint_stddev * linear.jacobian.col(space.joint(k));
-    noise += effect * effect.transpose();
-  }
+  const Eigen::Matrix3d of_reading = linear.d_reading * sample.joint_stddev.asDiagonal();
+  Eigen::Matrix3d noise = of_reading * of_reading.transpose();
+  noise.diagonal().array() += stddev * stddev;
   return noise;
 }
 
@@ -112,14 +116,9 @@ Eigen::Matrix3d ObservationEvaluator::ownReadingErrors(std::size_t observation,
                                                        const LinearizedObservation& linear) const {
   const Sample& sample = (*problem_.samples)[problem_.observations[observation].sample];
   const Eigen::Vector3d shared = sharedJointStddev(sample);
-  Eigen::Matrix3d errors;
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const double variance = std::pow(sample.joint_stddev[column], 2) - std::pow(shared[column], 2);
-    errors.col(column) =
-        std::sqrt(std::max(variance, 0.0)) * linear.jacobian.col(problem_.model->space().joint(k));
-  }
-  return errors;
+  const Eigen::Vector3d own =
+      (sample.joint_stddev.cwiseAbs2() - shared.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  return linear.d_reading * own.asDiagonal();
 }
 
 Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation,
@@ -134,13 +133,8 @@ Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(
     std::size_t observation, const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
-  const Eigen::Vector3d joint_stddev = sharedJointStddev(sample);
   Eigen::Matrix<double, 3, 6> result = Eigen::Matrix<double, 3, 6>::Zero();
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    result.col(column) =
-        joint_stddev[column] * linear.jacobian.col(problem_.model->space().joint(k));
-  }
+  result.leftCols<3>() = linear.d_reading * sharedJointStddev(sample).asDiagonal();
   if (what.quantity == Quantity::kTorque) {
     result.rightCols<3>() = sample.torque_shared_stddev * Eigen::Matrix3d::Identity();
   }

@@ -33,6 +33,11 @@ Eigen::Matrix3d offsetColumns(const JointPoint::Linearized& linear, const Eigen:
   return columns;
 }
 
+/// ∂ξ/∂values of a rotation vector v that acts by its inverse, e^{−v̂}, and from the left.
+Eigen::Matrix3Xd inverseColumns(const EffectRotation& rotation) {
+  return -leftJacobian(-rotation.vector) * rotation.d_vector;
+}
+
 /// One excited coil while the torques of its pairs are summed up.
 struct CoilTerm {
   std::size_t coil = 0;
@@ -49,7 +54,14 @@ using CoilTerms = boost::container::small_vector<CoilTerm, 8>;
 struct ModelPoint::Parts {
   Parts(const CalibrationModel& model, const Eigen::VectorXd& x);
 
+  bool hasJoints() const { return space.joints() > 0; }
   Eigen::Matrix3d nominalTurn(const Eigen::Vector3d& reading) const;
+  Eigen::Matrix3d turnedLeft(const Eigen::Vector3d& reading) const;
+  Eigen::Matrix3d turnedRight(const Eigen::Matrix3d& R_stator_rotor) const;
+  Eigen::Matrix3Xd readingColumns(const Eigen::Matrix3d& d_rotation,
+                                  const Eigen::Matrix3d& d_offsets,
+                                  const Eigen::Matrix3d& R_stator_rotor,
+                                  const Eigen::Matrix3Xd& d_reading) const;
   Eigen::Vector3d corrected(const Eigen::Vector3d& reading, const Eigen::Matrix3Xd& columns) const;
   CoilTerms coilTerms(Excitations excitations, const Eigen::Matrix3d& R_rotor_stator) const;
   Eigen::Vector3d pairTorques(const CoilTerms& terms) const;
@@ -103,6 +115,32 @@ ModelPoint::Parts::Parts(const CalibrationModel& model, const Eigen::VectorXd& x
 Eigen::Matrix3d ModelPoint::Parts::nominalTurn(const Eigen::Vector3d& reading) const {
   const auto& map = space.nominal().orientation_map;
   return map ? rotationExp(map->mean(reading)) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
+/// What turns the rotor in the stator beside the reading: of joints the map, of a tracker the
+/// inverse of its registration.
+Eigen::Matrix3d ModelPoint::Parts::turnedLeft(const Eigen::Vector3d& reading) const {
+  return hasJoints() ? nominalTurn(reading) : Eigen::Matrix3d(tracker.rotation.transpose());
+}
+
+/// The rotor where its marker is told.
+Eigen::Matrix3d ModelPoint::Parts::turnedRight(const Eigen::Matrix3d& R_stator_rotor) const {
+  return hasJoints() ? R_stator_rotor
+                     : Eigen::Matrix3d(R_stator_rotor * marker.rotation.transpose());
+}
+
+/// ∂residual/∂values of the effects on the orientation. `d_rotation`: by ξ of the rotor;
+/// `d_offsets`: by offsets of the joints; `d_reading`: ∂q/∂values.
+Eigen::Matrix3Xd ModelPoint::Parts::readingColumns(const Eigen::Matrix3d& d_rotation,
+                                                   const Eigen::Matrix3d& d_offsets,
+                                                   const Eigen::Matrix3d& R_stator_rotor,
+                                                   const Eigen::Matrix3Xd& d_reading) const {
+  if (hasJoints()) {
+    return d_offsets * d_reading;
+  }
+  // e^{−(m + δ)^} = e^{−m̂} e^{−(J_l(m) δ)^}, which turns R from the right.
+  return d_rotation *
+         (inverseColumns(tracker) - R_stator_rotor * leftJacobian(marker.vector) * marker.d_vector);
 }
 
 /// Joint angles at a reading. `columns`: ∂ of them by the values of the effects.
@@ -209,23 +247,32 @@ Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
   return y;
 }
 
+Eigen::Matrix3d ModelPoint::orientation(const Sample& sample) const {
+  const Parts& at = *parts_;
+  const Eigen::Vector3d& reading = sample.joint_position;
+  const Eigen::Vector3d q = at.corrected(reading, at.effects.readingColumns(reading));
+  return at.turnedRight(at.turnedLeft(reading) * at.joints.orientation(q));
+}
+
 Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
                                            Excitations excitations,
-                                           ResidualJacobian* jacobian) const {
+                                           ResidualJacobian* jacobian,
+                                           Eigen::Matrix3d* d_reading) const {
   const Parts& at = *parts_;
-  const Eigen::Matrix3Xd d_reading = at.effects.readingColumns(sample.joint_position);
-  const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
-  const Eigen::Matrix3d R_turn = at.nominalTurn(sample.joint_position);
   if (jacobian == nullptr) {
-    const Eigen::Matrix3d R_rotor_stator = (R_turn * at.joints.orientation(q)).transpose();
+    const Eigen::Matrix3d R_rotor_stator = orientation(sample).transpose();
     const Eigen::Vector3d residual = at.torqueInRotor(sample.torque, nullptr) -
                                      at.pairTorques(at.coilTerms(excitations, R_rotor_stator));
     return at.effects.empty() ? residual
                               : Eigen::Vector3d(residual - at.effects.loadColumns(R_rotor_stator) *
                                                                at.effects.values());
   }
+  const Eigen::Matrix3Xd d_corrections = at.effects.readingColumns(sample.joint_position);
+  const Eigen::Vector3d q = at.corrected(sample.joint_position, d_corrections);
+  const Eigen::Matrix3d R_left = at.turnedLeft(sample.joint_position);
   const JointPoint::Linearized linear = at.joints.linearized(q);
-  const Eigen::Matrix3d R_rotor_stator = (R_turn * linear.R_stator_rotor).transpose();
+  const Eigen::Matrix3d R_stator_rotor = at.turnedRight(R_left * linear.R_stator_rotor);
+  const Eigen::Matrix3d R_rotor_stator = R_stator_rotor.transpose();
   CoilTerms terms = at.coilTerms(excitations, R_rotor_stator);
   const Eigen::Matrix3Xd d_load = at.effects.loadColumns(R_rotor_stator);
   Eigen::Matrix3Xd d_effects = -d_load;
@@ -240,10 +287,19 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
     d_rotation += d_stator * skew(term.axis->axis);
     jacobian->middleCols<2>(at.space.coil(term.coil)) = d_stator * term.axis->d_axis;
   }
-  d_rotation = (d_rotation * R_turn).eval();
-  jacobian->leftCols<JointPoint::kCoordinates>() = d_rotation * linear.d_coordinates;
+  // Of a reading's errors those of joints act as offsets do, those of a tracker turn what it reads.
+  const Eigen::Matrix3d d_left = d_rotation * R_left;
+  const Eigen::Matrix3d d_offsets = at.hasJoints() ? offsetColumns(linear, d_left) : d_left;
+  if (at.hasJoints()) {
+    jacobian->leftCols<JointPoint::kCoordinates>() = d_left * linear.d_coordinates;
+  }
+  if (d_reading != nullptr) {
+    *d_reading = d_offsets;
+  }
   if (!at.effects.empty()) {
-    at.effects.write(d_effects + offsetColumns(linear, d_rotation) * d_reading, *jacobian);
+    at.effects.write(
+        d_effects + at.readingColumns(d_rotation, d_offsets, R_stator_rotor, d_corrections),
+        *jacobian);
   }
   return measured - torque;
 }

@@ -71,7 +71,9 @@ std::string combinationName(const ParameterSpace& space, const Eigen::VectorXd& 
 
 Eigen::MatrixXd statorRotations(const ParameterSpace& space, const Eigen::VectorXd& x) {
   Eigen::MatrixXd change = Eigen::MatrixXd::Zero(space.size(), 3);
-  change.topRows<9>() = jointRotations(space, x);
+  if (space.joints() > 0) {
+    change.topRows<9>() = jointRotations(space, x);
+  }
   for (std::size_t j = 0; j < space.coils(); ++j) {
     const Eigen::Index at = space.coil(j);
     Eigen::Vector3d axis;
@@ -108,8 +110,9 @@ std::vector<OpenDirection> nameOpenDirections(const ParameterSpace& space,
     const Eigen::MatrixXd angles = rotations.completeOrthogonalDecomposition().pseudoInverse();
     const Eigen::MatrixXd covariance = angles * belief.covariance * angles.transpose();
     for (Eigen::Index k = 0; k < rotations.cols(); ++k) {
-      named.push_back({std::string("a common rotation of joints and coils about stator ") +
-                           kAxes[static_cast<std::size_t>(k)],
+      named.push_back({std::string(space.joints() > 0 ? "a common rotation of joints and coils"
+                                                      : "a common rotation of the coils") +
+                           " about stator " + kAxes[static_cast<std::size_t>(k)],
                        std::sqrt(covariance(k, k)),
                        rotations.col(k).normalized()});
     }

@@ -47,7 +47,9 @@ ParameterSpace::ParameterSpace(Actuator nominal, const EffectSelection& effects)
   validate(nominal_);
   for (JointAxis& joint : nominal_.joints) {
     joint.axis.normalize();
-    joint_charts_.push_back(AxisChart::aroundAxis(joint.axis));
+    if (nominal_.has_joints) {
+      joint_charts_.push_back(AxisChart::aroundAxis(joint.axis));
+    }
   }
   for (const PoleAxis& pole : nominal_.poles) {
     pole_charts_.push_back(AxisChart::aroundAngles(pole.polar, pole.azimuth));
@@ -107,7 +109,7 @@ std::string ParameterSpace::unit(Eigen::Index parameter) const {
 
 Actuator ParameterSpace::actuatorAt(const Eigen::VectorXd& x) const {
   Actuator actuator = nominal_;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < joints(); ++k) {
     const Eigen::Index at = joint(k);
     actuator.joints[k].offset += x[at];
     actuator.joints[k].axis = joint_charts_[k].axis(x[at + 1], x[at + 2]).normalized();
@@ -132,7 +134,7 @@ Eigen::VectorXd ParameterSpace::coordinatesOf(const Actuator& actuator) const {
                     std::to_string(coils()) + ".");
   }
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size_);
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < joints(); ++k) {
     x[joint(k)] = actuator.joints[k].offset - nominal_.joints[k].offset;
     x.segment<2>(joint(k) + 1) = joint_charts_[k].coordinates(actuator.joints[k].axis.normalized());
   }
@@ -150,7 +152,7 @@ Eigen::VectorXd ParameterSpace::coordinatesOf(const Actuator& actuator) const {
 Eigen::VectorXd ParameterSpace::reportedValues(const Eigen::VectorXd& x) const {
   const Actuator actuator = actuatorAt(x);
   Eigen::VectorXd values = x;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; k < joints(); ++k) {
     values[joint(k)] = actuator.joints[k].offset;
   }
   for (std::size_t i = 0; i < poles(); ++i) {

@@ -86,6 +86,11 @@ class PoseUncertainty {
     const Eigen::Index joints = space().pole(0);
     const Eigen::Index axes = space().size() - joints;
     R_rotor_stator_ = pose.R_stator_rotor.transpose();
+    if (joints == 0) {
+      moved_covariance_.topRows<3>().setZero();
+      moved_covariance_.leftCols<3>().setZero();
+      return 0.0;
+    }
     // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
     point_.orientationResidual(pose, &jacobian_);
     const Eigen::Matrix<double, 3, 9> J = jacobian_.leftCols<9>();

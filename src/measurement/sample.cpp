@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 
 namespace sac {
@@ -69,6 +70,18 @@ bool isRotation(const Eigen::Matrix3d& R) {
 }
 
 }  // namespace
+
+Sample trackedSample(Sample sample, double default_stddev) {
+  SampleCheck(sample).require(sample.has_orientation,
+                              "it has no orientation, which alone tells where a rotor without "
+                              "joints is.");
+  sample.joint_position = freeRotorAngles(sample.R_stator_rotor);
+  if (sample.joint_stddev.isZero(0.0)) {
+    const bool is_stated = sample.orientation_stddev > 0.0;
+    sample.joint_stddev.setConstant(is_stated ? sample.orientation_stddev : default_stddev);
+  }
+  return sample;
+}
 
 void validate(const Sample& sample, std::size_t coils) {
   const SampleCheck check(sample);

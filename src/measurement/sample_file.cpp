@@ -28,13 +28,15 @@ Eigen::Matrix3d rotation(const YamlMap& map, const std::string& key) {
   return q.normalized().toRotationMatrix();
 }
 
-Sample readSample(const YamlMap& map, const DefaultStddevs& defaults) {
+Sample readSample(const YamlMap& map, const DefaultStddevs& defaults, bool has_joints) {
   Sample sample;
-  sample.joint_position = vector3(map, "joint_position", ValueRange::finite("rad"));
-  if (map.has("joint_stddev")) {
-    sample.joint_stddev = vector3(map, "joint_stddev", ValueRange::nonNegative("rad"));
+  if (has_joints) {
+    sample.joint_position = vector3(map, "joint_position", ValueRange::finite("rad"));
+    if (map.has("joint_stddev")) {
+      sample.joint_stddev = vector3(map, "joint_stddev", ValueRange::nonNegative("rad"));
+    }
   }
-  sample.has_orientation = map.has("orientation_xyzw");
+  sample.has_orientation = !has_joints || map.has("orientation_xyzw");
   if (sample.has_orientation) {
     sample.R_stator_rotor = rotation(map, "orientation_xyzw");
     sample.orientation_stddev =
@@ -60,7 +62,7 @@ Sample readSample(const YamlMap& map, const DefaultStddevs& defaults) {
 
 }  // namespace
 
-std::vector<Sample> loadSamples(const std::string& path, std::size_t coils) {
+std::vector<Sample> loadSamples(const std::string& path, std::size_t coils, bool has_joints) {
   const YamlMap file = YamlMap::load(path);
   const DefaultStddevs defaults{
       file.number("orientation_stddev", ValueRange::nonNegative("rad"), 0.0),
@@ -68,7 +70,7 @@ std::vector<Sample> loadSamples(const std::string& path, std::size_t coils) {
   file.text("provenance", "");
   std::vector<Sample> samples;
   for (const YamlMap& entry : file.maps("samples")) {
-    samples.push_back(readSample(entry, defaults));
+    samples.push_back(readSample(entry, defaults, has_joints));
     samples.back().id = static_cast<std::uint32_t>(samples.size());
   }
   file.finish();

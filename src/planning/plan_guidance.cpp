@@ -81,7 +81,8 @@ std::string excitationsInWords(const std::vector<CoilPattern>& patterns) {
 
 std::string planStep(const std::vector<PlannedPose>& poses,
                      const std::vector<Sample>& samples,
-                     double current_threshold) {
+                     double current_threshold,
+                     bool has_joints) {
   std::size_t measured = 0;
   const PlannedPose* next = nullptr;
   std::vector<CoilPattern> next_patterns;
@@ -101,9 +102,10 @@ std::string planStep(const std::vector<PlannedPose>& poses,
   const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
       "Go on with the plan, %zu of %zu poses are measured: turn the rotor to "
-      "joints %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture",
+      "%s %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture",
       measured,
       poses.size(),
+      has_joints ? "joints" : "turns about x, y, z of",
       q.x(),
       q.y(),
       q.z(),

@@ -1,8 +1,10 @@
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 
@@ -46,7 +48,11 @@ std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
 }
 
 bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position) {
-  return ((sample.joint_position - joint_position).array().abs() <= kPoseTolerance).all();
+  const auto is_near = [&](Eigen::Index k) {
+    const double apart = sample.joint_position[k] - joint_position[k];
+    return std::abs(std::remainder(apart, 2.0 * kPi)) <= kPoseTolerance;
+  };
+  return is_near(0) && is_near(1) && is_near(2);
 }
 
 CaptureFlaw captureFlaw(const Sample& sample,

@@ -11,6 +11,9 @@ namespace {
 
 void validateRequest(const PlanningProblem& problem) {
   const Cycle cycle = problem.request.cycle;
+  if (cycle == Cycle::kJoint && problem.model->space().joints() == 0) {
+    throw ConfigError("cycle: the actuator description has no joints to plan for.");
+  }
   if (cycle != Cycle::kPoles && cycle != Cycle::kCoil) {
     return;
   }

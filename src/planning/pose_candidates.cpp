@@ -60,7 +60,8 @@ class Linearizer {
     EstimationProblem result;
     result.model = problem.model;
     result.samples = &samples;
-    result.observations = selectObservations(samples, problem.request, problem.estimation);
+    result.observations =
+        selectObservations(problem.model->space(), samples, problem.request, problem.estimation);
     result.prior = problem.state.belief;
     return result;
   }
@@ -88,7 +89,8 @@ std::vector<std::size_t> usableCoils(const PlanningProblem& problem) {
 
 bool measuresOrientation(const PlanningProblem& problem, const PosePlanOptions& options) {
   return problem.request.cycle == Cycle::kJoint ||
-         (problem.request.cycle == Cycle::kRefine && options.tracker_on);
+         (problem.model->space().joints() > 0 && problem.request.cycle == Cycle::kRefine &&
+          options.tracker_on);
 }
 
 /// Poses with the coils that may be excited there, not linearised yet.
@@ -211,6 +213,11 @@ std::vector<Sample> visitSamples(const PlanningProblem& problem,
   sample.joint_position = joint_position;
   sample.joint_stddev = options.joint_stddev;
   sample.orientation_stddev = options.orientation_stddev;
+  if (problem.model->space().joints() == 0) {
+    sample.has_orientation = true;
+    sample.R_stator_rotor = rotorOrientation(jointGeometry(freeRotorJoints()), joint_position);
+    sample.joint_stddev.setConstant(options.orientation_stddev);
+  }
   sample.torque_stddev = options.torque_stddev;
   const auto all_coils = static_cast<Eigen::Index>(problem.model->space().coils());
   sample.current = Eigen::VectorXd::Zero(all_coils);

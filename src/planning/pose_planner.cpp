@@ -167,7 +167,9 @@ class Planner {
       }
     }
     task.reported = reportedDerivative(space, problem_.state.belief.x, coordinates_);
-    task.joint_variance = options_.joint_stddev.cwiseAbs2();
+    if (space.joints() > 0) {
+      task.joint_variance = options_.joint_stddev.cwiseAbs2();
+    }
     task.patterns_per_pose = options_.coils_per_pose;
     task.coils_per_pattern = coilsPerPattern(options_);
     task.minimum_spacing = options_.minimum_spacing;
@@ -236,6 +238,7 @@ class Planner {
     }
   }
 
+  bool hasJoints() const { return problem_.model->space().joints() > 0; }
   bool isTimeUp() const { return options_.is_time_up && options_.is_time_up(); }
 
   /// Runs the cycle on noise-free samples of what is held and what is selected.
@@ -297,7 +300,7 @@ class Planner {
     for (const std::size_t n : order) {
       const PoseCandidate& candidate = candidates_[chosen_[n].candidate];
       plan.torque_samples += chosen_[n].patterns.size();
-      plan.orientation_samples += candidate.orientation ? 1 : 0;
+      plan.orientation_samples += candidate.orientation || !hasJoints() ? 1 : 0;
       plan.poses.push_back(planned(candidate, chosen_[n], task_.has_value()));
     }
   }
@@ -339,8 +342,9 @@ class Planner {
         1e3 * plan.worst_stddev);
     if (plan.stddev_bound) {
       text += format(
-          " That is within %.1f %% of what any plan of as many poses and torques could reach.",
-          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)));
+          " That is within %.1f %% of what any plan of as many poses and torques could reach%s.",
+          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)),
+          hasJoints() ? "" : " with a tracker that makes no error");
     }
     if (options_.wanted_stddev > 0.0 && !plan.reached_wanted) {
       text += format(" About %zu poses are needed for %.3g mrad.",

@@ -15,7 +15,7 @@ Eigen::MatrixXd cramerRaoBound(const CalibrationModel& model,
   EstimationProblem problem;
   problem.model = &model;
   problem.samples = &samples;
-  problem.observations = selectObservations(samples, request, options);
+  problem.observations = selectObservations(model.space(), samples, request, options);
   problem.prior.x = truth;
   problem.prior.covariance = Eigen::MatrixXd::Zero(truth.size(), truth.size());
   const ObservationEvaluator evaluator(problem, options);

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/model_point.hpp"
 #include "support/error_message.hpp"
 #include "support/numeric_jacobian.hpp"
 
@@ -57,6 +58,86 @@ TEST(LaboratoryEffects, JacobiansOfAllAgreeWithNumericOnes) {
     for (Eigen::Index p = 0; p < size; ++p) {
       EXPECT_TRUE(columns.count(p) > 0 || linear.jacobian.col(p).isZero(0.0)) << p;
     }
+  }
+}
+
+/// A rotor without joints at coordinates with all effects that it can have.
+class LevitatedEffects : public ::testing::Test {
+ protected:
+  static EffectSelection effects() {
+    EffectSelection selection = only(effectNames());
+    selection["tilt_cross_axis"] = false;
+    selection["encoder_harmonics"] = false;
+    return selection;
+  }
+
+  LevitatedEffects() {
+    for (Sample& sample :
+         scenarios::levitatedSession(scenarios::reactionSphere(), 6, 3, 1e-3, 1e-3, generator_)) {
+      samples_.push_back(trackedSample(sample, 0.0));
+    }
+    samples_.back().current[0] += 1.5;
+    for (double& value : x_) {
+      value = scenarios::uniformNoise(0.02, generator_).x();
+    }
+  }
+
+  scenarios::Generator generator_{12};
+  CalibrationModel model_{ParameterSpace(scenarios::reactionSphere(), effects())};
+  std::vector<Sample> samples_;
+  Eigen::VectorXd x_ = Eigen::VectorXd(model_.space().size());
+};
+
+TEST_F(LevitatedEffects, JacobiansOfTorquesAgreeWithNumericOnes) {
+  for (const Sample& sample : samples_) {
+    const std::vector<Excitation> excitations = excitedCoils(sample, 0.05);
+    ResidualJacobian jacobian;
+    const Eigen::Vector3d residual = model_.torqueResidual(sample, excitations, x_, &jacobian);
+    EXPECT_LT((residual - model_.torqueResidual(sample, excitations, x_)).norm(), 1e-14);
+    const Eigen::MatrixXd numeric = numericJacobian(
+        [&](const Eigen::VectorXd& at) {
+          return Eigen::VectorXd(model_.torqueResidual(sample, excitations, at));
+        },
+        x_);
+    EXPECT_LT((jacobian - numeric).cwiseAbs().maxCoeff(), 2e-7);
+  }
+}
+
+TEST_F(LevitatedEffects, ErrorsOfTheReadingTurnTheMeasuredOrientation) {
+  const ModelPoint point(model_, x_);
+  for (const Sample& sample : samples_) {
+    const std::vector<Excitation> excitations = excitedCoils(sample, 0.05);
+    ResidualJacobian jacobian;
+    Eigen::Matrix3d d_reading;
+    point.torqueResidual(sample, excitations, &jacobian, &d_reading);
+    const Eigen::MatrixXd numeric = numericJacobian(
+        [&](const Eigen::VectorXd& error) {
+          Sample turned = sample;
+          turned.R_stator_rotor = rotationExp(error) * sample.R_stator_rotor;
+          return Eigen::VectorXd(point.torqueResidual(trackedSample(turned, 0.0), excitations));
+        },
+        Eigen::Vector3d::Zero());
+    EXPECT_LT((d_reading - numeric).cwiseAbs().maxCoeff(), 2e-7);
+  }
+}
+
+TEST_F(LevitatedEffects, TheRotorLiesBetweenTheRegistrations) {
+  const ModelPoint point(model_, x_);
+  const EffectLayout& layout = model_.space().effects();
+  const auto rotation = [&](const char* effect) {
+    return rotationExp(x_.segment<3>(model_.space().effect() + layout.first(effect)));
+  };
+  const Eigen::Matrix3d measured = rotation("tracker_registration") *
+                                   point.orientation(samples_.front()) *
+                                   rotation("marker_registration");
+  EXPECT_LT((measured - samples_.front().R_stator_rotor).norm(), 1e-14);
+}
+
+TEST_F(LevitatedEffects, ThoseOfJointSensorsAreRefused) {
+  for (const char* effect : {"tilt_cross_axis", "encoder_harmonics"}) {
+    EXPECT_EQ(errorMessage<ConfigError>(
+                  [&] { ParameterSpace(scenarios::reactionSphere(), only({effect})); }),
+              std::string("effects.") + effect + ": the description has no joints.");
   }
 }
 

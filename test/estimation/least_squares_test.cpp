@@ -29,7 +29,7 @@ class LeastSquares : public ::testing::Test {
     samples_ = scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
     problem_.model = &model_;
     problem_.samples = &samples_;
-    problem_.observations = selectObservations(samples_, request, options_);
+    problem_.observations = selectObservations(model_.space(), samples_, request, options_);
     problem_.free = selectCoordinates(model_.space(), samples_, request, options_);
     problem_.prior = nominalState(model_.space(), {}).belief;
     whitening_.assign(problem_.observations.size(),

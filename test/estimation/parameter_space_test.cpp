@@ -24,6 +24,20 @@ TEST(ParameterSpace, CountsAndNamesEveryParameter) {
   EXPECT_EQ(space.name(72), "coil_24/azimuth");
 }
 
+TEST(ParameterSpace, WithoutJointsItBeginsWithThePoles) {
+  const ParameterSpace space(scenarios::reactionSphere());
+  EXPECT_EQ(space.joints(), 0U);
+  EXPECT_EQ(space.size(), 56);
+  EXPECT_EQ(space.name(0), "pole_1/polar");
+  EXPECT_EQ(space.name(16), "coil_1/polar");
+  EXPECT_EQ(space.name(55), "coil_20/azimuth");
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(space.size(), -0.02, 0.02);
+  const Actuator moved = space.actuatorAt(x);
+  EXPECT_FALSE(moved.has_joints);
+  EXPECT_EQ(moved.joints[0].axis, Eigen::Vector3d::UnitX());
+  EXPECT_LT((space.coordinatesOf(moved) - x).norm(), 1e-14);
+}
+
 TEST(ParameterSpace, CoordinatesAndActuatorsAreInverse) {
   const ParameterSpace space(scenarios::paperNominal());
   const Actuator truth = scenarios::paperTruth();

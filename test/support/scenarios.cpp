@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac::scenarios {
 namespace {
@@ -264,6 +267,45 @@ std::vector<Sample> randomSession(const Actuator& truth, Generator& generator) {
                                                    uniformStddev(kTorqueNoise),
                                                    generator);
     samples.insert(samples.end(), more.begin(), more.end());
+  }
+  return samples;
+}
+
+Actuator reactionSphere() {
+  return loadActuator(SOURCE_DIR "/config/reaction_sphere.yaml");
+}
+
+std::vector<Sample> levitatedSession(const Actuator& truth,
+                                     std::size_t poses,
+                                     std::size_t coils_per_pose,
+                                     double orientation,
+                                     double torque,
+                                     Generator& generator) {
+  const TorqueCurve curve(*truth.torque_curve);
+  const TorqueGeometry geometry = torqueGeometry(truth);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double stddev) -> Eigen::Vector3d {
+    return {stddev * normal(generator), stddev * normal(generator), stddev * normal(generator)};
+  };
+  std::vector<Eigen::Index> coils(truth.coils.size());
+  std::iota(coils.begin(), coils.end(), 0);
+  std::vector<Sample> samples;
+  for (const Eigen::Vector3d& q : randomPoses(poses, 0.5, generator)) {
+    const Eigen::Matrix3d R = rotorOrientation(jointGeometry(truth.joints), q);
+    Sample sample;
+    sample.has_orientation = true;
+    sample.R_stator_rotor = rotationExp(noise(orientation)) * R;
+    sample.orientation_stddev = orientation;
+    sample.has_torque = true;
+    sample.torque_stddev = torque;
+    std::shuffle(coils.begin(), coils.end(), generator);
+    for (std::size_t n = 0; n < coils_per_pose; ++n) {
+      sample.id = static_cast<std::uint32_t>(samples.size() + 1);
+      sample.current =
+          kCurrent * Eigen::VectorXd::Unit(static_cast<Eigen::Index>(coils.size()), coils[n]);
+      sample.torque = rotorTorque(curve, geometry, R, sample.current) + noise(torque);
+      samples.push_back(sample);
+    }
   }
   return samples;
 }

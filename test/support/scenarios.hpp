@@ -85,6 +85,19 @@ std::vector<Sample> heldOutSession();
 /// The same numbers of samples at random poses, whether the coils reach a pole there or not.
 std::vector<Sample> randomSession(const Actuator& truth, Generator& generator);
 
+/// The shipped rotor without joints: 8 poles, 20 coils.
+Actuator reactionSphere();
+
+/// Torques of so many coils, each alone at 2 A, at poses within ±0.5 rad of tilt. The tracker, with
+/// normal noise of `orientation` [rad], measures each pose once: its samples share the orientation.
+/// Torques have normal noise of `torque` [N·m]; both are stated. Ids count from 1.
+std::vector<Sample> levitatedSession(const Actuator& truth,
+                                     std::size_t poses,
+                                     std::size_t coils_per_pose,
+                                     double orientation,
+                                     double torque,
+                                     Generator& generator);
+
 /// State of an actuator whose joints are known exactly and the rest is nominal: what the paper
 /// assumes before level 2.
 CalibrationState exactJoints(const ParameterSpace& space,

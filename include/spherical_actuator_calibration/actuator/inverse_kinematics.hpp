@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 
@@ -19,5 +20,8 @@ std::optional<Eigen::Vector3d> jointAngles(const JointGeometry& joints,
 /// ±π/2, the others within ±π [rad]. Where q₂ is ±π/2 only the sum or difference of the others is
 /// determined.
 Eigen::Vector3d freeRotorAngles(const Eigen::Matrix3d& R_stator_rotor);
+/// The same of a quaternion that need not be normalised. Throws DataError unless its norm is 1 to
+/// 1e-3.
+Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor);
 
 }  // namespace sac

@@ -11,8 +11,9 @@ namespace sac {
 
 /// Observations that serve a cycle: held-out samples never do. For kPoles and kCoil those with only
 /// the requested coil excited; for kJoint those with an orientation; for kRefine both, with any
-/// current pattern.
-std::vector<Observation> selectObservations(const std::vector<Sample>& samples,
+/// current pattern. Orientations of a rotor without joints are none, but readings.
+std::vector<Observation> selectObservations(const ParameterSpace& space,
+                                            const std::vector<Sample>& samples,
                                             const CycleRequest& request,
                                             const EstimationOptions& options);
 

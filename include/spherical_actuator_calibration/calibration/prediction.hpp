@@ -39,7 +39,7 @@ class Predictor {
   /// Whether the description states any uncertainty: a nominal one does not.
   bool hasUncertainty() const { return !covariance_.isZero(0.0); }
 
-  /// At raw sensor angles [rad].
+  /// At raw sensor angles [rad]. Without joints: that of the reading, which no parameter changes.
   Orientation orientation(const Eigen::Vector3d& reading) const;
   /// Also at coil currents [A]. Precondition: hasTorqueModel() and one current per coil.
   Torque torque(const Eigen::Vector3d& reading, const Eigen::VectorXd& current) const;

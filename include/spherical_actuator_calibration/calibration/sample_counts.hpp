@@ -43,7 +43,7 @@ class SampleCounts {
 
   void add(const Sample& sample);
 
-  /// With an orientation.
+  /// With an orientation beside the reading.
   std::size_t orientations() const { return orientations_; }
   /// With an orientation, up to those that are advised for the joint; of one pose no more than
   /// three count, for they tell nothing new.
@@ -58,6 +58,7 @@ class SampleCounts {
   std::size_t ofSeveralCoils() const { return of_several_coils_; }
 
  private:
+  bool model_has_joints_;
   double current_threshold_;
   std::size_t orientations_ = 0;
   PoseCount useful_orientations_;

@@ -34,8 +34,14 @@ class CalibrationModel {
   /// Precondition: hasTorqueModel().
   const TorqueCurve& curve() const { return *curve_; }
 
+  /// Whether the orientation of a sample is an observation; without joints it is the reading.
+  bool observesOrientation(const Sample& sample) const {
+    return sample.has_orientation && space_.joints() > 0;
+  }
+
   /// y = ln(R_a R(q)ᵀ)^∨ [rad], stator frame (doc/method.md, Joint (12–14)); ∂y/∂joints = −J_r⁻¹(y)
   /// ∂ξ/∂joints. With effects, q is the corrected reading and R lies between the registrations.
+  /// Precondition: the actuator has joints. Without, the measured orientation is the reading.
   Eigen::Vector3d orientationResidual(const Sample& sample,
                                       const Eigen::VectorXd& x,
                                       ResidualJacobian* jacobian = nullptr) const;

@@ -20,7 +20,7 @@ class LaboratoryEffect {
   /// 3×n for n coordinates, zero before the call.
   using Columns = Eigen::Ref<Eigen::Matrix3Xd>;
 
-  /// Observations that an effect acts on.
+  /// Observations that an effect acts on: on all of them by the readings of the joints.
   enum class ActsOn { kEverything, kOrientations, kTorques, kMotion };
   /// What has an effect: only what the actuator itself has changes what coils and joints do.
   enum class BelongsTo {

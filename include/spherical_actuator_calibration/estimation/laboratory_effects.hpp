@@ -23,6 +23,10 @@ EffectSelection withMotionEffects(EffectSelection selection);
 /// The modelled ones among them, in the same order.
 std::vector<std::string> modelledEffects(const EffectSelection& selection);
 
+/// Whether an actuator can have an effect of this name: not without the joints, or the poles, coils
+/// and torque curve, that it acts on. Throws ConfigError when there is no such effect.
+bool canHaveEffect(const Actuator& actuator, const std::string& effect);
+
 /// Whether motion tells an effect of this name beside those that it always models. It uses no
 /// force/torque sensor and needs no tracker, and knows a common strength only by its ratio to
 /// inertia. Throws ConfigError when there is no such effect.

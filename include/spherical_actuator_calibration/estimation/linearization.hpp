@@ -15,6 +15,8 @@ struct LinearizedObservation {
   Eigen::Vector3d residual;
   ResidualJacobian jacobian;          ///< 3×P, zero where unused
   std::vector<Eigen::Index> columns;  ///< those that are not zero, ascending
+  /// Column k: by the error of the sample's reading whose standard deviation is joint_stddev[k].
+  Eigen::Matrix3d d_reading;
 };
 
 /// Evaluates the observations of one problem: residuals, Jacobians and covariances.
@@ -63,7 +65,7 @@ class ObservationEvaluator {
  private:
   Eigen::Vector3d evaluate(std::size_t observation,
                            const ModelPoint& point,
-                           ResidualJacobian* jacobian) const;
+                           LinearizedObservation* linear) const;
   double stddev(std::size_t observation) const;
 
   const EstimationProblem& problem_;

@@ -34,13 +34,20 @@ class ModelPoint {
   /// Keeps a reference to the model.
   ModelPoint(const CalibrationModel& model, const Eigen::VectorXd& x);
 
-  /// See CalibrationModel::orientationResidual().
+  /// R_stator_rotor of a sample by its reading. Without joints the reading is the tracker's, R_a:
+  /// the rotor is at exp(t)ᵀ R_a exp(m)ᵀ, see LaboratoryEffect.
+  Eigen::Matrix3d orientation(const Sample& sample) const;
+
+  /// See CalibrationModel::orientationResidual(), with its precondition.
   Eigen::Vector3d orientationResidual(const Sample& sample,
                                       ResidualJacobian* jacobian = nullptr) const;
-  /// See CalibrationModel::torqueResidual(), with its precondition.
+  /// See CalibrationModel::torqueResidual(), with its precondition. `d_reading`, written where
+  /// `jacobian` is: ∂residual/∂errors of the sample's reading, each in the sense of its
+  /// joint_stddev.
   Eigen::Vector3d torqueResidual(const Sample& sample,
                                  Excitations excitations,
-                                 ResidualJacobian* jacobian = nullptr) const;
+                                 ResidualJacobian* jacobian = nullptr,
+                                 Eigen::Matrix3d* d_reading = nullptr) const;
 
  private:
   struct Parts;

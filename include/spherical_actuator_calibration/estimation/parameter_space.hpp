@@ -37,11 +37,11 @@ using ResidualJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajo
 /// Minimal coordinates of everything that calibration identifies, around one nominal actuator.
 ///
 /// The coordinate vector x has 9 + 2m + 2l entries [rad]: (offset, u, v) of each joint, (u, v) of
-/// each pole, (u, v) of each coil; then those of the laboratory effects that are modelled
-/// (EffectLayout). It is zero at the nominal actuator; offsets are deviations from nominal, axes
-/// are AxisChart coordinates around the nominal axis. Every estimate and covariance
-/// of this package lives in these coordinates; values for people (polar, azimuth) are derived from
-/// them.
+/// each pole, (u, v) of each coil; 9 less for a rotor without joints; then those of the laboratory
+/// effects that are modelled (EffectLayout). It is zero at the nominal actuator; offsets are
+/// deviations from nominal, axes are AxisChart coordinates around the nominal axis. Every estimate
+/// and covariance of this package lives in these coordinates; values for people (polar, azimuth)
+/// are derived from them.
 class ParameterSpace {
  public:
   /// Throws ConfigError when `nominal` is not valid or cannot have one of the effects.
@@ -49,6 +49,8 @@ class ParameterSpace {
 
   const Actuator& nominal() const { return nominal_; }
   Eigen::Index size() const { return size_; }
+  /// kJoints, or 0 where the description has none.
+  std::size_t joints() const { return joint_charts_.size(); }
   std::size_t poles() const { return pole_charts_.size(); }
   std::size_t coils() const { return coil_charts_.size(); }
 
@@ -59,7 +61,7 @@ class ParameterSpace {
   /// First coordinate of joint k, pole i, coil j, all counted from 0.
   Eigen::Index joint(std::size_t k) const { return kPerJoint * static_cast<Eigen::Index>(k); }
   Eigen::Index pole(std::size_t i) const {
-    return joint(kJoints) + kPerAxis * static_cast<Eigen::Index>(i);
+    return joint(joints()) + kPerAxis * static_cast<Eigen::Index>(i);
   }
   Eigen::Index coil(std::size_t j) const {
     return pole(poles()) + kPerAxis * static_cast<Eigen::Index>(j);

@@ -25,10 +25,11 @@ inline double secondsBetween(Stamp begin, Stamp end) {
 /// (message CalibrationSample).
 struct Sample {
   std::uint32_t id = 0;
-  Stamp stamp = 0;                                           ///< middle of the dwell
-  bool validation = false;                                   ///< held out: never used to estimate
-  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
-  Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();    ///< of the mean [rad]
+  Stamp stamp = 0;          ///< middle of the dwell
+  bool validation = false;  ///< held out: never used to estimate
+  /// Raw sensor angles q [rad]; of a rotor without joints see trackedSample().
+  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();  ///< of the mean [rad]
   bool has_orientation = false;
   Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();  ///< measured (R_a)
   bool has_torque = false;
@@ -52,6 +53,13 @@ struct Sample {
 inline Eigen::Vector3d sharedJointStddev(const Sample& sample) {
   return sample.dwell != 0 ? sample.joint_shared_stddev : sample.joint_stddev;
 }
+
+/// A sample of a rotor without joints with the measured orientation as its reading: joint_position
+/// is freeRotorAngles() of it. joint_stddev is then of the error ξ of that orientation, R → e^{ξ̂}R,
+/// about x, y and z of the stator; where none is stated, orientation_stddev, or `default_stddev`
+/// [rad] without that. Torques weigh with it, and the orientation is no observation beside. Throws
+/// DataError when none was measured.
+Sample trackedSample(Sample sample, double default_stddev);
 
 /// Throws DataError that names the sample and the field: not finite, a rotation that is none
 /// (1e-6), negative uncertainty, or a current vector that has not `coils` entries though the sample

@@ -60,7 +60,9 @@ struct PosePlanOptions {
   double minimum_spacing = 0.1;      ///< rotation angle between two poses [rad]
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< joint angles where the way begins [rad]
 
-  /// Expected of the sensors, per component of a mean; joints: zero is exact.
+  /// Expected of the sensors, per component of a mean; joints: zero is exact. A rotor without
+  /// joints has its tracker at every pose, and orientation_stddev instead of joint_stddev: choice
+  /// and bound take it for exact, what is expected of the parameters counts it.
   Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();  ///< [rad]
   double orientation_stddev = 5.77e-4;                     ///< [rad]
   double torque_stddev = 2.89e-4;                          ///< [N·m]

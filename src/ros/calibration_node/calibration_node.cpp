@@ -338,8 +338,10 @@ void CalibrationNode::publishStatus() {
     progress.saved = files_.isSaved(session_.revision().number);
     progress.contradicted = graded.grade == Grade::kContradicted;
     if (plan_) {
-      progress.plan_step = planStep(
-          *plan_, calibration.samples(), calibration.config().estimation.current_threshold);
+      progress.plan_step = planStep(*plan_,
+                                    calibration.samples(),
+                                    calibration.config().estimation.current_threshold,
+                                    calibration.model().space().joints() > 0);
     }
     topics_.publishStatus(session_, progress, graded);
   } catch (const std::exception& error) {

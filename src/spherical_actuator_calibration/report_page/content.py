@@ -86,7 +86,8 @@ class Report:
         cards += self._errors_before_and_after()
         last = self._last_success()
         if last:
-            cards.append(("Orientation error", with_unit(last["orientation_uncertainty"], "rad", 2), "expected, 1 σ"))
+            if "orientation_uncertainty" in last:
+                cards.append(("Orientation error", with_unit(last["orientation_uncertainty"], "rad", 2), "expected, 1 σ"))
             if self.has_torque():
                 value = f"{significant(1e3 * last['torque_uncertainty'], 2)} mN·m/A"
                 cards.append(("Torque error", value, "expected, 1 σ"))
@@ -211,11 +212,11 @@ class Report:
                 influential = [item["id"] for item in self._most_influential() if item["quantity"] == quantity]
                 pictures.append(figures.residuals_of(quantity, residuals, influential))
                 pictures.append(figures.standardized_of(quantity, residuals, influential))
-        positions = {sample["id"]: sample["joint_position"] for sample in self._report["samples"]}
+        positions = {sample["id"]: figures.position_of(sample) for sample in self._report["samples"]}
         for quantity in QUANTITIES:
             residuals = [item for item in self._residuals(quantity) if item["id"] in positions]
             if residuals:
-                joints = self._report["coverage"]["joints"]
+                joints = self._joints()
                 pictures.append(figures.residuals_by_joint(quantity, residuals, positions, joints))
         return pictures
 
@@ -299,6 +300,17 @@ class Report:
     def validation_figures(self):
         return [figures.held_out(self._report["validation"]["residuals"])]
 
+    def _joints(self):
+        """Names and ranges of the joints; of the turns about the stator's axes where there are none."""
+        joints = self._report["coverage"]["joints"]
+        if joints:
+            return joints
+        turns = [figures.position_of(sample) for sample in self._report["samples"]] or [[0.0, 0.0, 0.0]]
+        return [
+            {"name": f"turn about {axis}", "lowest": min(angles), "highest": max(angles)}
+            for axis, angles in zip("xyz", zip(*turns))
+        ]
+
     # ---- coverage and workspace ----------------------------------------------------------------------
 
     def coverage_figures(self):
@@ -306,7 +318,7 @@ class Report:
         pictures = []
         if self._report["samples"]:
             tilt_limit = self._report["workspace"]["tilt"][-1]
-            pictures.append(figures.poses(self._report["samples"], coverage["joints"], tilt_limit))
+            pictures.append(figures.poses(self._report["samples"], self._joints(), tilt_limit))
         for kind, counts in (("pole", coverage["poles"]), ("coil", coverage["coils"])):
             if counts:
                 stddevs = [self._axis_stddev(f"{kind}_{number}") for number in range(1, len(counts) + 1)]
@@ -322,7 +334,7 @@ class Report:
 
     def workspace_figures(self):
         workspace = self._report["workspace"]
-        joints = self._report["coverage"]["joints"]
+        joints = self._joints()
         return [
             figures.workspace_map(quantity, workspace["tilt"], workspace[quantity], joints)
             for quantity in QUANTITIES

@@ -256,6 +256,11 @@ def held_out(residuals):
     return figure
 
 
+def position_of(sample):
+    """Joint angles [rad], or the turns that stand for the orientation of a rotor without joints."""
+    return sample["joint_position"] if "joint_position" in sample else sample["turns"]
+
+
 def poses(samples, joints, tilt_limit):
     """Where the rotor was."""
     with Figure("poses", "Poses of the samples", size=(4.7, 3.6)) as figure:
@@ -264,7 +269,7 @@ def poses(samples, joints, tilt_limit):
         axes.add_patch(Rectangle((-limit, -limit), 2 * limit, 2 * limit, fill=False, edgecolor=GREY, linestyle="--"))
         points = None
         for held, marker, label in ((False, "o", "in use"), (True, "s", "held out")):
-            chosen = [sample["joint_position"] for sample in samples if sample["validation"] == held]
+            chosen = [position_of(sample) for sample in samples if sample["validation"] == held]
             if chosen:
                 points = axes.scatter(
                     [q[0] for q in chosen],
@@ -286,7 +291,7 @@ def poses(samples, joints, tilt_limit):
             bar.set_label(f"{joints[2]['name']} [rad]")
             axes.legend(loc="upper left", ncol=2, handletextpad=0.2)
         axes.set_aspect("equal")
-        reach = 1.15 * max([limit] + [abs(angle) for sample in samples for angle in sample["joint_position"][:2]])
+        reach = 1.15 * max([limit] + [abs(angle) for sample in samples for angle in position_of(sample)[:2]])
         axes.set_xlim(-reach, reach)
         axes.set_ylim(-reach, 1.15 * reach)
         axes.set_xlabel(f"{joints[0]['name']} [rad]")
