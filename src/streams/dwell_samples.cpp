@@ -49,6 +49,9 @@ class DwellSampler {
     if (options_.bias_removal == BiasRemoval::kZeroCurrent) {
       removeBias();
     }
+    if (!buffers_.has_joints && !shareOrientation()) {
+      return {};
+    }
     std::vector<Sample> samples;
     for (Candidate& candidate : candidates_) {
       if (candidate.sample.has_orientation || candidate.sample.has_torque) {
@@ -132,6 +135,25 @@ class DwellSampler {
     if (!any_usable) {
       discard(dwell_, "No part of it with constant current is long enough.");
     }
+  }
+
+  /// Gives all samples of a rotor without joints the orientation of their whole rest: it rested
+  /// once, however often the currents changed. False, and an event, where it did not.
+  bool shareOrientation() {
+    if (candidates_.empty()) {
+      return true;
+    }
+    const std::optional<SegmentAverage> whole = averageOf(rest_);
+    for (Candidate& candidate : candidates_) {
+      if (whole) {
+        candidate.sample.R_stator_rotor = whole->sample->R_stator_rotor;
+        candidate.sample.orientation_stddev = whole->sample->orientation_stddev;
+        candidate.sample.joint_position = whole->sample->joint_position;
+        candidate.sample.joint_stddev = whole->sample->joint_stddev;
+        candidate.sample.joint_shared_stddev = whole->sample->joint_stddev;
+      }
+    }
+    return whole.has_value();
   }
 
   /// The segment without settling and guards.

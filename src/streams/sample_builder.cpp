@@ -38,14 +38,24 @@ const SampleBuilderOptions& validated(const SampleBuilderOptions& options) {
   return options;
 }
 
+/// Rest is told by the tracker where there are no joint sensors.
+SampleBuilderOptions restOptions(SampleBuilderOptions options, bool has_joints) {
+  if (!has_joints) {
+    options.largest_joint_spread = options.largest_orientation_motion;
+  }
+  return options;
+}
+
 StampFilterOptions stampOptions(const SampleBuilderOptions& options) {
   return {options.largest_gap, options.clock_reset, options.largest_jump};
 }
 
 }  // namespace
 
-SampleBuilder::SampleBuilder(const SampleBuilderOptions& options, std::size_t coils)
-    : options_(validated(options)),
+SampleBuilder::SampleBuilder(const SampleBuilderOptions& options,
+                             std::size_t coils,
+                             bool has_joints)
+    : options_(restOptions(validated(options), has_joints)),
       coils_(coils),
       largest_gap_(ticksFromSeconds(options.largest_gap)),
       stream_timeout_(ticksFromSeconds(options.stream_timeout)),
@@ -55,7 +65,9 @@ SampleBuilder::SampleBuilder(const SampleBuilderOptions& options, std::size_t co
           &report_.orientations, &buffers_.orientations, StampFilter(stampOptions(options)), {}},
       torques_{&report_.torques, &buffers_.torques, StampFilter(stampOptions(options)), {}},
       currents_{&report_.currents, &buffers_.currents, StampFilter(stampOptions(options)), {}},
-      detector_(options) {}
+      detector_(options_) {
+  buffers_.has_joints = has_joints;
+}
 
 SampleBuilder::~SampleBuilder() = default;
 
@@ -64,7 +76,7 @@ void SampleBuilder::repeat(const std::vector<Sample>& taken) {
 }
 
 void SampleBuilder::add(const JointMeasurement& measurement) {
-  if (!accept(joints_, measurement.stamp, defectOf(measurement.position))) {
+  if (!buffers_.has_joints || !accept(joints_, measurement.stamp, defectOf(measurement.position))) {
     return;
   }
   for (std::size_t k = 0; k < joint_steps_.size(); ++k) {
@@ -81,7 +93,18 @@ void SampleBuilder::add(const OrientationMeasurement& measurement) {
     return;
   }
   const Eigen::Vector4d xyzw = measurement.q_stator_rotor.coeffs().normalized();
+  if (!buffers_.has_joints) {
+    followOrientation(measurement.stamp, Eigen::Quaterniond(xyzw));
+  }
   store(orientations_, measurement.stamp, xyzw.data());
+}
+
+/// Takes the orientation of a rotor without joints as what tells its rest.
+void SampleBuilder::followOrientation(Stamp stamp, const Eigen::Quaterniond& q_stator_rotor) {
+  turned_ += rotationLog((q_stator_rotor * tracked_.conjugate()).toRotationMatrix());
+  tracked_ = q_stator_rotor;
+  queue(detector_.add(stamp, turned_));
+  buffers_.joints.push(stamp, turned_.data());
 }
 
 void SampleBuilder::add(const TorqueMeasurement& measurement) {
@@ -158,8 +181,9 @@ std::vector<Sample> SampleBuilder::takeSamples() {
 // A stream that was there and is silent now; without it the sample would lack a quantity by
 // accident.
 std::string SampleBuilder::silentStream() const {
-  if (!joints_.horizon) {
-    return "No joint measurement has come: is joint_states published?";
+  if (!readings().horizon) {
+    return buffers_.has_joints ? "No joint measurement has come: is joint_states published?"
+                               : "No orientation has come: is measured_orientation published?";
   }
   const std::array<std::pair<const Stream*, const char*>, 4> streams = {{
       {&joints_, "joint_states"},
@@ -172,7 +196,7 @@ std::string SampleBuilder::silentStream() const {
       continue;
     }
     const double silence = secondsBetween(*stream->horizon, *newest_);
-    if (silence > options_.largest_gap && (stream == &joints_ || silence < kSwitchedOff)) {
+    if (silence > options_.largest_gap && (stream == &readings() || silence < kSwitchedOff)) {
       return std::string("The stream ") + name + " is silent for " + shortNumber(silence) +
              " s: check its node (one that is switched off on purpose counts as absent after " +
              shortNumber(kSwitchedOff) + " s).";
@@ -255,6 +279,9 @@ void SampleBuilder::store(Stream& stream, Stamp stamp, const double* values) {
   closeDwellOfSilentJoints();
   evaluateReadyDwells();
   stream.buffer->dropBefore(oldestNeeded());
+  if (!buffers_.has_joints && &stream == &orientations_) {
+    buffers_.joints.dropBefore(oldestNeeded());
+  }
 }
 
 // Whatever follows belongs to another time: no stamp before can be compared with it.
@@ -309,7 +336,7 @@ bool SampleBuilder::isReady(const StampInterval& dwell) const {
   const auto has_passed = [&dwell](const Stream& stream) {
     return stream.horizon && *stream.horizon >= dwell.end;
   };
-  return has_passed(joints_) && has_passed(orientations_) && has_passed(torques_) &&
+  return has_passed(readings()) && has_passed(orientations_) && has_passed(torques_) &&
          (coils_ == 0 || has_passed(currents_));
 }
 

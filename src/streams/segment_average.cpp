@@ -89,8 +89,11 @@ class SegmentAverager {
       return refused("It lasts only " + shortNumber(std::max(interval_.duration(), 0.0)) + " s; " +
                      shortNumber(options_.smallest_duration) + " s are needed.");
     }
-    if (!averageJoints() || !averageOrientation()) {
+    if ((buffers_.has_joints && !averageJoints()) || !averageOrientation()) {
       return std::move(result_);
+    }
+    if (!buffers_.has_joints && !sample_.has_orientation) {
+      return refused("It has no orientation, which alone tells where the rotor is.");
     }
     averageTorque();
     if (!sample_.has_orientation && !sample_.has_torque) {
@@ -173,11 +176,13 @@ class SegmentAverager {
     }
     const MeanEstimate estimate = mean.estimate();
     result_.orientation_glitches = estimate.glitches;
+    const char* const otherwise =
+        buffers_.has_joints ? " mrad while the joint sensors stood still." : " mrad.";
     const double drift = estimate.drift.norm();
-    if (drift >
-        options_.largest_orientation_motion + kDriftSignificance * estimate.drift_stddev.norm()) {
-      return refuse("The measured orientation moved by " + shortNumber(drift * kMilli) +
-                    " mrad while the joint sensors stood still.");
+    const double largest_drift =
+        buffers_.has_joints ? options_.largest_orientation_motion : options_.largest_joint_drift;
+    if (drift > largest_drift + kDriftSignificance * estimate.drift_stddev.norm()) {
+      return refuse("The measured orientation moved by " + shortNumber(drift * kMilli) + otherwise);
     }
     const double sway = std::sqrt(estimate.slow_variance.maxCoeff());
     if (sway > options_.largest_orientation_motion) {
@@ -188,12 +193,15 @@ class SegmentAverager {
     const double stddev = std::sqrt(estimate.single_variance.maxCoeff());
     if (stddev > kLargestNoise * options_.largest_orientation_motion) {
       return refuse("The measured orientation scatters by " + shortNumber(stddev * kMilli) +
-                    " mrad while the joint sensors stood still.");
+                    otherwise);
     }
     sample_.has_orientation = true;
     sample_.R_stator_rotor = rotationExp(estimate.mean) * q_stator_reference.toRotationMatrix();
     sample_.orientation_stddev =
         std::hypot(std::sqrt(estimate.variance.mean()), options_.orientation_stddev_floor);
+    if (!buffers_.has_joints) {
+      sample_ = trackedSample(sample_, options_.orientation_stddev_floor);
+    }
     count(estimate.count);
     return true;
   }

@@ -45,8 +45,10 @@ struct CaptureProgress {
 class SampleBuilder {
  public:
   /// `coils`: number of coils; with 0, currents are ignored. Throws ConfigError when the options
-  /// are not valid.
-  SampleBuilder(const SampleBuilderOptions& options, std::size_t coils);
+  /// are not valid. Without joints their measurements are ignored, and the measured orientations
+  /// tell where the rotor is and when it rests; see trackedSample(). That of a dwell is averaged
+  /// over all of its rest, so that its samples share the error.
+  SampleBuilder(const SampleBuilderOptions& options, std::size_t coils, bool has_joints = true);
   SampleBuilder(const SampleBuilder&) = delete;
   SampleBuilder& operator=(const SampleBuilder&) = delete;
   ~SampleBuilder();
@@ -98,6 +100,8 @@ class SampleBuilder {
   Stamp largestLag() const;
   void store(Stream& stream, Stamp stamp, const double* values);
   void endTimeBase();
+  void followOrientation(Stamp stamp, const Eigen::Quaterniond& q_stator_rotor);
+  const Stream& readings() const { return buffers_.has_joints ? joints_ : orientations_; }
   void queue(const std::optional<StampInterval>& dwell);
   void closeDwellOfSilentJoints();
   void evaluateReadyDwells();
@@ -118,6 +122,8 @@ class SampleBuilder {
   SampleBuilderReport report_;
   MeasurementBuffers buffers_;
   std::array<ReadingSteps, 3> joint_steps_;
+  Eigen::Quaterniond tracked_ = Eigen::Quaterniond::Identity();  ///< of a rotor without joints
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();             ///< see MeasurementBuffers
   Stream joints_;
   Stream orientations_;
   Stream torques_;

@@ -58,6 +58,9 @@ struct MeasurementBuffers {
   explicit MeasurementBuffers(std::size_t coils) : currents(coils) {}
 
   StreamBuffer joints{3};  ///< raw sensor angles [rad]
+  /// Where the rotor has none, `joints` holds the sum of the rotation vectors from each measured
+  /// orientation to the next, stator frame: what moves with the rotor, in any pose alike.
+  bool has_joints = true;
   /// Resolution of the readings, as they tell it (ReadingSteps) [rad]; 0: none.
   Eigen::Vector3d joint_step = Eigen::Vector3d::Zero();
   StreamBuffer orientations{4};  ///< unit quaternion q_stator_rotor as x, y, z, w
