@@ -55,7 +55,8 @@ Actuator manufacturedActuator(const Actuator& nominal,
   validate(errors);
   NoiseSource noise(seed, RandomPurpose::kManufacturingErrors);
   Actuator made = nominal;
-  for (JointAxis& joint : made.joints) {
+  for (std::size_t k = 0; nominal.has_joints && k < kJoints; ++k) {
+    JointAxis& joint = made.joints[k];
     joint.offset += noise.uniform(errors.joint_offset);
     const double u = noise.uniform(errors.joint_axis);
     const double v = noise.uniform(errors.joint_axis);

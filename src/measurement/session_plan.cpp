@@ -131,7 +131,7 @@ SessionPlan planSession(const Actuator& nominal,
   const double joint_tilt = options.joint_tilt_share * nominal.workspace.tilt_limit;
   const double torque_tilt = options.torque_tilt_share * nominal.workspace.tilt_limit;
   SessionPlan plan;
-  for (std::size_t n = 0; n < options.joint_poses; ++n) {
+  for (std::size_t n = 0; nominal.has_joints && n < options.joint_poses; ++n) {
     PlannedDwell dwell;
     dwell.joint_position = randomPose(joint_tilt, noise);
     plan.dwells.push_back(dwell);

@@ -108,7 +108,7 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
   msg::ActuatorParameters message;
   message.actuator = actuator.name;
   message.serial = actuator.serial;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; actuator.has_joints && k < kJoints; ++k) {
     const JointStddev& stddev = stddevs.joints[k];
     message.joints[k].axis = vectorToRos(actuator.joints[k].axis);
     message.joints[k].axis_stddev = {stddev.axis_u.value_or(kUnknown),
@@ -142,7 +142,7 @@ std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
     return std::nullopt;
   }
   Actuator actuator = design;
-  for (std::size_t k = 0; k < kJoints; ++k) {
+  for (std::size_t k = 0; design.has_joints && k < kJoints; ++k) {
     actuator.joints[k].axis = vectorFromRos(message.joints[k].axis);
     actuator.joints[k].offset = message.joints[k].offset;
     ReadingCorrection& correction = actuator.joints[k].correction;

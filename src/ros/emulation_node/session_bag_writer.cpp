@@ -62,7 +62,8 @@ class SessionBagWriter::Recording {
       : path_(path),
         active_path_(path + ".active"),
         options_(options),
-        bag_(std::make_unique<rosbag::Bag>()) {
+        bag_(std::make_unique<rosbag::Bag>()),
+        has_joints_(nominal.has_joints) {
     requireFree();
     nameTopics(nominal);
     guarded([&] {
@@ -80,6 +81,9 @@ class SessionBagWriter::Recording {
   Recording& operator=(const Recording&) = delete;
 
   void add(const JointMeasurement& measurement) {
+    if (!has_joints_) {
+      return;
+    }
     auto& message = joint_states_.message;
     std::copy_n(measurement.position.data(), kJoints, message.position.begin());
     write(joint_states_, measurement.stamp, kJointLatency);
@@ -230,6 +234,7 @@ class SessionBagWriter::Recording {
   std::string active_path_;
   SessionBagOptions options_;
   std::unique_ptr<rosbag::Bag> bag_;  ///< none after close()
+  const bool has_joints_;             ///< else there are no joint_states
   Topic<sensor_msgs::JointState> joint_states_;
   Topic<msg::CoilCurrents> currents_;
   Topic<geometry_msgs::PoseStamped> tracker_pose_;

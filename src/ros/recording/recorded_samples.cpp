@@ -12,7 +12,7 @@
 namespace sac {
 
 RecordedSamples::RecordedSamples(const Actuator& nominal, const MeasurementFrames& frames)
-    : frames_(frames), coils_(modelledCoils(nominal)) {}
+    : frames_(frames), coils_(modelledCoils(nominal)), has_joints_(nominal.has_joints) {}
 
 void RecordedSamples::add(const msg::CalibrationSample& message) {
   ++report_.received;
@@ -47,7 +47,7 @@ Sample RecordedSamples::usableSample(const msg::CalibrationSample& message) {
     currents_ = message.current.size();
   }
   validate(sample, coils_);
-  return sample;
+  return has_joints_ ? sample : trackedSample(sample, sample.orientation_stddev);
 }
 
 void RecordedSamples::requireUsable(const std::string& files) const {

@@ -39,6 +39,7 @@ class RecordedSamples {
 
   const MeasurementFrames& frames_;
   std::size_t coils_;
+  bool has_joints_;
   std::vector<Sample> samples_;
   std::set<std::pair<std::uint32_t, Stamp>> known_;
   RecordedSamplesReport report_;

@@ -27,7 +27,7 @@ RecordedStreams::RecordedStreams(const Actuator& nominal,
     : nominal_(nominal),
       frames_(frames),
       reader_(nominal, frames),
-      builder_(options, modelledCoils(nominal)),
+      builder_(options, modelledCoils(nominal), nominal.has_joints),
       motion_(modelledCoils(nominal)) {}
 
 template <typename Measurement>
@@ -41,6 +41,9 @@ void RecordedStreams::take(const Measurement& measurement) {
 }
 
 void RecordedStreams::add(const sensor_msgs::JointState& message) {
+  if (!nominal_.has_joints) {
+    return;
+  }
   if (const JointMeasurement* measurement = reader_.read(message)) {
     take(*measurement);
     return;
@@ -77,7 +80,10 @@ void RecordedStreams::add(const msg::CoilCurrents& message) {
 }
 
 bool RecordedStreams::any() const {
-  return builder_.report().joints.received > 0 || counts_.incomplete_joint_states > 0;
+  const SampleBuilderReport& streams = builder_.report();
+  return nominal_.has_joints
+             ? streams.joints.received > 0 || counts_.incomplete_joint_states > 0
+             : streams.orientations.received > 0 || counts_.orientations_in_other_frame > 0;
 }
 
 RecordedStreamsReport RecordedStreams::report() const {
@@ -88,7 +94,7 @@ RecordedStreamsReport RecordedStreams::report() const {
 
 void RecordedStreams::requireUsable(const std::string& files) const {
   const SampleBuilderReport& streams = builder_.report();
-  if (streams.joints.received == 0) {
+  if (nominal_.has_joints && streams.joints.received == 0) {
     std::string names;
     for (const std::string& name : other_joints_) {
       names += " " + name;
@@ -117,7 +123,9 @@ std::vector<std::string> RecordedStreams::missing() const {
   const SampleBuilderReport& streams = builder_.report();
   std::vector<std::string> missing;
   if (streams.orientations.received == 0) {
-    missing.emplace_back("No orientation is recorded: the joint cannot be calibrated.");
+    missing.emplace_back(nominal_.has_joints
+                             ? "No orientation is recorded: the joint cannot be calibrated."
+                             : "No orientation is recorded: nothing tells where the rotor is.");
   }
   if (modelledCoils(nominal_) == 0) {
     return missing;

@@ -121,10 +121,11 @@ void RecordedTopics::requireTypes(const BagFile& file) const {
   }
 }
 
-void RecordedTopics::requireStreams(const BagGroup& group) const {
-  if (!isRecorded(group, TopicRole::kJointStates)) {
-    throw DataError(pathsOf(group) + ": no message of " + name(TopicRole::kJointStates) + "; " +
-                    adviceOnNamespace(namespacesWith(group, TopicRole::kJointStates)));
+void RecordedTopics::requireStreams(const BagGroup& group, bool has_joints) const {
+  const TopicRole reading = has_joints ? TopicRole::kJointStates : TopicRole::kOrientation;
+  if (!isRecorded(group, reading)) {
+    throw DataError(pathsOf(group) + ": no message of " + name(reading) + "; " +
+                    adviceOnNamespace(namespacesWith(group, reading)));
   }
   if (!isRecorded(group, TopicRole::kOrientation) && !isRecorded(group, TopicRole::kTorque)) {
     throw DataError(pathsOf(group) + ": no message of " + name(TopicRole::kOrientation) +

@@ -31,8 +31,8 @@ class RecordedTopics {
   void requireTypes(const BagFile& file) const;
 
   /// Throws DataError, saying what is missing and where else it is recorded, unless the group has
-  /// joint angles and orientations or torques.
-  void requireStreams(const BagGroup& group) const;
+  /// joint angles and orientations or torques, without joints orientations.
+  void requireStreams(const BagGroup& group, bool has_joints) const;
 
  private:
   std::string prefix_;

@@ -35,7 +35,9 @@ void addEvents(std::vector<std::string>& lines, const SampleBuilderReport& repor
 
 void addStreams(std::vector<std::string>& lines, const RecordedStreamsReport& streams) {
   const SampleBuilderReport& report = streams.samples;
-  lines.push_back(describe("joint_states", report.joints));
+  if (report.joints.received > 0 || streams.incomplete_joint_states > 0) {
+    lines.push_back(describe("joint_states", report.joints));
+  }
   addCount(lines, streams.incomplete_joint_states, "joint_states without one of the joints.");
   lines.push_back(describe("measured_orientation", report.orientations));
   addCount(lines, streams.orientations_in_other_frame, "orientations in another frame dropped.");
