@@ -5,7 +5,8 @@
         print(pose.quaternion_xyzw, "+-", pose.stddev)
 
 The numbers are those of the C++ class of the same name: its program `actuator_model` answers through a pipe, some ten
-thousand times a second. SI units; torques in the rotor frame; joint angles are raw readings.
+thousand times a second. SI units; torques in the rotor frame; joint angles are raw readings. A rotor without joints is
+asked at the unit quaternion that the tracker measures, in their place, and not for its orientation.
 """
 
 import os

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "command_line.hpp"
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
@@ -23,6 +24,9 @@ constexpr char kIntroduction[] =
     "  orientation q1 q2 q3          -> qx qy qz qw stddev supported\n"
     "  torque q1 q2 q3 i1 i2 ...     -> tx ty tz stddev\n"
     "  currents tx ty tz q1 q2 q3 limit -> outcome i1 i2 ... s1 s2 ... tx ty tz stddev\n"
+    "A rotor without joints has the tracker's unit quaternion qx qy qz qw in the place of q1 q2 "
+    "q3,\n"
+    "and no orientation to ask for.\n"
     "in rad, A and N.m, the rotor frame; outcome is reached, limited or singular. What cannot be\n"
     "answered is \"error: the reason\".\n"
     "Exit status: 0 at the end of the input; 2 bad usage or unreadable description.\n\n";
@@ -65,7 +69,28 @@ void append(const Values& values, std::string& text) {
   }
 }
 
+/// How many numbers tell where the rotor is: joint angles, or a quaternion.
+std::size_t poseNumbers(const CalibratedActuator& actuator) {
+  return actuator.hasJoints() ? kJoints : 4;
+}
+
+/// Joint angles, or those that stand for a quaternion.
+Eigen::Vector3d reading(const CalibratedActuator& actuator,
+                        const Numbers& asked,
+                        std::size_t first) {
+  if (actuator.hasJoints()) {
+    return asked.vector(first);
+  }
+  return freeRotorAngles(Eigen::Quaterniond(asked.number(first + 3),
+                                            asked.number(first),
+                                            asked.number(first + 1),
+                                            asked.number(first + 2)));
+}
+
 std::string orientation(const CalibratedActuator& actuator, const Numbers& asked) {
+  if (!actuator.hasJoints()) {
+    throw DataError("The rotor has no joints: the tracker alone tells its orientation.");
+  }
   asked.require(3);
   const Predictor::Orientation pose = actuator.orientation(asked.vector(0));
   std::string text;
@@ -74,19 +99,21 @@ std::string orientation(const CalibratedActuator& actuator, const Numbers& asked
 }
 
 std::string torque(const CalibratedActuator& actuator, const Numbers& asked) {
-  asked.require(3 + actuator.coils());
-  const Predictor::Torque made = actuator.torque(asked.vector(0), asked.from(3));
+  const std::size_t pose = poseNumbers(actuator);
+  asked.require(pose + actuator.coils());
+  const Predictor::Torque made = actuator.torque(reading(actuator, asked, 0), asked.from(pose));
   std::string text;
   append(made.torque, text);
   return text + " " + shortestText(made.stddev);
 }
 
 std::string currents(const CalibratedActuator& actuator, const Numbers& asked) {
-  asked.require(7);
+  const std::size_t limit = 3 + poseNumbers(actuator);
+  asked.require(limit + 1);
   AllocationOptions options;
-  options.current_limit = asked.number(6);
+  options.current_limit = asked.number(limit);
   const CalibratedActuator::Currents found =
-      actuator.currents(asked.vector(0), asked.vector(3), options);
+      actuator.currents(asked.vector(0), reading(actuator, asked, 3), options);
   std::string text = found.outcome == Allocation::kReached   ? "reached"
                      : found.outcome == Allocation::kLimited ? "limited"
                                                              : "singular";

@@ -19,6 +19,7 @@
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -69,7 +70,7 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
     files.urdf = *options.urdf_path;
     files.urdf_template =
         options.urdf_template_path ? *options.urdf_template_path : shippedUrdf(nominal.name);
-    readJoints(files.urdf_template, jointNames(nominal));
+    renderCalibratedUrdf(readInputFile(files.urdf_template), files.urdf_template, nominal, nominal);
   }
   if (options.report_folder) {
     files.report = (fs::path(*options.report_folder) / "report.yaml").string();

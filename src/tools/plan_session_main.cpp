@@ -94,11 +94,12 @@ SessionPlanRecord recordOf(const PlanSessionOptions& options,
   return record;
 }
 
-void printPlan(const PosePlan& plan) {
+void printPlan(const PosePlan& plan, bool has_joints) {
+  const char* const angles = has_joints ? "joints" : "turn about x, y, z";
   for (std::size_t n = 0; n < plan.poses.size(); ++n) {
     const PlannedPose& pose = plan.poses[n];
     const Eigen::Vector3d& q = pose.joint_position;
-    std::printf("%3zu  joints %7.3f %7.3f %7.3f rad  coils", n + 1, q[0], q[1], q[2]);
+    std::printf("%3zu  %s %7.3f %7.3f %7.3f rad  coils", n + 1, angles, q[0], q[1], q[2]);
     if (pose.patterns.empty()) {
       for (const std::size_t coil : pose.coils) {
         std::printf(" %zu", numberOf(coil));
@@ -143,7 +144,7 @@ void writePlan(const PlanSessionOptions& options) {
   if (!plan.success) {
     throw DataError(plan.message);
   }
-  printPlan(plan);
+  printPlan(plan, start.actuator.has_joints);
   const SessionPlanRecord record =
       recordOf(options, start.actuator, session.samples().size(), std::move(plan));
   writeFileAtomically(options.output_path, renderSessionPlan(record), options.overwrite);

@@ -72,7 +72,8 @@ void writeSamples(const Options& options,
 
 void writeBag(const Options& options) {
   const Actuator actuator = loadActuator(options.actuator_path);
-  const std::vector<Sample> samples = loadSamples(options.samples_path, actuator.coils.size());
+  const std::vector<Sample> samples =
+      loadSamples(options.samples_path, actuator.coils.size(), actuator.has_joints);
   requireNewFile(options.output_path, options.overwrite);
   const std::string active_path = options.output_path + ".active";
   auto bag = std::make_unique<rosbag::Bag>();

@@ -35,6 +35,7 @@ class CalibratedActuator {
   static CalibratedActuator load(const std::string& path);
 
   const CalibratedDescription& description() const { return description_; }
+  bool hasJoints() const { return description_.actuator.has_joints; }
   bool hasTorqueModel() const { return curve_.has_value(); }
   std::size_t coils() const { return predictor_.coils(); }
   /// Whether the description states any uncertainty: a nominal one does not, and all standard

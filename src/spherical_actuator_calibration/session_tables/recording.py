@@ -73,7 +73,8 @@ class Recording:
 
 def record_samples(recording, path):
     """Writes the samples of a table; returns what was written, in words."""
-    samples = SampleTable(path, len(recording.actuator.get("coils", []))).messages()
+    actuator = recording.actuator
+    samples = SampleTable(path, len(actuator.get("coils", [])), bool(actuator["joints"])).messages()
     with recording:
         stamp = genpy.Time(0, SPACING)
         recording.describe(stamp)

@@ -25,11 +25,13 @@ def unit_quaternion(row, values, column):
 
 
 class SampleTable:
-    """A file of samples, for an actuator with so many coils."""
+    """A file of samples, for an actuator with so many coils. Without joints it may lack their columns, and needs
+    orientations."""
 
-    def __init__(self, path, coils):
+    def __init__(self, path, coils, has_joints=True):
         self._table = Table(path)
         self._coils = coils
+        self._has_joints = has_joints
         self._columns = {}
         units = dict(SAMPLE_COLUMNS)
         units.update({f"current_{coil}": "A" for coil in range(1, coils + 1)})
@@ -40,7 +42,7 @@ class SampleTable:
             if name in self._columns:
                 self._table.fail(f'column {index + 1} ("{title}") is there twice.')
             self._columns[name] = (index, self._table.factor(index, units[name]))
-        for name in JOINTS:
+        for name in JOINTS if has_joints else QUATERNION:
             self._table.column(name)
 
     def messages(self):
@@ -94,10 +96,11 @@ class SampleTable:
         message.validation = bool(self._integer(row, "validation", 0, 1))
         message.duration = self._number(row, "duration", 0.0, 0.0)
         message.measurements = self._integer(row, "measurements", 1, 2**32 - 1)
-        for joint in JOINTS:
-            if not self._text(row, joint):
-                row.fail("it is empty.", self._index(joint))
-        message.joint_position = [self._number(row, joint) for joint in JOINTS]
+        for needed in JOINTS if self._has_joints else QUATERNION:
+            if not self._text(row, needed):
+                row.fail("it is empty.", self._index(needed))
+        # Without joints calibrate_bag takes them from the orientation.
+        message.joint_position = [self._number(row, joint, None if self._has_joints else 0.0) for joint in JOINTS]
         message.joint_stddev = [self._stddev(row, f"{joint}_stddev") for joint in JOINTS]
         message.joint_shared_stddev = [self._stddev(row, f"{joint}_shared_stddev") for joint in JOINTS]
         self._add_orientation(row, message)

@@ -154,6 +154,8 @@ class Stream:
 
     def _joint_states(self):
         names = [joint["name"] for joint in self._actuator["joints"]]
+        if not names:
+            self._fail("stream", "the description has no joints; leave their readings out.")
         return lambda _row, values: JointState(name=names, position=values)
 
     def _coil_currents(self):
