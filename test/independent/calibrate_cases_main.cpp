@@ -18,9 +18,8 @@
 namespace sac {
 namespace {
 
-/// Of the joints' coordinates, row after row.
-void printCovariance(const Eigen::MatrixXd& covariance) {
-  const Eigen::Index count = ParameterSpace::kPerJoint * static_cast<Eigen::Index>(kJoints);
+/// Of the first `count` coordinates, those of the joints, row after row.
+void printCovariance(const Eigen::MatrixXd& covariance, Eigen::Index count) {
   std::printf("covariance");
   for (Eigen::Index a = 0; a < count; ++a) {
     for (Eigen::Index b = 0; b < count; ++b) {
@@ -58,7 +57,9 @@ void check(const CalibrationSession& session) {
 void calibrate(const CalibratedDescription& start,
                const CalibrationConfig& config,
                const char* path) {
-  CalibrationSession session(start, loadSamples(path, start.actuator.coils.size()), config);
+  const Actuator& actuator = start.actuator;
+  CalibrationSession session(
+      start, loadSamples(path, actuator.coils.size(), actuator.has_joints), config);
   std::printf("case %s\n", path);
   bool succeeded = true;
   for (const CycleRequest& request :
@@ -79,7 +80,7 @@ void calibrate(const CalibratedDescription& start,
                 one.observable ? "identified" : "open");
   }
   std::printf("complete %s\n", session.isComplete() ? "yes" : "no");
-  printCovariance(session.state().belief.covariance);
+  printCovariance(session.state().belief.covariance, session.model().space().pole(0));
   const GradedCalibration graded = gradeCalibration(session);
   std::printf("grade %s %s\n", gradeName(graded.grade).c_str(), graded.reason.c_str());
 }

@@ -23,7 +23,7 @@ class Outcome:
     cycles: list  # (name, success, message)
     seconds: float  # of the last cycle
     complete: bool  # exit status 0 of calibrate_bag
-    joint_covariance: np.ndarray  # 9x9, of the coordinates of the joints
+    joint_covariance: np.ndarray  # of the coordinates of the joints, 9x9 where there are any
     diagnoses: list  # (cause, message), where the last cycle was refused
     check: tuple  # (whether the held-out samples find it valid, message), where any are held out
 
@@ -61,7 +61,8 @@ def read_outcomes(text, names):
         elif word == "complete":
             complete = rest == "yes"
         elif word == "covariance":
-            covariance = np.array(rest.split(" "), float).reshape(9, 9)
+            numbers = np.array(rest.split(), float)
+            covariance = numbers.reshape(2 * [round(np.sqrt(numbers.size))])
         elif word == "grade":
             grade, _, reason = rest.partition(" ")
             chosen = [rows[name] for name in names]
@@ -74,15 +75,24 @@ def read_outcomes(text, names):
 
 def calibrate(unit, sessions, config, actuator=ACTUATOR):
     """sessions: (laboratory, dwells, held out every so manieth) each. Returns an Outcome for each."""
+
+    def write(path, session):
+        laboratory.write_samples(path, unit, *session)
+
+    return calibrate_written(unit.names(), sessions, write, config, actuator)
+
+
+def calibrate_written(names, sessions, write, config, actuator):
+    """write(path, session) writes the samples of one."""
     with tempfile.TemporaryDirectory() as folder:
         config_path = os.path.join(folder, "config.yaml")
         with open(config_path, "w", encoding="utf-8") as file:
             file.write(config)
         paths = []
-        for n, (sensors, dwells, held_out) in enumerate(sessions):
+        for n, session in enumerate(sessions):
             paths.append(os.path.join(folder, f"samples_{n}.yaml"))
-            laboratory.write_samples(paths[-1], unit, sensors, dwells, held_out)
+            write(paths[-1], session)
         answer = subprocess.run([PROGRAM, actuator, config_path, *paths], capture_output=True, text=True, check=False)
         if answer.returncode != 0:
             raise RuntimeError(answer.stderr)
-        return read_outcomes(answer.stdout, unit.names())
+        return read_outcomes(answer.stdout, names)
