@@ -114,7 +114,8 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
   }
   supervisor_.setting(limiter_.setpoints());
   const OutputStages stages = may_flow ? OutputStages::kOn : OutputStages::kOff;
-  const AmplifierReading reading = amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
+  const AmplifierReading reading =
+      amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
   observe(reading, clock, result);
   return reading.tripped;
 }
