@@ -14,6 +14,11 @@ import yaml
 from report_page_case import HOSTILE, SOURCE, actuator_file, calibrated, program, read, run
 
 
+# Style, place, turn and content of a text in an SVG of matplotlib.
+TEXT = re.compile(r'<text style="([^"]*)" x="([0-9.-]+)" y="([0-9.-]+)" transform="rotate\((-?\d+)[^"]*"[^>]*>([^<]*)')
+CHARACTER = 0.55  # of its size is what a character is wide on average
+
+
 class Page(html.parser.HTMLParser):
     """Elements and table rows of a page."""
 
@@ -116,6 +121,23 @@ class ReportPage(unittest.TestCase):
                 # Two numbers and the name of the axis; of a column for colours and of shared axes, less.
                 if number == "2":
                     self.assertGreaterEqual(texts, 3, attributes["alt"])
+
+    def test_no_text_of_a_picture_is_cut_off_or_beside_its_axis(self):
+        for attributes in self.page.of("img"):
+            svg = base64.b64decode(attributes["src"].split(",", 1)[1]).decode("utf-8")
+            width, height = map(float, re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', svg).groups())
+            for style, x, y, turn, text in TEXT.findall(svg):
+                height_of_text = float(re.search(r"([0-9.]+)px", style)[1])
+                length = CHARACTER * height_of_text * len(text)
+                anchor = re.search(r"text-anchor: (\w+)", style)
+                before = {"middle": 0.5, "end": 1.0}.get(anchor and anchor[1], 0.0) * length
+                # Along the text, then across it.
+                along, across = (height - float(y), float(x)) if turn == "-90" else (float(x), float(y))
+                limits = (height, width) if turn == "-90" else (width, height)
+                self.assertGreaterEqual(along, before, (attributes["alt"], text))
+                self.assertLessEqual(along - before + length, limits[0], (attributes["alt"], text))
+                self.assertGreaterEqual(across, 0.8 * height_of_text, (attributes["alt"], text))
+                self.assertLessEqual(across, limits[1], (attributes["alt"], text))
 
     def test_a_short_logarithmic_axis_has_numbers(self):
         figures = dict(self.figures)

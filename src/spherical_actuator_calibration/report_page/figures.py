@@ -4,21 +4,14 @@ Every picture is narrow, so that its text can still be read on a telephone; the 
 there is room.
 """
 
-import base64
-import io
 import math
 
-import matplotlib
-import matplotlib.figure
 import matplotlib.ticker
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.patches import Rectangle
 
 from .numbers import shown_in, significant, with_unit
+from .picture import Figure
 
-SIZE = (4.7, 3.0)  # [inch]
-PIXELS_PER_INCH = 150  # of what is drawn as pixels
-INK = "#1f2933"
 BLUE = "#1d6fb8"
 TEAL = "#0f8a7e"
 AMBER = "#c77700"
@@ -32,61 +25,6 @@ MOST_VECTORS = 1500
 MOST_LABELS = 3
 # 95 % of faultless standardised residuals (root mean square of three components) are below.
 USUAL_STANDARDIZED = math.sqrt(7.814727903251179 / 3.0)
-
-STYLE = {
-    "axes.axisbelow": True,
-    "axes.edgecolor": "#b6c0ca",
-    "axes.formatter.useoffset": False,
-    "axes.grid": True,
-    "axes.labelcolor": INK,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlelocation": "left",
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "grid.color": "#e6ebf0",
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "lines.linewidth": 1.4,
-    "lines.markersize": 4,
-    "svg.fonttype": "none",
-    "text.color": INK,
-    "xtick.color": "#52606d",
-    "ytick.color": "#52606d",
-}
-
-
-class Figure:
-    """One picture while it is drawn: with Figure(title) as figure: figure.axes.plot(...)"""
-
-    def __init__(self, name, title, rows=1, size=SIZE, sharex=True):
-        self.title = title
-        self.alt = title
-        self.source = ""
-        self._name = name
-        self._context = matplotlib.rc_context({**STYLE, "svg.hashsalt": name})
-        self._context.__enter__()
-        self.figure = matplotlib.figure.Figure(figsize=size, constrained_layout=True)
-        axes = self.figure.subplots(rows, 1, squeeze=False, sharex=sharex)
-        self.panels = list(axes[:, 0])
-        self.axes = self.panels[0]
-        self.axes.set_title(title)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, kind, error, trace):
-        if kind is None:
-            content = io.BytesIO()
-            canvas = FigureCanvasSVG(self.figure)
-            self.figure.dpi = PIXELS_PER_INCH
-            # Figure.savefig() would draw everything twice, to lay it out first.
-            # Without date and creator the same report gives the same bytes.
-            canvas.print_svg(content, metadata={"Date": None, "Creator": None})
-            self.source = "data:image/svg+xml;base64," + base64.b64encode(content.getvalue()).decode("ascii")
-        self._context.__exit__(kind, error, trace)
 
 
 def _whole_numbers(axis):
@@ -286,9 +224,8 @@ def poses(samples, joints, tilt_limit):
                     rasterized=len(chosen) > MOST_VECTORS,
                 )
         if points is not None:
-            bar = figure.figure.colorbar(points, ax=axes, ticks=[-math.pi, 0.0, math.pi])
-            bar.ax.set_yticklabels(["−π", "0", "π"])
-            bar.set_label(f"{joints[2]['name']} [rad]")
+            bar = figure.bar(points, f"{joints[2]['name']} [rad]", ticks=[-math.pi, 0.0, math.pi])
+            bar.set_yticklabels(["−π", "0", "π"])
             axes.legend(loc="upper left", ncol=2, handletextpad=0.2)
         axes.set_aspect("equal")
         reach = 1.15 * max([limit] + [abs(angle) for sample in samples for angle in position_of(sample)[:2]])
@@ -350,7 +287,7 @@ def workspace_map(quantity, tilt, values, joints):
         axes.set_aspect("equal")
         axes.set_xlabel(f"{joints[0]['name']} [rad]")
         axes.set_ylabel(f"{joints[1]['name']} [rad]")
-        figure.figure.colorbar(image, ax=axes).set_label(f"1 σ [{unit}]")
+        figure.bar(image, f"1 σ [{unit}]")
         figure.alt = (
             f"Expected {quantity} error over the tilt of the rotor, averaged over its spin: from "
             f"{significant(min(flat))} to {significant(max(flat))} {unit}."
