@@ -268,8 +268,12 @@ TEST(DescriptionFile, TheShippedReactionSphereHasNoJoints) {
   EXPECT_TRUE(sphere.hasTorqueModel());
   EXPECT_EQ(sphere.poles.size(), 8U);
   EXPECT_EQ(sphere.coils.size(), 20U);
-  // Of the stretched curve: that of the shipped actuator at half the angle.
-  EXPECT_NEAR(TorqueCurve(*sphere.torque_curve).value(20.0 * kOneDegree), 0.2843, 1e-3);
+  // Its torque curve is that of the other shipped actuator, over twice the angle.
+  const TorqueCurve curve(*sphere.torque_curve);
+  const TorqueCurve half(*loadActuator(SOURCE_DIR "/config/pm_spherical_8x24.yaml").torque_curve);
+  for (double angle = 0.01; angle < 1.2; angle += 0.01) {
+    EXPECT_NEAR(curve.value(angle), half.value(0.5 * angle), 1e-14) << angle;
+  }
 }
 
 TEST(DescriptionFile, EveryShippedDescriptionLoads) {
