@@ -133,7 +133,7 @@ TEST(DescriptionFile, NeedsThreeJointsOrNone) {
 TEST(DescriptionFile, RefusesAnOrientationMapWithoutJoints) {
   const std::string map =
       "joints: []\n  orientation_map: {length: [1, 1, 1], amplitude: [1e-3, 1e-3, 1e-3], noise: "
-      "[1e-4, 1e-4, 1e-4], readings: [[0, 0, 0]], rotations: [[0, 0, 0]]}\n";
+      "[1e-4, 1e-4, 1e-4], points: [{reading: [0, 0, 0], rotation: [0, 0, 0]}]}\n";
   const std::string message = messageFor(withoutJoints(map));
   EXPECT_NE(message.find("orientation_map: the rotor has no joints"), std::string::npos) << message;
 }

@@ -7,10 +7,11 @@
 namespace sac {
 
 /// Jacobian of f at x by central differences, fourth order; error about 1e-10 for smooth f of
-/// size 1.
+/// size 1. A shorter step is for functions whose derivative has kinks, which it seldom meets.
 inline Eigen::MatrixXd numericJacobian(
-    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x) {
-  constexpr double kStep = 1e-3;
+    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f,
+    const Eigen::VectorXd& x,
+    double length = 1e-3) {
   Eigen::MatrixXd jacobian(f(x).size(), x.size());
   for (Eigen::Index c = 0; c < x.size(); ++c) {
     const auto at = [&](double step) {
@@ -18,8 +19,8 @@ inline Eigen::MatrixXd numericJacobian(
       moved[c] += step;
       return f(moved);
     };
-    jacobian.col(c) =
-        (8.0 * (at(kStep) - at(-kStep)) - (at(2.0 * kStep) - at(-2.0 * kStep))) / (12.0 * kStep);
+    jacobian.col(c) = (8.0 * (at(length) - at(-length)) - (at(2.0 * length) - at(-2.0 * length))) /
+                      (12.0 * length);
   }
   return jacobian;
 }
