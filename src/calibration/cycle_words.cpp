@@ -40,7 +40,7 @@ std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::s
   }
   const bool is_turned = open.front().name.find("rotation") != std::string::npos;
   return words + (is_turned ? ". Measure the orientation at 3 or more poses."
-                            : ". No sample tells them apart: add poses with all joints moved; what "
+                            : ". No sample tells them apart: add poses turned about all axes; what "
                               "is stated of each of them is certain only together.");
 }
 

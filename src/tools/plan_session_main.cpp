@@ -36,7 +36,8 @@ std::vector<Sample> heldSamples(const PlanSessionOptions& options,
     samples = readRecordings(options.bags, actuator, reading).samples;
   }
   if (options.samples_path) {
-    std::vector<Sample> more = loadSamples(*options.samples_path, actuator.coils.size());
+    std::vector<Sample> more =
+        loadSamples(*options.samples_path, actuator.coils.size(), actuator.has_joints);
     samples.insert(
         samples.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
     for (std::size_t n = 0; n < samples.size(); ++n) {
