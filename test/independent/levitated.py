@@ -156,6 +156,6 @@ def bound(unit, errors, laboratory, orientations, coils, ampere=2.0):
         )
     tracker, marker, sensor = laboratory.registration
     known = np.repeat([sensor, tracker, marker], 3)
-    information[size:, size:] += np.diag(np.where(known > 0.0, 1.0 / np.maximum(known, 1e-300) ** 2, 0.0))
     free = np.append(np.ones(size, bool), known > 0.0)
+    information[size:, size:] += np.diag([1.0 / stddev**2 if stddev > 0.0 else 0.0 for stddev in known])
     return np.linalg.inv(information[np.ix_(free, free)])[:size, :size]

@@ -158,7 +158,7 @@ class LevitatedRecording(unittest.TestCase):
     def test_a_session_is_planned_simulated_and_calibrated(self):
         plan = self.folder / "plan.yaml"
         said = run(
-            *("plan_session", "--actuator", SPHERE, "--max-poses", 12, "--coils-per-pose", 6, "--output", plan),
+            *("plan_session", "--actuator", SPHERE, "--poses", 12, "--torques-per-pose", 6, "--output", plan),
             *("--orientation-stddev", 1e-4, "--candidates", 60),
         )
         self.assertIn("with a tracker that makes no error", said)
@@ -167,7 +167,7 @@ class LevitatedRecording(unittest.TestCase):
         said = run(
             *("calibrate_bag", "--actuator", SPHERE, "--truth", truth, "--output", self.folder / "simulated.yaml", bag),
         )
-        self.assertIn("56 of 56", said)
+        self.assertIn("of 56 identified parameters", said)
         self.assertNotIn("joint_states", said)
 
 
