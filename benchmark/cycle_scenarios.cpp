@@ -243,7 +243,8 @@ EstimationProblem problemOf(const CycleScenario& scenario) {
   EstimationProblem problem;
   problem.model = &scenario.model;
   problem.samples = &scenario.samples;
-  problem.observations = selectObservations(scenario.samples, scenario.request, {});
+  problem.observations =
+      selectObservations(scenario.model.space(), scenario.samples, scenario.request, {});
   problem.prior = scenario.state.belief;
   return problem;
 }

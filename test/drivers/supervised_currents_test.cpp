@@ -190,7 +190,8 @@ TEST_F(FaultOfCurrents, EndsNoSoonerWhereCommandsMakeBeatsFaster) {
   command(0.0);
   const auto fast = [&](int beats) {
     for (int n = 0; n < beats; ++n) {
-      supervisor_.observe(amperes(0.0), beat_ += 0.0025);
+      beat_ += 0.0025;
+      supervisor_.observe(amperes(0.0), beat_, beat_);
     }
     return supervisor_.fault();
   };
