@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
         const sac::JointSensorOptions options = sac::loadJointSensorOptions(private_node);
         const sac::JointSensorNode joint_sensor(node,
                                                 private_node,
-                                                sac::loadDescriptionParameter(node).actuator,
+                                                sac::loadJointedDescriptionParameter(node).actuator,
                                                 options,
                                                 sac::makeTransport(options.link));
         sac::spinUntilTermination();

@@ -179,6 +179,16 @@ class JointSensor(unittest.TestCase):
         self.assertEqual(node.process.returncode, 1)
         self.assertIn("rat: the key is unknown", error)
 
+    def test_a_rotor_without_joints_has_none_to_read(self):
+        described = rospy.get_param(NAMESPACE + "/actuator")
+        self.addCleanup(rospy.set_param, NAMESPACE + "/actuator", described)
+        rospy.set_param(NAMESPACE + "/actuator", rospy.get_param("/levitated/actuator"))
+        node = self.start()
+        error = node.wait_for_end()
+        self.assertEqual(node.process.returncode, 1)
+        self.assertIn("has no joints", error)
+        self.assertIn("calibrate_bag", error)
+
 
 if __name__ == "__main__":
     rospy.init_node("joint_sensor_test")
