@@ -189,12 +189,13 @@ TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
   double time = 0.0;
   const auto beats_until_told = [&] {
     int beats = 1;
-    for (; !comparison.observe(two, time, time); time += kBeat) {
+    for (time += kBeat; !comparison.observe(two, time, time); time += kBeat) {
       ++beats;
     }
     return beats;
   };
   EXPECT_EQ(beats_until_told(), kBeats);
+  time += kBeat;
   EXPECT_TRUE(comparison.observe(two, time, time));
   comparison.forgive();
   EXPECT_EQ(beats_until_told(), kBeats);
