@@ -137,6 +137,32 @@ class LevitatedRecording(unittest.TestCase):
         np.testing.assert_allclose(np.array(answers[1].split(), float), told[0], atol=1e-12)
         self.assertEqual(answers[2], "error: The rotor has no joints: the tracker alone tells its orientation.")
 
+    def test_a_table_without_joints_is_imported(self):
+        rng, laboratory_ = np.random.default_rng(4), levitated.Laboratory()
+        orientations = levitated.random_orientations(20, 0.5, rng)
+        coils = levitated.chosen_coils(self.unit, orientations, 8, rng)
+        session = levitated.measured_session(self.unit, self.errors, laboratory_, orientations, coils, rng)
+        heads = [f"orientation_{c}" for c in "xyzw"] + ["orientation_stddev [rad]"]
+        heads += [f"torque_{c} [N.m]" for c in "xyz"] + ["torque_stddev [N.m]"]
+        heads += [f"current_{coil} [A]" for coil in range(1, 21)]
+        lines = [",".join(heads)]
+        for dwell, coil, torque in zip(session.dwell, session.coils, session.torques):
+            values = [*laboratory.quaternion_xyzw(session.orientations[dwell]), laboratory_.orientation]
+            values += [*torque, laboratory_.torque, *(AMPERE * (np.arange(20) == coil))]
+            lines.append(",".join(repr(float(value)) for value in values))
+        table, bag, output = (self.folder / name for name in ("table.csv", "table.bag", "table.yaml"))
+        table.write_text("\n".join(lines) + "\n")
+        run("import_csv", "--actuator", SPHERE, "--output", bag, table)
+        run("calibrate_bag", "--actuator", SPHERE, "--output", output, bag)
+        written = self.folder / "written.yaml"
+        levitated.write_samples(written, self.unit, laboratory_, session)
+        run("samples_to_bag", "--actuator", SPHERE, "--samples", written, "--output", self.folder / "written.bag")
+        run("calibrate_bag", "--actuator", SPHERE, "--output", self.folder / "same.yaml", self.folder / "written.bag")
+        both = [yaml.safe_load(path.read_text())["actuator"]["coils"] for path in (output, self.folder / "same.yaml")]
+        for one, other in zip(*both):
+            self.assertAlmostEqual(one["polar"], other["polar"], delta=1e-9)
+            self.assertAlmostEqual(one["stddev"]["polar"], other["stddev"]["polar"], delta=1e-9)
+
     def test_what_does_not_fit_is_refused(self):
         (self.folder / "one.csv").write_text("0,0,0\n")
         (self.folder / "unit.csv").write_text("0,0,0,1\n")
