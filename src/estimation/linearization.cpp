@@ -45,7 +45,7 @@ Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
     Eigen::Matrix3d* const d_reading = linear == nullptr ? nullptr : &linear->d_reading;
     return point.torqueResidual(sample, excitations(observation), jacobian, d_reading);
   }
-  const Eigen::Vector3d residual = point.orientationResidual(sample, jacobian);
+  Eigen::Vector3d residual = point.orientationResidual(sample, jacobian);
   for (std::size_t k = 0; linear != nullptr && k < kJoints; ++k) {
     // A joint sensor's error acts as an offset of that joint does.
     linear->d_reading.col(static_cast<Eigen::Index>(k)) =
