@@ -336,7 +336,8 @@ void CurrentAmplifier::zero() {
 
 void CurrentAmplifier::writeSetpoints(const Words& words) {
   const RegisterField& field = options_.setpoints;
-  const auto most = static_cast<std::size_t>(kMostWordsWritten / field.words() * field.words());
+  const auto most = static_cast<std::size_t>(kMostWordsWritten / field.words()) *
+                    static_cast<std::size_t>(field.words());
   for (std::size_t first = 0; first < words.size(); first += most) {
     const std::size_t last = std::min(first + most, words.size());
     transport_.write(field.unit,

@@ -97,7 +97,7 @@ TEST(CurrentAmplifier, ReadsATripThatIsNextToTheCurrentsWithThem) {
   CurrentAmplifierOptions options = shippedOptions();
   ScriptedTransport bus;
   bus.open();
-  const auto readsAt = [&](RegisterTable table, int address, int unit) {
+  const auto reads_at = [&](RegisterTable table, int address, int unit) {
     options.tripped->table = table;
     options.tripped->address = address;
     options.tripped->unit = unit;
@@ -114,12 +114,12 @@ TEST(CurrentAmplifier, ReadsATripThatIsNextToTheCurrentsWithThem) {
     EXPECT_FALSE(amplifier.read().tripped);
     return bus.reads() - before - 1;
   };
-  EXPECT_EQ(readsAt(RegisterTable::kInput, 24, kUnit), 1);
-  EXPECT_EQ(readsAt(RegisterTable::kInput, 32, kUnit), 1);
+  EXPECT_EQ(reads_at(RegisterTable::kInput, 24, kUnit), 1);
+  EXPECT_EQ(reads_at(RegisterTable::kInput, 32, kUnit), 1);
   // A device need not have the registers between.
-  EXPECT_EQ(readsAt(RegisterTable::kInput, 33, kUnit), 2);
-  EXPECT_EQ(readsAt(RegisterTable::kHolding, 30, kUnit), 2);
-  EXPECT_EQ(readsAt(RegisterTable::kInput, 24, kUnit + 1), 2);
+  EXPECT_EQ(reads_at(RegisterTable::kInput, 33, kUnit), 2);
+  EXPECT_EQ(reads_at(RegisterTable::kHolding, 30, kUnit), 2);
+  EXPECT_EQ(reads_at(RegisterTable::kInput, 24, kUnit + 1), 2);
 }
 
 // It must be known before they are switched on.
