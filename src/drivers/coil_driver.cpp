@@ -193,10 +193,8 @@ std::string CoilDriver::stop(double now) {
   try {
     allowOneBeat();
     transport_.open();
-    const AmplifierReading reading = amplifier_.read();
-    const double end = clock.now();
-    supervisor_.observe(reading.currents, end - reading.duration, end);
-    is_measured_ = true;
+    Beat last;
+    observe(amplifier_.read(), clock, last);
   } catch (const Error& error) {
     transport_.close();
     return error.what();
