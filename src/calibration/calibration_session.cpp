@@ -70,6 +70,14 @@ ValidationRecord validationRecord(const HeldOutValidation& validation) {
   return record;
 }
 
+/// Of two that may both have a verdict the one with the less probable misfit.
+HeldOutValidation severer(const HeldOutValidation& one, const HeldOutValidation& other) {
+  if (!one.hasVerdict()) {
+    return other.samples > 0 ? other : one;
+  }
+  return other.hasVerdict() && other.probability < one.probability ? other : one;
+}
+
 }  // namespace
 
 CalibrationSession::CalibrationSession(CalibratedDescription start,
@@ -234,13 +242,21 @@ Actuator CalibrationSession::actuator() const {
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
   const auto last = std::find_if(
       reports_.rbegin(), reports_.rend(), [](const CycleReport& one) { return one.success; });
-  const HeldOutValidation result =
-      last != reports_.rend() && last->motion
-          ? validationOf(last->motion->held_out)
-          : validateHeldOut(orientationMap().map ? mappedModel() : model_,
-                            samples_,
-                            state_,
-                            config_.estimation);
+  const bool is_motion = last != reports_.rend() && last->motion;
+  const bool joins_motion =
+      last != reports_.rend() && last->cycle == Cycle::kRefine && motion_evidence_;
+  HeldOutValidation result;
+  if (!is_motion) {
+    result = validateHeldOut(
+        orientationMap().map ? mappedModel() : model_, samples_, state_, config_.estimation);
+  }
+  if (is_motion || joins_motion) {
+    const auto motion = std::find_if(
+        last, reports_.rend(), [](const CycleReport& one) { return one.success && one.motion; });
+    if (motion != reports_.rend()) {
+      result = severer(result, validationOf(motion->motion->held_out));
+    }
+  }
   return result.samples == 0 ? std::nullopt : std::optional(result);
 }
 

@@ -177,6 +177,36 @@ TEST_F(MotionThenSamples, AreCalibratedTogether) {
   EXPECT_LT((both.state().belief.covariance - covariance).norm(), 1e-3 * covariance.norm());
 }
 
+// Windows that were held out judge a refinement after the motion, too: nothing else does here.
+TEST_F(MotionThenSamples, AreJudgedByTheWindowsHeldOut) {
+  moving_.duration = 10.6;
+  CalibrationSession both = session(samples_);
+  ASSERT_TRUE(both.run({Cycle::kMotion}).success);
+  const std::optional<HeldOutValidation> of_motion = both.validation();
+  ASSERT_TRUE(of_motion && of_motion->hasVerdict());
+  ASSERT_TRUE(both.run({Cycle::kRefine}).success);
+  const std::optional<HeldOutValidation> of_both = both.validation();
+  ASSERT_TRUE(of_both && of_both->hasVerdict());
+  EXPECT_EQ(of_both->samples, of_motion->samples);
+  EXPECT_EQ(of_both->probability, of_motion->probability);
+}
+
+TEST_F(MotionThenSamples, AreJudgedByTheWorseOfWindowsAndSamples) {
+  moving_.duration = 10.6;
+  for (std::size_t n = 0; n < samples_.size(); n += 10) {
+    samples_[n].validation = true;
+    samples_[n].torque += Eigen::Vector3d(0.0, 0.0, 0.05);
+  }
+  CalibrationSession both = session(samples_);
+  ASSERT_TRUE(both.run({Cycle::kMotion}).success);
+  const std::optional<HeldOutValidation> of_motion = both.validation();
+  ASSERT_TRUE(both.run({Cycle::kRefine}).success);
+  const std::optional<HeldOutValidation> of_both = both.validation();
+  ASSERT_TRUE(of_motion && of_both);
+  EXPECT_LT(of_both->probability, 1e-6);
+  EXPECT_LT(of_both->probability, of_motion->probability);
+}
+
 // Orientations alone: the poles stay those of the motion.
 TEST_F(MotionThenSamples, KeepsWhatSamplesDoNotTell) {
   for (Sample& sample : samples_) {

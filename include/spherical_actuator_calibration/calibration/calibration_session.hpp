@@ -102,7 +102,8 @@ class CalibrationSession {
   /// Everything in force: geometry, corrections, torque law and orientation map.
   Actuator actuator() const;
 
-  /// Judges the samples that were held out; nothing when there are none.
+  /// Judges the samples that were held out, or tells how windows of a motion judged it; where both
+  /// have a part in what is in force, the worse of both verdicts. Nothing where none was held out.
   std::optional<HeldOutValidation> validation() const;
 
   /// The calibrated description. Axes and offsets that were not identified are those of the start,
