@@ -56,6 +56,15 @@ class NoWrongSuccess(unittest.TestCase):
         for C in (QUARTER, ABOUT_X):
             self.check_refused(self.turn_torques(self.session(), C))
 
+    def test_torque_frame_turned_by_3_degrees_and_few_orientations(self):
+        C = laboratory.rotation(np.array([0.0, 0.0, np.radians(3.0)]))
+        for poses, torques in ((5, 12), (4, 16)):
+            self.poses = laboratory.random_poses(poses, 0.5, self.rng)
+            dwells, _ = laboratory.measured_session(
+                self.unit, self.errors, self.sensors, self.poses, torques, self.rng
+            )
+            self.check_refused(self.turn_torques(dwells, C))
+
     def test_marker_turned_by_90_degrees(self):
         for C in (QUARTER, ABOUT_X):
             dwells = self.session()
