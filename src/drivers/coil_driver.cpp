@@ -83,6 +83,10 @@ CoilDriver::Beat CoilDriver::exchange(const BeatClock& clock) {
   if (!is_tripped) {
     is_tripped = follow(clock, result);
   }
+  if (is_tripped && !was_tripped_) {
+    supervisor_.trip(clock.now());
+  }
+  was_tripped_ = is_tripped;
   if (is_tripped) {
     forget();
     setZero();
@@ -112,7 +116,7 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
     result.fault = !supervisor_.fault().empty();
     limiter_.stop();
   }
-  supervisor_.setting(limiter_.setpoints());
+  supervisor_.setting(limiter_.setpoints(), may_flow);
   const OutputStages stages = may_flow ? OutputStages::kOn : OutputStages::kOff;
   const AmplifierReading reading =
       amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
@@ -138,7 +142,7 @@ void CoilDriver::observe(const AmplifierReading& reading, const BeatClock& clock
 
 void CoilDriver::forget() {
   supervisor_.forget();
-  supervisor_.setting(limiter_.stop());
+  supervisor_.setting(limiter_.stop(), false);
 }
 
 void CoilDriver::fail(double now) {

@@ -25,8 +25,10 @@ std::optional<int> readAddress(const YamlMap& map, const char* key) {
 /// What the comparison of currents may be told, so that it is one: a larger tolerance or patience
 /// would let currents flow that nobody has set.
 constexpr double kLargestTolerance = 0.25;  // of the largest current of a coil
-constexpr double kLongestPatience = 0.4;    // [s]
-constexpr double kPatience = 0.2;           // [s] unless it is said
+/// Less would accuse honest amplifiers, whose lag is between those that are tried.
+constexpr double kSmallestTolerance = 0.03;
+constexpr double kLongestPatience = 0.4;  // [s]
+constexpr double kPatience = 0.2;         // [s] unless it is said
 
 SupervisorLimits readSupervision(const YamlMap& map) {
   SupervisorLimits limits;
@@ -39,16 +41,17 @@ SupervisorLimits readSupervision(const YamlMap& map) {
 void readDeviation(const YamlMap& map, CurrentAmplifierOptions& options) {
   SupervisorLimits& limits = options.supervision;
   const double largest = kLargestTolerance * options.limits.coil;
+  const double smallest = kSmallestTolerance * options.limits.coil;
   limits.deviating_beats = static_cast<int>(std::lround(kPatience * options.rate));
   limits.beat_period = 1.0 / options.rate;
   if (map.has("deviation")) {
     const YamlMap deviation = map.map("deviation");
-    limits.deviation = deviation.number("tolerance", ValueRange{0.0, largest, "A", true, false});
+    limits.deviation = deviation.number("tolerance", ValueRange::closed(smallest, largest, "A"));
     const auto most = static_cast<std::int64_t>(kLongestPatience * options.rate + 1e-6);
     limits.deviating_beats = static_cast<int>(deviation.integer("beats", 1, most));
-  } else if (limits.deviation > largest) {
+  } else if (limits.deviation > largest || limits.deviation < smallest) {
     map.fail("deviation.tolerance",
-             "is missing, and 0.15 A are too much where limits.coil is less than 0.6 A.");
+             "is missing, and 0.15 A do not suit where limits.coil is below 0.6 A or above 5 A.");
   }
 }
 

@@ -17,6 +17,10 @@ constexpr double kDelayStep = 0.01;
 constexpr Eigen::Index kDelays = 17;
 constexpr double kLongestDelay = kDelayStep * static_cast<double>(kDelays);
 
+/// After the output stages were on again current may be less than what is set: for the longest
+/// delay, and until the slowest amplifier is near it [s].
+constexpr double kOffForLong = kLongestDelay + 0.06;
+
 /// Of spans of time, however fast or slow the loop is [s].
 constexpr double kSpan = 0.5 * kDelayStep;
 
@@ -54,8 +58,10 @@ CurrentComparison::CurrentComparison(std::size_t coils, double tolerance, int be
       upper_(lower_),
       deviating_(Eigen::ArrayXXd::Zero(setpoints_.size(), kFilters * kDelays)) {}
 
-void CurrentComparison::setting(const Eigen::VectorXd& setpoints) {
+void CurrentComparison::setting(const Eigen::VectorXd& setpoints, bool stages_on) {
   setpoints_ = setpoints;
+  is_off_ = !stages_on;
+  was_off_ = was_off_ || is_off_;
   lowest_ = lowest_.min(setpoints.array());
   highest_ = highest_.max(setpoints.array());
 }
@@ -64,6 +70,11 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
                                                       double begin,
                                                       double end) {
   const double weight = weightOf(end);
+  if (!last_) {
+    beginWith(measured.array());
+  }
+  off_at_ = was_off_ ? end : off_at_;
+  was_off_ = is_off_;
   // What was set before may be in force until the answer to what was set last has come.
   advance(begin);
   lowest_ = highest_ = setpoints_.array();
@@ -97,6 +108,13 @@ bool CurrentComparison::isSuspicious() const {
 void CurrentComparison::forgive() {
   deviating_.setZero();
   most_ = 0.0;
+}
+
+void CurrentComparison::beginWith(const Eigen::ArrayXd& measured) {
+  lowest_ = lowest_.min(measured);
+  highest_ = highest_.max(measured);
+  lower_.colwise() = lowest_;
+  upper_.colwise() = highest_;
 }
 
 // Anything between the lowest and the highest setpoint may be in force all the time: no amplifier
@@ -158,6 +176,7 @@ void CurrentComparison::count(const Eigen::ArrayXd& measured,
                               double weight) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const Eigen::ArrayXd tolerance = tolerances();
+  const bool may_be_off = begin - off_at_ <= kOffForLong;
   for (Eigen::Index delay = 0; delay < kDelays; ++delay) {
     const double latest = end - kDelayStep * static_cast<double>(delay);
     const double earliest = begin - kDelayStep * static_cast<double>(delay + 1);
@@ -169,6 +188,10 @@ void CurrentComparison::count(const Eigen::ArrayXd& measured,
         lowest = lowest.min(span.lowest);
         highest = highest.max(span.highest);
       }
+    }
+    if (may_be_off) {
+      lowest = lowest.min(0.0);
+      highest = highest.max(0.0);
     }
     for (Eigen::Index filter = 0; filter < kFilters; ++filter) {
       const auto deviates =

@@ -31,13 +31,9 @@ constexpr double kConfirmingTime = 0.3;
 /// may be the reason why the owner is not heard [s].
 constexpr double kContestedSilence = 5.0;
 
-/// What was set flows no more so long after next to nothing was set [s].
-constexpr double kLongestFlow = 0.3;
-/// Current after that is an error when there was so much of it [s], however rarely it comes. A
-/// second without takes little of it back.
-constexpr double kMostStrays = 0.2;
-constexpr double kForgivenStrays = 0.005;
-constexpr double kLongestBeat = 0.05;  // [s] that one measurement stands for
+/// An amplifier that trips so often within so long [s] does so again.
+constexpr std::size_t kMostTrips = 3;
+constexpr double kTrippedAgain = 3.0;
 
 std::string withTwoDigits(double value) {
   return format("%.2f", value);
@@ -57,7 +53,7 @@ CurrentSupervisor::CurrentSupervisor(const SupervisorLimits& limits, std::size_t
     : limits_(limits),
       coils_(coils),
       comparison_(coils, limits.deviation, limits.deviating_beats, limits.beat_period),
-      calm_(coils) {
+      strays_(coils, limits.deviation) {
   validate(limits);
 }
 
@@ -179,24 +175,14 @@ void CurrentSupervisor::close() {
   closed_ = true;
 }
 
-void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints) {
+void CurrentSupervisor::setting(const Eigen::VectorXd& setpoints, bool stages_on) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  comparison_.setting(setpoints);
+  comparison_.setting(setpoints, stages_on);
+  strays_.setting(setpoints);
   if (!setpoints.isZero(0.0)) {
     zeros_ = 0;
     zero_confirmed_ = false;
     was_set_ = true;
-  }
-  for (std::size_t coil = 0; coil < coils_; ++coil) {
-    const double set = std::abs(setpoints[static_cast<Eigen::Index>(coil)]);
-    if (set > limits_.deviation) {
-      calm_[coil] = {};
-    } else {
-      calm_[coil].highest = std::max(calm_[coil].highest, set);
-    }
-    if (set > 0.0) {
-      calm_[coil].zero_since.reset();
-    }
   }
 }
 
@@ -208,10 +194,11 @@ void CurrentSupervisor::beating(double steady) {
 void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, double end) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
-  countZeros(measured, begin);
-  const std::optional<std::size_t> stray = countStrays(measured, begin);
+  flowed_ = flows();
+  countZeros(begin);
+  const std::optional<std::size_t> stray = strays_.observe(measured, begin);
   std::optional<std::size_t> deviating = comparison_.observe(measured, begin, end);
-  if (!deviating && strays_ >= kMostStrays) {
+  if (!deviating) {
     deviating = stray;
   }
   if (deviating && (fault_.empty() || is_loss_)) {
@@ -227,7 +214,9 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, d
 
 void CurrentSupervisor::lose(double steady) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (comparison_.setpoints().isZero(0.0)) {
+  const bool flowed = flowed_;
+  flowed_ = false;
+  if (comparison_.setpoints().isZero(0.0) && !flowed) {
     return;
   }
   const bool is_again = lost_at_ && steady - *lost_at_ <= kLostAgain;
@@ -235,15 +224,32 @@ void CurrentSupervisor::lose(double steady) {
   if (is_again && fault_.empty()) {
     fail("the amplifier did not answer in time, or not at all, twice within " +
          withTwoDigits(kLostAgain) +
-         " s, each time while it had to set current. Command zero, and look after its link and "
+         " s, each time while there was current. Command zero, and look after its link and "
          "its supply; link/response_timeout is the time that it has");
     is_loss_ = true;
   }
 }
 
-void CurrentSupervisor::countZeros(const Eigen::VectorXd& measured, double steady) {
-  const bool flows = measured.cwiseAbs().maxCoeff() > limits_.deviation;
-  zeros_ = flows || !comparison_.setpoints().isZero(0.0) ? 0 : zeros_ + 1;
+void CurrentSupervisor::trip(double steady) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  trips_.push_back(steady);
+  while (steady - trips_.front() > kTrippedAgain) {
+    trips_.pop_front();
+  }
+  if (trips_.size() >= kMostTrips && fault_.empty()) {
+    fail("the amplifier has tripped " + std::to_string(trips_.size()) + " times within " +
+         withTwoDigits(kTrippedAgain) + " s. Command zero, and look why it trips");
+    is_loss_ = true;
+    trips_.clear();
+  }
+}
+
+bool CurrentSupervisor::flows() const {
+  return measured_ && measured_->cwiseAbs().maxCoeff() > limits_.deviation;
+}
+
+void CurrentSupervisor::countZeros(double steady) {
+  zeros_ = flows() || !comparison_.setpoints().isZero(0.0) ? 0 : zeros_ + 1;
   if (zeros_ == 1) {
     zero_since_ = steady;
   }
@@ -252,37 +258,9 @@ void CurrentSupervisor::countZeros(const Eigen::VectorXd& measured, double stead
   zero_confirmed_ = zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime;
 }
 
-// Current that comes for a moment now and then is never there for long. Returns a coil that has one
-// now.
-std::optional<std::size_t> CurrentSupervisor::countStrays(const Eigen::VectorXd& measured,
-                                                          double steady) {
-  const double elapsed = std::min(steady - last_observed_.value_or(steady), kLongestBeat);
-  last_observed_ = steady;
-  std::optional<std::size_t> stray;
-  for (std::size_t coil = 0; coil < coils_; ++coil) {
-    const auto place = static_cast<Eigen::Index>(coil);
-    if (std::abs(comparison_.setpoints()[place]) > limits_.deviation) {
-      continue;
-    }
-    Calm& calm = calm_[coil];
-    calm.since = calm.since.value_or(steady);
-    if (comparison_.setpoints()[place] == 0.0) {
-      calm.zero_since = calm.zero_since.value_or(steady);
-    }
-    const bool is_zero = calm.zero_since && steady - *calm.zero_since > kLongestFlow;
-    const double allowed = limits_.deviation + (is_zero ? 0.0 : calm.highest);
-    if (steady - *calm.since > kLongestFlow && std::abs(measured[place]) > allowed) {
-      stray = coil;
-    }
-  }
-  strays_ = std::max(strays_ + (stray ? elapsed : -kForgivenStrays * elapsed), 0.0);
-  return stray;
-}
-
 bool CurrentSupervisor::mayBeat() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const bool is_quiet =
-      was_set_ || (measured_ && measured_->cwiseAbs().maxCoeff() <= limits_.deviation);
+  const bool is_quiet = was_set_ || (measured_ && !flows());
   const bool is_right = fault_.empty() || (is_loss_ && isZeroNow());
   return is_right && is_quiet && !comparison_.isSuspicious();
 }
@@ -324,7 +302,7 @@ void CurrentSupervisor::endFault(double steady) {
       zero_beats_ >= limits_.deviating_beats && steady - zero_beats_since_ >= least;
   if (is_bearable && zero_commanded_ && is_zero_long_enough) {
     fault_.clear();
-    strays_ = 0.0;
+    strays_.forgive();
     comparison_.forgive();
   }
 }

@@ -87,6 +87,8 @@ double toldAt(const Course& commanded, Plant plant, double end, double jitter = 
   CurrentComparison comparison(2, kTolerance, kBeats, kBeat);
   std::minstd_rand random(1);
   std::exponential_distribution<double> late(1.0);
+  // What flows at the beginning, before anything was set, may be right.
+  EXPECT_FALSE(comparison.observe(Eigen::Vector2d::Zero(), 1000.0 - kBeat, 1000.0 - kBeat));
   double setpoint = 0.0;
   double elapsed = 0.0;
   for (double time = 0.0; time < end; time += elapsed) {
@@ -187,6 +189,7 @@ TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
   CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
   const Eigen::VectorXd two = Eigen::VectorXd::Constant(1, 2.0);
   double time = 0.0;
+  ASSERT_FALSE(comparison.observe(Eigen::VectorXd::Zero(1), time, time));
   const auto beats_until_told = [&] {
     int beats = 1;
     for (time += kBeat; !comparison.observe(two, time, time); time += kBeat) {

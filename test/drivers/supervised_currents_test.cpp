@@ -21,6 +21,7 @@ struct Flow {
 std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& with = limits()) {
   CurrentSupervisor supervisor(with, 2);
   double now = 10.0;
+  supervisor.observe(amperes(0.0), now, now);
   for (const Flow& flow : flows) {
     for (int n = 0; n < flow.beats; ++n) {
       now += 0.005;
@@ -239,6 +240,7 @@ TEST_F(FaultOfCurrents, StaysWhereTheAmplifierDidNotObeyByItself) {
 TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
   CurrentSupervisor supervisor(limits(), 2);
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
+  supervisor.observe(amperes(0.0), 9.995, 9.995);
   for (const double now : {10.0, 10.1}) {
     for (int n = 0; n < 4; ++n) {
       supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n, now + 0.005 * n);
@@ -337,8 +339,8 @@ TEST(SupervisedCurrents, CurrentDuringAnErrorOfTheLinkIsTheGraverOne) {
 
 TEST(SupervisedCurrents, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
-  for (int n = 0; n < 4; ++n) {
-    supervisor.observe(amperes(0.0, 2.0), 0.005 * n, 0.005 * n);
+  for (int n = 0; n < 5; ++n) {
+    supervisor.observe(amperes(0.0, n == 0 ? 0.0 : 2.0), 0.005 * n, 0.005 * n);
   }
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
   EXPECT_FALSE(supervisor.command(10.0));

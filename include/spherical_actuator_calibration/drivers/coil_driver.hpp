@@ -88,6 +88,7 @@ class CoilDriver {
   std::optional<double> last_beat_;
   std::optional<double> last_given_at_;  ///< the last command that was set, by the steady clock [s]
   bool is_measured_ = false;             ///< currents were, by the last beat
+  bool was_tripped_ = false;             ///< the amplifier, likewise
 };
 
 }  // namespace sac

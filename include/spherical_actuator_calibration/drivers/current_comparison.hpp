@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
@@ -10,7 +11,7 @@ namespace sac {
 
 /// Judges whether measured currents are those that were set, whatever an honest amplifier's lag is.
 ///
-/// An amplifier is honest that follows its setpoints after a delay of up to 0.17 s with a time
+/// An amplifier is honest that follows its setpoints after a delay of up to 0.165 s with a time
 /// constant of up to 0.03 s. Which one it has is not known, so that many are held against what is
 /// measured, and a coil deviates when none of them explains its current any more. A range of all
 /// that was set within the longest lag would not do: commands that change fast make it so wide that
@@ -20,6 +21,10 @@ namespace sac {
 /// takes back only an eighth of one: current that comes and goes is an error, too. The time that
 /// passes counts: a beat that took long counts for several, one that was begun early for less.
 ///
+/// Output stages may cut the current at once, whatever the setpoints' delay is: while they are off,
+/// and for the longest lag afterwards, less than what is set is right, down to zero. What was set
+/// before the first measurement is not known: what that one has, or anything from there to zero.
+///
 /// Times are seconds of a steady clock. Not thread-safe.
 class CurrentComparison {
  public:
@@ -27,8 +32,8 @@ class CurrentComparison {
   /// `period`: of a beat that is not slowed down [s].
   CurrentComparison(std::size_t coils, double tolerance, int beats, double period);
 
-  /// These setpoints [A] go to the amplifier next.
-  void setting(const Eigen::VectorXd& setpoints);
+  /// These setpoints [A] go to the amplifier next, and its output stages are on or off.
+  void setting(const Eigen::VectorXd& setpoints, bool stages_on = true);
   /// These currents [A] were measured between two times, after the last setpoints were written.
   /// Returns the first coil that deviates, from 0.
   std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double begin, double end);
@@ -50,6 +55,7 @@ class CurrentComparison {
     Eigen::ArrayXXd highest;
   };
 
+  void beginWith(const Eigen::ArrayXd& measured);
   void advance(double until);
   Span settled(double from, double to, double elapsed);
   void remember(const Span& span);
@@ -67,9 +73,13 @@ class CurrentComparison {
   Eigen::ArrayXXd lower_;
   Eigen::ArrayXXd upper_;       ///< likewise
   std::optional<double> last_;  ///< end of a measurement [s]
-  std::deque<Span> spans_;      ///< without gaps, as far back as the longest delay
-  Eigen::ArrayXXd deviating_;   ///< beats, for each coil and each lag
-  double most_ = 0.0;  ///< of the coil that deviates most, by the lag that explains it best
+  bool is_off_ = false;         ///< the output stages
+  bool was_off_ = false;        ///< at some time since the last measurement
+  /// When they may have been off last, by a measurement [s].
+  double off_at_ = -std::numeric_limits<double>::infinity();
+  std::deque<Span> spans_;     ///< without gaps, as far back as the longest delay
+  Eigen::ArrayXXd deviating_;  ///< beats, for each coil and each lag
+  double most_ = 0.0;          ///< of the coil that deviates most, by the lag that explains it best
 };
 
 }  // namespace sac

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/drivers/current_comparison.hpp"
+#include "spherical_actuator_calibration/drivers/stray_currents.hpp"
 
 namespace sac {
 
@@ -75,18 +76,22 @@ class CurrentSupervisor {
   /// For good: no command is accepted any more.
   void close();
 
-  /// These setpoints [A] go to the amplifier next: from now on current may flow.
-  void setting(const Eigen::VectorXd& setpoints);
+  /// These setpoints [A] go to the amplifier next, and its output stages are on or off: from now on
+  /// current may flow.
+  void setting(const Eigen::VectorXd& setpoints, bool stages_on = true);
   /// The heartbeat goes to the amplifier now, or is on its way for a moment.
   void beating(double steady);
   /// These currents [A] were measured between two times [s], after the last setpoints were written,
   /// and are held against what was set: see CurrentComparison.
   void observe(const Eigen::VectorXd& measured, double begin, double end);
   /// The link was lost, or the answers came too late, after what was set last, so that it was not
-  /// measured. Twice within 3 s with current it is an error: each time there was some for as long
-  /// as answers may take, and nobody saw it. It ends as the other one does, whenever zero is
-  /// measured.
+  /// measured. Twice within 3 s with current, set or measured, it is an error: each time there was
+  /// some for as long as answers may take, and nobody saw it. It ends as the other one does,
+  /// whenever zero is measured.
   void lose(double steady);
+  /// The amplifier has tripped. Three times within 3 s is an error that ends as that one does: it
+  /// would have current for a moment again and again.
+  void trip(double steady);
   /// What flows against what was set, and what to do; empty: nothing is wrong. While it is not
   /// empty no command is followed, and the heartbeat must be withheld, so that the amplifier's own
   /// watchdog acts. It ends when zero was measured in all coils for `deviating_beats` beats in a
@@ -113,8 +118,8 @@ class CurrentSupervisor {
   bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
   void noticeClockJump(const Instant& now);
   bool isOwnedByAnother(const CoilCommand& command, double steady) const;
-  void countZeros(const Eigen::VectorXd& measured, double steady);
-  std::optional<std::size_t> countStrays(const Eigen::VectorXd& measured, double steady);
+  void countZeros(double steady);
+  bool flows() const;
   bool isZeroNow() const { return zeros_ > 0; }
   bool isOwner(const CoilCommand& command) const {
     return command.caller == owner_ && command.connection == owner_connection_;
@@ -143,22 +148,15 @@ class CurrentSupervisor {
   double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
   bool was_set_ = false;  ///< anything but zero
-  /// Since when no more than the tolerance is set in a coil.
-  struct Calm {
-    std::optional<double> since;  ///< by the steady clock [s]; nothing: more, or not yet measured
-    double highest = 0.0;         ///< |setpoint| since then [A]
-    std::optional<double> zero_since;  ///< likewise; nothing: not exactly zero is set
-  };
-  std::vector<Calm> calm_;               ///< per coil
-  std::optional<double> last_observed_;  ///< likewise
-  /// Current in calm coils, less what was forgiven [s].
-  double strays_ = 0.0;
+  StrayCurrents strays_;
   std::string fault_;
-  bool is_loss_ = false;  ///< it is one of the link
+  bool is_loss_ = false;  ///< it is one of the link, or of trips
   int faults_ = 0;        ///< others
   /// The last heartbeat, by the steady clock [s].
   double fed_at_ = -std::numeric_limits<double>::infinity();
+  bool flowed_ = false;            ///< current was measured since the link was lost last
   std::optional<double> lost_at_;  ///< with current, by the steady clock [s]
+  std::deque<double> trips_;       ///< the last ones, likewise
   bool obeyed_ = false;  ///< zero was measured before the amplifier's watchdog can have acted
   int zero_beats_ = 0;   ///< in a row, since the fault
   double zero_beats_since_ = 0.0;  ///< by the steady clock [s]

@@ -110,11 +110,13 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   receiver_.start();
 }
 
+// First the currents, then the rest: to end a subscription, a master is asked that may be gone, or
+// never answer.
 CoilDriverNode::~CoilDriverNode() {
   stop();
+  subscriber_.shutdown();
 }
 
-// First the currents, then the rest: to end a subscription, a master is asked that may be gone.
 bool CoilDriverNode::stop() {
   if (stopped_) {
     return !failed_ && endedWell();
@@ -128,7 +130,6 @@ bool CoilDriverNode::stop() {
     failure = tryToStop();
   }
   receiver_.stop();
-  subscriber_.shutdown();
   const CurrentSupervisor& supervisor = driver_.supervisor();
   if (!supervisor.fault().empty()) {
     ROS_FATAL_STREAM("The driver ends in an error: " << supervisor.fault() << '.');
