@@ -4,6 +4,13 @@
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
+namespace {
+
+/// For taking leave of the master, when the currents are zero [s].
+constexpr unsigned kLeave = 3;
+
+}  // namespace
+
 int main(int argc, char** argv) {
   bool may_flow = false;
   const int status = sac::runNode(
@@ -22,7 +29,8 @@ int main(int argc, char** argv) {
                                         sac::makeTransport(options.link));
         sac::spinUntilTermination();
         may_flow = !coil_driver.stop();
+        // Whoever started this program must not take it for done while current may flow.
+        sac::endWithin(kLeave, may_flow || sac::failedFatally() ? 1 : 0);
       });
-  // Whoever started this program must not take it for done while current may flow.
   return status == 0 && (may_flow || sac::failedFatally()) ? 1 : status;
 }

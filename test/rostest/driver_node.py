@@ -12,23 +12,16 @@ ERROR = DiagnosticStatus.ERROR
 RESPONSE_TIMEOUT = 10.0  # [s] for a device that answers, on however busy a computer: the longest that there is
 
 
-class DriverNode:
-    """A node's program with private parameters from a map, started and ended by the test."""
+class Diagnostics:
+    """What a node tells of itself."""
 
-    def __init__(self, name, parameters, environment=None):
+    def __init__(self, name):
         self.name = f"{NAMESPACE}/{name}"
-        if rospy.has_param(self.name):
-            rospy.delete_param(self.name)
-        rospy.set_param(self.name, parameters)
         self._status = {}
         self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive)
-        self.process = subprocess.Popen(
-            [program(name), f"__name:={name}"],
-            env={**os.environ, "ROS_NAMESPACE": NAMESPACE, **(environment or {})},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+
+    def close(self):
+        self._subscriber.unregister()
 
     def _receive(self, message):
         for status in message.status:
@@ -62,6 +55,23 @@ class DriverNode:
     def wait_for_level(self, task, level):
         wait_for(lambda: self.level(task) == level, f"{task} at level {level}")
 
+
+class DriverNode(Diagnostics):
+    """A node's program with private parameters from a map, started and ended by the test."""
+
+    def __init__(self, name, parameters, environment=None):
+        super().__init__(name)
+        if rospy.has_param(self.name):
+            rospy.delete_param(self.name)
+        rospy.set_param(self.name, parameters)
+        self.process = subprocess.Popen(
+            [program(name), f"__name:={name}"],
+            env={**os.environ, "ROS_NAMESPACE": NAMESPACE, **(environment or {})},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
     def end(self, signal_number):
         """Ends the node by a signal and returns what it wrote to its standard error."""
         self.process.send_signal(signal_number)
@@ -72,7 +82,7 @@ class DriverNode:
         return self.process.communicate(timeout=DEADLINE)[1]
 
     def close(self):
-        self._subscriber.unregister()
+        super().close()
         if self.process.poll() is None:
             self.process.terminate()
         self.wait_for_end()

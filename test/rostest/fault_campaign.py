@@ -12,6 +12,7 @@ import math
 import pathlib
 import signal
 import struct
+import subprocess
 import sys
 import tempfile
 import time
@@ -35,6 +36,7 @@ from spherical_actuator_calibration.command_line import parser
 
 SIMULATED = rospy.Time(978307200)  # the year 2001
 JUMP = 3600  # [s] of the wall clock
+LEAVE = 6.0  # [s] for the driver to end, whether its master answers or not
 
 
 @dataclasses.dataclass(frozen=True)
@@ -197,7 +199,11 @@ def master_hangs(master):
         defect = "" if laboratory.amplifier.is_on() else "there is no current without it"
         begin = time.monotonic()
         laboratory.driver.process.send_signal(signal.SIGTERM)
-        time.sleep(1.0)
+        try:
+            status = laboratory.driver.process.wait(LEAVE)
+            defect = defect or (f"exit status {status}" if status else "")
+        except subprocess.TimeoutExpired:
+            defect = defect or f"it is still there after {LEAVE:g} s"
         master.process.send_signal(signal.SIGCONT)
         status_of(laboratory)
         return outcome(laboratory, begin, defect=defect)

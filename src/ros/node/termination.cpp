@@ -16,9 +16,14 @@ namespace {
 
 volatile std::sig_atomic_t g_termination_requested = 0;
 volatile std::sig_atomic_t g_failed_fatally = 0;
+volatile std::sig_atomic_t g_late_status = 0;
 
 void requestTermination(int /*signal*/) {
   g_termination_requested = 1;
+}
+
+[[noreturn]] void endLate(int /*signal*/) {
+  ::_exit(static_cast<int>(g_late_status));
 }
 
 // Memory may be what is wanting: nothing here asks for any.
@@ -62,6 +67,15 @@ void handleFatalExceptions() {
 
 bool failedFatally() {
   return g_failed_fatally != 0;
+}
+
+void endWithin(unsigned seconds, int status) {
+  g_late_status = status;
+  struct sigaction action = {};
+  action.sa_handler = endLate;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGALRM, &action, nullptr);
+  ::alarm(seconds);
 }
 
 void spinUntilTermination() {

@@ -19,6 +19,10 @@ void handleFatalExceptions();
 /// True once there was one: the exit status must tell it.
 bool failedFatally();
 
+/// Ends the program with this exit status so many seconds from now, unless it has ended by then:
+/// all that is left to do is to take leave of a master, which may not answer.
+void endWithin(unsigned seconds, int status);
+
 /// Serves the global callback queue until a signal came or ROS is shut down from outside. ROS
 /// itself still runs afterwards in the first case, so that last messages can be sent.
 void spinUntilTermination();
