@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
@@ -13,14 +12,10 @@
 namespace sac {
 namespace {
 
-/// Readings farther apart tell no velocity [s].
-constexpr double kLongestDifference = 0.1;
 /// A cycle that came late integrates no further than this [s].
 constexpr double kLongestStep = 0.02;
 /// The observer learns from no reading that is older [s]: its delay would shake the rotor.
 constexpr double kLatestLesson = 0.02;
-/// Over which the velocity of the model is taken from that of the joints [s].
-constexpr double kVelocityStep = 1e-4;
 
 const Actuator& withTorqueModel(const Actuator& actuator) {
   validate(actuator);
@@ -36,6 +31,7 @@ MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptio
   MotionLimits& limits = limited.limits;
   limits.coil_current = std::min(limits.coil_current, options.allocation.current_limit);
   limits.total_current = std::min(limits.total_current, options.total_current_limit);
+  limits.square_current = std::min(limits.square_current, options.square_current_limit);
   return limited;
 }
 
@@ -92,28 +88,6 @@ void OrientationController::keepTorque() {
       orientationForTorque(options_.rotor, rotor, desired, torque + disturbance_.torque(), gains());
   disturbance_.interrupt();
   reference_.turnReference(R_desired * desired.R_stator_rotor.transpose());
-}
-
-bool OrientationController::receive(const JointMeasurement& joints) {
-  // Far beyond any number of turns, sines lose their digits.
-  constexpr double kLargestAngle = 1e6;
-  if (!joints.position.allFinite() || joints.position.cwiseAbs().maxCoeff() > kLargestAngle) {
-    throw DataError("The joint angles are not finite.");
-  }
-  const double elapsed = measured_ ? secondsBetween(measured_->stamp, joints.stamp) : 0.0;
-  const bool is_start = !measured_ || std::abs(elapsed) > kLongestDifference;
-  if (!is_start && elapsed <= 0.0) {
-    return false;
-  }
-  if (is_start) {
-    joint_velocity_.setZero();
-  } else {
-    const double share = 1.0 - std::exp(-elapsed * options_.velocity_cutoff);
-    joint_velocity_ +=
-        share * ((joints.position - measured_->position) / elapsed - joint_velocity_);
-  }
-  measured_ = joints;
-  return true;
 }
 
 void OrientationController::setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor) {
@@ -338,43 +312,13 @@ MotionProgress OrientationController::motionProgress() {
 void OrientationController::limitTotal() {
   CurrentBounds bounds{options_.allocation.current_limit,
                        options_.total_current_limit,
-                       std::numeric_limits<double>::infinity()};
+                       options_.square_current_limit};
   if (isInMotion()) {
     bounds = motion_->bounds();
   }
   const double share = shareWithinSums(currents_, bounds);
   currents_ *= share;
   share_ *= share;
-}
-
-RotorState OrientationController::rotorAt(const Eigen::Vector3d& q) const {
-  RotorState rotor;
-  rotor.R_stator_rotor = rotorOrientation(joints_, q);
-  const Eigen::Matrix3d R_before = rotorOrientation(joints_, q - kVelocityStep * joint_velocity_);
-  rotor.angular_velocity = rotationLog(R_before.transpose() * rotor.R_stator_rotor) / kVelocityStep;
-  return rotor;
-}
-
-std::string OrientationController::defectAt(Stamp now) const {
-  if (!has_parameters_) {
-    return "no parameters have come";
-  }
-  if (!measured_) {
-    return "no joint angles have come";
-  }
-  const double age = secondsBetween(measured_->stamp, now);
-  if (std::abs(age) > options_.largest_age) {
-    return format("the joint angles are %.2g s old", age);
-  }
-  if (!isInWorkspace(measured_->position, options_.workspace_margin)) {
-    return format("the rotor is outside of the workspace, ±%.3g rad of tilt",
-                  parameters_.workspace.tilt_limit);
-  }
-  return {};
-}
-
-bool OrientationController::isInWorkspace(const Eigen::Vector3d& q, double margin) const {
-  return q.head<2>().cwiseAbs().maxCoeff() <= parameters_.workspace.tilt_limit + margin;
 }
 
 void OrientationController::stop(const std::string& reason) {

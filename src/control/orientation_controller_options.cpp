@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/control/orientation_controller_options.hpp"
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
@@ -20,6 +21,9 @@ void validate(const OrientationControllerOptions& options) {
   requireInRange(
       "largest_tracking_error", options.largest_tracking_error, ValueRange::positive("rad"));
   requireInRange("total_current_limit", options.total_current_limit, ValueRange::positive("A"));
+  if (!(options.square_current_limit > 0.0)) {
+    throw ConfigError("square_current_limit: it must be above 0 A2.");
+  }
 }
 
 }  // namespace sac

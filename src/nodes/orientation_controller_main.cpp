@@ -8,8 +8,7 @@ int main(int argc, char** argv) {
                       argv,
                       "orientation_controller",
                       [](const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
-                        const sac::Actuator design =
-                            sac::loadJointedDescriptionParameter(node).actuator;
+                        const sac::Actuator design = sac::loadDescriptionParameter(node).actuator;
                         const sac::OrientationControllerNode controller(
                             node,
                             private_node,

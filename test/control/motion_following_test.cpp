@@ -155,8 +155,10 @@ TEST_F(MotionFollowingTest, LimitsCutTheExcitationBeforeTheTorque) {
 TEST_F(MotionFollowingTest, LimitsOfTheControllerHoldAsWell) {
   options_.allocation.current_limit = 0.4;
   options_.total_current_limit = 2.0;
+  options_.square_current_limit = 0.3;
   start(scenarios::paperNominal());
   runIntoMotion(examplePlan(0.3));
+  EXPECT_LE(largest_square_, 0.3 * (1.0 + 1e-9));
   EXPECT_LE(largest_coil_, 0.4 * (1.0 + 1e-9));
   EXPECT_LE(largest_total_, 2.0 * (1.0 + 1e-9));
 }

@@ -248,6 +248,19 @@ TEST_F(OrientationControllerTest, TheSumOfTheCurrentsStaysWithinItsLimit) {
   EXPECT_LT(controller_->torqueShare(), 1.0);
 }
 
+TEST_F(OrientationControllerTest, ThePowerOfTheCoilsStaysWithinItsLimit) {
+  constexpr double kSquare = 1e-5;
+  options_.square_current_limit = kSquare;
+  restart();
+  start(truth_);
+  controller_->setTarget(now_, rotationExp({0.3, -0.2, 0.8}));
+  for (int n = 0; n < 50; ++n) {
+    run(0.001);
+    EXPECT_LE(controller_->update(now_).squaredNorm(), kSquare * (1.0 + 1e-9));
+  }
+  EXPECT_LT(controller_->torqueShare(), 1.0);
+}
+
 TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
   start(truth_);
   EXPECT_GT(run(0.2), 0.001);

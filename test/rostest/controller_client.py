@@ -71,8 +71,9 @@ class Commands:
 
 
 class Controller(DriverNode):
-    def __init__(self, **parameters):
-        rospy.set_param(f"{NAMESPACE}/actuator", description())
+    def __init__(self, actuator=None, **parameters):
+        """`actuator`: its description, as a map; None: the shipped one with joints."""
+        rospy.set_param(f"{NAMESPACE}/actuator", actuator or description())
         super().__init__("orientation_controller", {"diagnostic_period": 0.05, **parameters})
         self.targets = rospy.Publisher(f"{NAMESPACE}/orientation_target", QuaternionStamped, queue_size=10)
         self.joint_targets = rospy.Publisher(f"{NAMESPACE}/joint_target", JointState, queue_size=10)

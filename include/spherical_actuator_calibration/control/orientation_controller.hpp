@@ -26,11 +26,12 @@ enum class ControlState {
 };
 
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
-/// joint sensors, torques and currents by the parameters in force. It stops by itself, with all
-/// currents zero, when joint angles are too old, outside the workspace, where the coils make no
-/// torque in some direction, or when the rotor does not follow. A motion plan is followed in the
-/// place of targets, under the same guards and its own limits. A load that nobody told of is found
-/// and held; while a motion plan is followed, what was found before stays. Not thread-safe.
+/// joint sensors, or without joints from the tracker, torques and currents by the parameters in
+/// force. It stops by itself, with all currents zero, when readings are too old, outside the
+/// workspace, where the coils make no torque in some direction, or when the rotor does not follow.
+/// A motion plan is followed in the place of targets, under the same guards and its own limits. A
+/// load that nobody told of is found and held; while a motion plan is followed, what was found
+/// before stays. Not thread-safe.
 class OrientationController {
  public:
   /// `design`: numbers, torque curve and workspace. Throws ConfigError when it has no torque model
@@ -45,6 +46,8 @@ class OrientationController {
   /// A reading of the joint sensors; false when it is not newer than the last, and changes nothing.
   /// After a jump of the clock it begins anew. Throws DataError when it cannot be an angle.
   bool receive(const JointMeasurement& joints);
+  /// The same for a rotor without joints, of the tracker's orientation.
+  bool receive(const OrientationMeasurement& orientation);
   /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
   /// outside the workspace, or cannot be reached straight within it, and during a motion plan.
   void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
@@ -72,6 +75,8 @@ class OrientationController {
   const Eigen::VectorXd& update(Stamp now);
 
   ControlState state() const { return state_; }
+  /// What readings are of: "joint angles", "orientations".
+  const char* readings() const { return parameters_.has_joints ? "joint angles" : "orientations"; }
   /// Why it stopped, or nothing.
   const std::string& stopReason() const { return stop_reason_; }
   /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
@@ -82,6 +87,9 @@ class OrientationController {
   const Eigen::Vector3d& disturbance() const { return disturbance_.torque(); }
 
  private:
+  /// Readings farther apart tell no velocity [s].
+  static constexpr double kLongestDifference = 0.1;
+
   /// What the model makes of the joint angles.
   RotorState rotorAt(const Eigen::Vector3d& q) const;
   std::string defectAt(Stamp now) const;
@@ -112,7 +120,7 @@ class OrientationController {
   DisturbanceObserver disturbance_;
   Stamp observed_ = 0;  ///< the reading that the observer saw last
   Eigen::Vector3d coil_torque_ = Eigen::Vector3d::Zero();  ///< of the last cycle, rotor frame [N·m]
-  std::optional<JointMeasurement> measured_;
+  std::optional<JointMeasurement> measured_;  ///< without joints, see freeRotorJoints()
   Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
   Eigen::Vector3d q_ = Eigen::Vector3d::Zero();  ///< joint angles of the last cycle [rad]
   std::optional<Stamp> last_update_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/control/computed_torque_control.hpp"
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
@@ -23,6 +25,8 @@ struct OrientationControllerOptions {
   /// stands still.
   double largest_tracking_error = 0.4;
   double total_current_limit = 8.0;  ///< of the sum over all coils, as the driver's [A]
+  /// ΣI² [A²]: power of the coils per ohm of each.
+  double square_current_limit = std::numeric_limits<double>::infinity();
 };
 
 /// Throws ConfigError that names the option and its range.

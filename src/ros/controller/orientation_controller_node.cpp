@@ -54,11 +54,11 @@ OrientationControllerNode::OrientationControllerNode(
     const OrientationControllerNodeOptions& options)
     : design_(design),
       options_(options),
-      joint_reader_(jointNames(design)),
+      reader_(design, {options.stator_frame, {}}),
       target_reader_(jointNames(design)),
       controller_(design, options.controller),
       diagnostics_(node, private_node, design),
-      control_(1, &joint_queue_) {
+      control_(1, &reading_queue_) {
   ros::NodeHandle handle = node;
   ros::NodeHandle private_handle = private_node;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
@@ -78,13 +78,15 @@ OrientationControllerNode::OrientationControllerNode(
       },
       tellRefusal("orientation_target"),
       at_once));
-  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
-      handle,
-      "joint_target",
-      kQueueLength,
-      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJointTarget(*message); },
-      tellRefusal("joint_target"),
-      at_once));
+  if (design.has_joints) {
+    subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+        handle,
+        "joint_target",
+        kQueueLength,
+        [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJointTarget(*message); },
+        tellRefusal("joint_target"),
+        at_once));
+  }
   motion_publisher_ = private_handle.advertise<msg::MotionStatus>("motion_status", 10, true);
   services_ = {
       private_handle.advertiseService("enable", &OrientationControllerNode::enable, this),
@@ -95,15 +97,12 @@ OrientationControllerNode::OrientationControllerNode(
       ros::WallDuration(kStatusPeriod),
       [this](const ros::WallTimerEvent& /*event*/) { tellMotion(); });
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
-  // Of readings that wait, the newest alone is of use.
-  handle.setCallbackQueue(&joint_queue_);
-  joint_subscriber_ = subscribeChecked<sensor_msgs::JointState>(
-      handle,
-      "joint_states",
-      1,
-      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
-      tellRefusal("joint_states"),
-      at_once);
+  handle.setCallbackQueue(&reading_queue_);
+  if (design.has_joints) {
+    followReadings<sensor_msgs::JointState>(handle, "joint_states");
+  } else {
+    followReadings<geometry_msgs::QuaternionStamped>(handle, "measured_orientation");
+  }
   control_.start();
   watch_ = std::make_unique<PeriodicThread>(kWatchRate, [this] { watch(); });
 }
@@ -134,23 +133,36 @@ void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters&
   }
 }
 
-void OrientationControllerNode::receiveJoints(const sensor_msgs::JointState& message) {
-  const std::optional<JointMeasurement> joints = joint_reader_.read(message);
+// Of readings that wait, the newest alone is of use.
+template <typename Message>
+void OrientationControllerNode::followReadings(ros::NodeHandle& handle, const std::string& topic) {
+  reading_subscriber_ = subscribeChecked<Message>(
+      handle,
+      topic,
+      1,
+      [this, topic](const typename Message::ConstPtr& message) { receive(*message, topic); },
+      tellRefusal(topic),
+      ros::TransportHints().tcpNoDelay());
+}
+
+template <typename Message>
+void OrientationControllerNode::receive(const Message& message, const std::string& topic) {
+  const auto* const reading = reader_.read(message);
   const std::lock_guard<std::mutex> lock(mutex_);
   try {
-    if (!joints) {
-      throw DataError("a joint is missing.");
+    if (reading == nullptr) {
+      throw DataError(reader_.refusal() + ".");
     }
-    if (!controller_.receive(*joints)) {
+    if (!controller_.receive(*reading)) {
       return;
     }
   } catch (const Error& error) {
-    last_refusal_ = "joint_states: " + printable(error.what());
+    last_refusal_ = topic + ": " + printable(error.what());
     ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, last_refusal_);
     return;
   }
-  const double interval = last_stamp_ == 0 ? 0.0 : secondsBetween(last_stamp_, joints->stamp);
-  last_stamp_ = joints->stamp;
+  const double interval = last_stamp_ == 0 ? 0.0 : secondsBetween(last_stamp_, reading->stamp);
+  last_stamp_ = reading->stamp;
   last_reading_ = steadySeconds();
   try {
     command(interval);
@@ -308,7 +320,7 @@ void OrientationControllerNode::watch() {
   const std::lock_guard<std::mutex> lock(mutex_);
   try {
     if (steadySeconds() - last_reading_ > options_.controller.largest_age) {
-      controller_.stop("no joint angles arrive");
+      controller_.stop(std::string("no ") + controller_.readings() + " arrive");
     }
     commandEnd();
   } catch (const std::exception& error) {

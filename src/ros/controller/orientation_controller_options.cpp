@@ -39,6 +39,12 @@ void readReference(const YamlMap& map, OrientationReferenceOptions& reference) {
       map.number("largest_gap", ValueRange::nonNegative("s"), reference.largest_gap);
 }
 
+/// Of all coils, each of the same resistance.
+double readSquareCurrentLimit(const YamlMap& power) {
+  return power.number("limit", ValueRange::positive("W")) /
+         power.number("coil_resistance", ValueRange::positive("ohm"));
+}
+
 }  // namespace
 
 OrientationControllerNodeOptions loadOrientationControllerOptions(
@@ -77,6 +83,9 @@ OrientationControllerNodeOptions loadOrientationControllerOptions(
       map.number("workspace_margin", ValueRange::nonNegative("rad"), controller.workspace_margin);
   positive(map, "largest_tracking_error", "rad", controller.largest_tracking_error);
   positive(map, "total_current_limit", "A", controller.total_current_limit);
+  if (map.has("power")) {
+    controller.square_current_limit = readSquareCurrentLimit(map.map("power"));
+  }
   if (map.has("reference")) {
     readReference(map.map("reference"), controller.reference);
   }

@@ -23,6 +23,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
+#include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/node/loop_timing.hpp"
@@ -33,11 +34,12 @@ namespace sac {
 
 /// Turns the rotor to the orientations of the topic `orientation_target`, or to where the joint
 /// sensors would read the angles of `joint_target`: `joint_states` and the latched `parameters` in,
-/// `coil_command` out. No command goes out before the private service
+/// `coil_command` out. Without joints `measured_orientation` takes the place of `joint_states`, and
+/// there is no `joint_target`. No command goes out before the private service
 /// `enable` is called with true, nor after a safe stop (OrientationController tells when) until it
 /// is called again; the coil driver's watchdog guards against the death of this node.
 ///
-/// Every joint reading that arrives makes one command, in a thread that serves nothing else. Where
+/// Every reading that arrives makes one command, in a thread that serves nothing else. Where
 /// none comes for the largest age that is allowed, by a clock that nobody can stop, it stops.
 ///
 /// Enabled, it follows a motion plan instead: the private service `follow_motion` begins it,
@@ -56,7 +58,10 @@ class OrientationControllerNode {
 
  private:
   void receiveParameters(const msg::ActuatorParameters& message);
-  void receiveJoints(const sensor_msgs::JointState& message);
+  template <typename Message>
+  void followReadings(ros::NodeHandle& handle, const std::string& topic);
+  template <typename Message>
+  void receive(const Message& message, const std::string& topic);
   void receiveTarget(const geometry_msgs::QuaternionStamped& message);
   void receiveJointTarget(const sensor_msgs::JointState& message);
   /// Of the topic that it came by. Precondition: mutex_ is held.
@@ -81,7 +86,7 @@ class OrientationControllerNode {
 
   const Actuator design_;
   const OrientationControllerNodeOptions options_;
-  JointStateReader joint_reader_;  ///< of the thread of the joint readings
+  MeasurementReader reader_;  ///< of the thread of the readings
 
   std::mutex mutex_;  ///< of all below, up to the publisher
   JointStateReader target_reader_;
@@ -91,8 +96,8 @@ class OrientationControllerNode {
   std::string last_refusal_;
   bool was_active_ = false;
   MotionPhase told_phase_ = MotionPhase::kNone;
-  Stamp last_stamp_ = 0;       ///< of the newest joint angles; 0: none
-  double last_reading_ = 0.0;  ///< when they came, by a clock that never jumps [s]
+  Stamp last_stamp_ = 0;       ///< of the newest reading; 0: none
+  double last_reading_ = 0.0;  ///< when it came, by a clock that never jumps [s]
   double last_command_ = 0.0;  ///< likewise [s]
 
   ros::Publisher publisher_;
@@ -101,8 +106,8 @@ class OrientationControllerNode {
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer motion_timer_;
   NodeDiagnostics diagnostics_;
-  ros::CallbackQueue joint_queue_;  ///< of joint readings alone: they wait for no service
-  ros::Subscriber joint_subscriber_;
+  ros::CallbackQueue reading_queue_;  ///< of readings alone: they wait for no service
+  ros::Subscriber reading_subscriber_;
   // Last, so that they end first.
   ros::AsyncSpinner control_;
   std::unique_ptr<PeriodicThread> watch_;
