@@ -3,11 +3,11 @@
 import rospy
 from geometry_msgs.msg import QuaternionStamped
 from sensor_msgs.msg import JointState
-from spherical_actuator_calibration.joint_readings import JointReadings
 from spherical_actuator_calibration.msg import ActuatorParameters
+from spherical_actuator_calibration.rotor_readings import readings_of
 from std_srvs.srv import SetBool
 
-from .rotations import quaternion_of, rotation_exp, rotation_of
+from .rotations import quaternion_of, rotation_of
 
 TARGET_RATE = 100.0  # [Hz]
 STARTING = 5.0  # [s] for the inputs of the controller
@@ -21,8 +21,7 @@ class CoilDrive:
     def __init__(self, ns):
         self._ns = ns
         self._frame = rospy.get_param(f"{ns}/orientation_controller/frames/stator", "stator")
-        self._names = [joint["name"] for joint in rospy.get_param(f"{ns}/actuator/joints")]
-        self._readings = JointReadings(ns, self._names)
+        self._readings = readings_of(ns, rospy.get_param(f"{ns}/actuator")).listen()
         self.parameters = None
         self._targets = rospy.Publisher(f"{ns}/orientation_target", QuaternionStamped, queue_size=1)
         self._joint_targets = rospy.Publisher(f"{ns}/joint_target", JointState, queue_size=1)
@@ -46,7 +45,7 @@ class CoilDrive:
         end = rospy.get_time() + PATIENCE
         while self.parameters is None or self._readings.fresh() is None:
             if rospy.get_time() > end:
-                raise RuntimeError(f"{self._ns}/parameters and joint_states do not come: start the laboratory.")
+                raise RuntimeError(f"{self._ns}/parameters and {self._readings.quantity} do not come: start the laboratory.")
             rospy.sleep(0.05)
         self._enable()
         if fixture:
@@ -76,7 +75,7 @@ class CoilDrive:
         """Joint angles [rad]; raises RuntimeError without fresh ones."""
         joints = self._readings.fresh()
         if joints is None:
-            raise RuntimeError("No joint angles arrive: check the joint sensor.")
+            raise RuntimeError(f"No {self._readings.quantity} arrive: check the {self._readings.device}.")
         return joints
 
     def send(self, rotation):
@@ -89,7 +88,7 @@ class CoilDrive:
 
     def send_joints(self, joints):
         """Where the joint sensors read these angles [rad]: the controller knows the kinematics in force."""
-        message = JointState(name=self._names, position=list(joints))
+        message = JointState(name=self._readings.names, position=list(joints))
         message.header.stamp = rospy.Time.now()
         self._joint_targets.publish(message)
 
@@ -109,15 +108,15 @@ class CoilDrive:
             send(target)
             rate.sleep()
 
-    def track(self, speed, duration, observe):
-        """Turns about the stator's x axis at `speed` [rad/s]; calls observe(time, desired) at every target."""
+    def track(self, pattern, duration, observe):
+        """Follows one of patterns.py for so long [s]; calls observe(time, desired) at every target."""
         rate = rospy.Rate(TARGET_RATE)
         begin = rospy.get_time()
         while True:
             time = rospy.get_time() - begin
             if time > duration:
                 return
-            desired = rotation_exp([speed * time, 0.0, 0.0])
+            desired = pattern.rotation(time)
             self.send(desired)
             observe(time, desired)
             rate.sleep()

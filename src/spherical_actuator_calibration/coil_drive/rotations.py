@@ -29,11 +29,6 @@ def angle_between(one, other):
     return float(numpy.arctan2(sine, 0.5 * (numpy.trace(difference) - 1.0)))
 
 
-def angle_about_x(rotation):
-    """Angle [rad] of a rotation that is nearly one about x."""
-    return float(numpy.arctan2(rotation[2, 1], rotation[1, 1]))
-
-
 def quaternion_of(rotation):
     """(x, y, z, w) of a rotation by less than half a turn."""
     w = 0.5 * numpy.sqrt(max(0.0, 1.0 + numpy.trace(rotation)))
