@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "spherical_actuator_calibration/actuator/actuator_design.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
@@ -37,6 +38,29 @@ std::vector<Eigen::Vector3d> randomPoses(std::size_t count, double tilt, std::ui
   return poses;
 }
 
+std::vector<Eigen::Vector3d> largeTorquePoses(const PaperStudyOptions& options,
+                                              std::size_t coil,
+                                              std::size_t count,
+                                              std::uint64_t seed) {
+  constexpr std::size_t kChoice = 100;
+  const JointGeometry joints = jointGeometry(options.nominal.joints);
+  const TorqueGeometry geometry = torqueGeometry(options.nominal);
+  const TorqueCurve curve(*options.nominal.torque_curve);
+  const auto place = static_cast<Eigen::Index>(coil);
+  std::vector<std::pair<double, Eigen::Vector3d>> choice;
+  for (const Eigen::Vector3d& q : randomPoses(kChoice * count, options.torque_tilt, seed)) {
+    const auto per_ampere = torquePerAmpere(curve, geometry, rotorOrientation(joints, q));
+    choice.emplace_back(per_ampere.col(place).norm(), q);
+  }
+  std::sort(
+      choice.begin(), choice.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Eigen::Vector3d> poses;
+  for (std::size_t n = 0; n < count; ++n) {
+    poses.push_back(choice[n].second);
+  }
+  return poses;
+}
+
 std::vector<Sample> orientationSamples(const PaperStudyOptions& options,
                                        const std::vector<Eigen::Vector3d>& poses,
                                        double noise,
@@ -50,7 +74,10 @@ std::vector<Sample> orientationSamples(const PaperStudyOptions& options,
     sample.id = static_cast<std::uint32_t>(samples.size());
     sample.joint_position = q;
     sample.has_orientation = true;
-    sample.R_stator_rotor = rotationExp(random.uniformVector(noise)) * rotorOrientation(joints, q);
+    const Eigen::Matrix3d turn = rotationExp(random.uniformVector(noise));
+    const Eigen::Matrix3d R_stator_rotor = rotorOrientation(joints, q);
+    const bool is_left = options.noise_side == PaperStudyOptions::NoiseSide::kStator;
+    sample.R_stator_rotor = is_left ? turn * R_stator_rotor : R_stator_rotor * turn;
     sample.orientation_stddev = uniformStddev(options.orientation_noise);
   }
   return samples;
@@ -131,14 +158,15 @@ CycleRequest requestOf(Situation situation) {
 
 std::vector<Eigen::Vector3d> plannedPoses(const PaperStudyOptions& options,
                                           const CalibrationModel& model,
-                                          const CycleRequest& request,
+                                          Situation situation,
                                           std::size_t count) {
   const std::vector<Sample> none;
   PlanningProblem problem;
   problem.model = &model;
   problem.held = &none;
-  problem.state = nominalState(model.space(), ManufacturingTolerance());
-  problem.request = request;
+  // What the situation takes as known is so for the plan, too, though by its drawing.
+  problem.state = startOf(model.space(), options.nominal, situation);
+  problem.request = requestOf(situation);
   problem.estimation = options.estimation;
   PosePlanOptions plan_options;
   plan_options.max_poses = count;
@@ -267,12 +295,14 @@ std::vector<LevelTwoRun> studyLevelTwo(const PaperStudyOptions& options,
   const CycleRequest request = requestOf(situation);
   std::vector<Eigen::Vector3d> poses;
   if (orientations == Orientations::kPlanned) {
-    poses = plannedPoses(options, model, request, measurements);
+    poses = plannedPoses(options, model, situation, measurements);
   }
   std::vector<LevelTwoRun> runs;
   for (std::uint64_t seed = 1; seed <= options.seeds; ++seed) {
     if (orientations == Orientations::kRandom) {
       poses = randomPoses(measurements, options.torque_tilt, seed);
+    } else if (orientations == Orientations::kLargeTorque) {
+      poses = largeTorquePoses(options, request.coil.value(), measurements, seed);
     }
     const std::vector<Sample> samples = torqueSamples(
         options, poses, request.coil.value(), noise ? options.torque_noise : 0.0, seed);

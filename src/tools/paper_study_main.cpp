@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line.hpp"
@@ -30,6 +31,10 @@ constexpr std::uint64_t kSessions = 20;  // of the study of torque errors
 constexpr std::size_t kWorkspacePoses = 500;
 constexpr int kDrawnPoint = 20;  // every so many points of a closed loop are written
 constexpr std::size_t kTableIterations = 4;
+constexpr std::pair<Orientations, const char*> kOrientations[] = {
+    {Orientations::kRandom, "random"},
+    {Orientations::kLargeTorque, "of large torque"},
+    {Orientations::kPlanned, "planned"}};
 constexpr double kProbabilities[] = {0.0, 0.05, 0.5, 0.95, 1.0};
 
 struct Options {
@@ -139,7 +144,8 @@ class Study {
                  "over the seeds.");
     writer_.entry(0, "seeds", std::to_string(options_.seeds));
     levelOne();
-    levelOneNoise();
+    levelOneNoise("level_1_noise", PaperStudyOptions::NoiseSide::kStator);
+    levelOneNoise("level_1_noise_of_rotor_side", PaperStudyOptions::NoiseSide::kRotor);
     tableFive();
     situation("situation_1", Situation::kPolesAndCoil, {10, 15, 20, 25, 30, 40}, 30);
     situation("situation_2", Situation::kCoil, {2, 3, 4, 6, 8, 12, 20}, 4);
@@ -210,12 +216,14 @@ class Study {
     }
   }
 
-  void levelOneNoise() {
+  void levelOneNoise(const char* name, PaperStudyOptions::NoiseSide side) {
     tell("level 1 with noise");
-    writer_.map(0, "level_1_noise");
+    PaperStudyOptions options = options_;
+    options.noise_side = side;
+    writer_.map(0, name);
     constexpr std::size_t kCounts[] = {2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40};
     for (const std::size_t count : kCounts) {
-      const auto runs = studyLevelOneNoise(options_, count);
+      const auto runs = studyLevelOneNoise(options, count);
       using Run = LevelOneNoiseRun;
       const auto below = std::count_if(
           runs.begin(), runs.end(), [](const Run& run) { return run.error < run.added_noise; });
@@ -259,12 +267,12 @@ class Study {
     }
     writer_.map(1, "noise");
     for (const std::size_t count : counts) {
-      for (const Orientations orientations : {Orientations::kRandom, Orientations::kPlanned}) {
+      for (const auto& [orientations, words] : kOrientations) {
         const std::vector<Run> runs =
             observable(studyLevelTwo(options_, situation, orientations, count, true));
         YamlLine line;
         line.add("measurements", std::to_string(count));
-        line.add("orientations", orientations == Orientations::kRandom ? "random" : "planned");
+        line.add("orientations", words);
         line.add("observable_sets", std::to_string(runs.size()));
         if (!runs.empty()) {
           line.add("epsilon_2",

@@ -67,6 +67,20 @@ TEST(PaperStudy, RemainingErrorIsBelowTheNoiseFromTenOrientations) {
   }
 }
 
+TEST(PaperStudy, NoiseFromTheRightLeavesAsMuch) {
+  PaperStudyOptions options = optionsFor(30);
+  const auto left = studyLevelOneNoise(options, 10);
+  options.noise_side = PaperStudyOptions::NoiseSide::kRotor;
+  const auto right = studyLevelOneNoise(options, 10);
+  double ratio = 0.0;
+  for (std::size_t n = 0; n < left.size(); ++n) {
+    EXPECT_LT(right[n].error, right[n].added_noise);
+    EXPECT_NE(right[n].error, left[n].error);
+    ratio += right[n].error / left[n].error / static_cast<double>(left.size());
+  }
+  EXPECT_NEAR(ratio, 1.0, 0.1);
+}
+
 TEST(PaperStudy, TwoOrientationsAreTooFew) {
   for (const LevelOneNoiseRun& run : studyLevelOneNoise(optionsFor(5), 2)) {
     EXPECT_GT(run.error, 1.0);
@@ -96,6 +110,25 @@ TEST(PaperStudy, PlannedSetsDoBetterThanThePaperWithNoise) {
                 runs.begin(), runs.end(), [](const LevelTwoRun& run) { return run.observable; }),
             30);
   EXPECT_LT(medianShare(runs), kPaperShare);
+}
+
+TEST(PaperStudy, PosesOfLargeTorqueMissPoles) {
+  const auto shown = [](Orientations orientations) {
+    const auto runs =
+        studyLevelTwo(optionsFor(30), Situation::kPolesAndCoil, orientations, 20, true);
+    return std::count_if(
+        runs.begin(), runs.end(), [](const LevelTwoRun& run) { return run.observable; });
+  };
+  EXPECT_LT(shown(Orientations::kLargeTorque), shown(Orientations::kRandom));
+  EXPECT_EQ(shown(Orientations::kPlanned), 30);
+}
+
+TEST(PaperStudy, PosesOfLargeTorqueTellACoilAtKnownPoles) {
+  const auto share = [](Orientations orientations) {
+    return medianShare(studyLevelTwo(optionsFor(30), Situation::kCoil, orientations, 4, true));
+  };
+  EXPECT_LT(share(Orientations::kLargeTorque), share(Orientations::kRandom));
+  EXPECT_LT(share(Orientations::kPlanned), share(Orientations::kLargeTorque));
 }
 
 TEST(PaperStudy, SituationTwoRecoversWithinFiveIterations) {

@@ -14,14 +14,18 @@ namespace sac {
 /// The simulations of the paper's section 4.3. The paper prints no orientations, hence each is run
 /// on many random sets of them.
 struct PaperStudyOptions {
+  /// On which side of R_stator_rotor the noise of an orientation turns.
+  enum class NoiseSide { kStator, kRotor };
+
   Actuator nominal;
   Actuator truth;
   std::uint64_t seeds = 200;        ///< random sets per simulation, ≥ 1
   double joint_tilt = 0.6;          ///< of the orientations of level 1 [rad]
   double torque_tilt = 0.3;         ///< of those of level 2 [rad]
   double orientation_noise = 1e-3;  ///< uniform within ± this per component [rad]
-  double torque_noise = 5e-4;       ///< uniform within ± this per component [N·m]
-  double current = 2.0;             ///< of the excited coil [A]
+  NoiseSide noise_side = NoiseSide::kStator;
+  double torque_noise = 5e-4;  ///< uniform within ± this per component [N·m]
+  double current = 2.0;        ///< of the excited coil [A]
   EstimationOptions estimation;
 };
 
@@ -57,8 +61,9 @@ enum class Situation { kPolesAndCoil, kCoil };
 
 /// Where the orientations of level 2 come from.
 enum class Orientations {
-  kRandom,   ///< as in the paper
-  kPlanned,  ///< by planPoses() for the nominal actuator; the same for every seed
+  kRandom,       ///< as in the paper
+  kLargeTorque,  ///< of a hundred times as many random ones those with the largest nominal torques
+  kPlanned,      ///< by planPoses() for the nominal actuator; the same for every seed
 };
 
 struct LevelTwoRun {
