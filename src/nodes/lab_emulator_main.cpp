@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
                         const sac::LabEmulatorNode emulator(
                             node,
                             private_node,
-                            sac::loadJointedDescriptionParameter(node).actuator,
+                            sac::loadDescriptionParameter(node).actuator,
                             sac::loadLabEmulatorOptions(private_node));
                         sac::spinUntilTermination();
                       });

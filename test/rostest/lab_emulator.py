@@ -96,9 +96,9 @@ class LabEmulator(LabCase):
 
     def test_targets_that_cannot_be_are_refused(self):
         self.lab.move(POSE)
-        self.lab._targets.publish(name=["joint_1", "joint_2", "joint_3"], position=[2.0, 0.0, 0.0])
-        self.lab._targets.publish(name=["joint_1"], position=[0.0])
-        self.lab._targets.publish(
+        self.lab.targets.publish(name=["joint_1", "joint_2", "joint_3"], position=[2.0, 0.0, 0.0])
+        self.lab.targets.publish(name=["joint_1"], position=[0.0])
+        self.lab.targets.publish(
             name=["joint_1", "joint_2", "joint_3"], position=[math.nan, 0.0, 0.0]
         )
         # What comes after them is followed.
@@ -123,9 +123,9 @@ class LabEmulator(LabCase):
     def test_a_frozen_sensor_does_not_see_the_move(self):
         self.lab.move(POSE)
         self.lab.fault("freeze_sensor", True)
-        before = list(self.lab._position)
+        before = self.lab.readings.fresh()
         before_orientation = self.orientation()
-        self.lab._targets.publish(name=["joint_1", "joint_2", "joint_3"], position=[0.0, 0.0, 0.0])
+        self.lab.targets.publish(name=["joint_1", "joint_2", "joint_3"], position=[0.0, 0.0, 0.0])
         wait_for(lambda: self.turned_from(before_orientation) > 0.5, "the rotor to turn")
         self.assertTrue(self.lab.is_at(before))
         self.lab.fault("freeze_sensor", False)

@@ -6,9 +6,11 @@
 #include <ros/console.h>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
+#include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
@@ -37,7 +39,10 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
     : options_(options),
       truth_(manufacturedActuator(nominal, options.errors, options.seed)),
       actuator_(truth_, options.load),
-      joint_server_(options.joint_sensor.link.host, options.joint_sensor.link.port),
+      joint_server_(nominal.has_joints
+                        ? std::make_unique<ModbusServer>(options.joint_sensor.link.host,
+                                                         options.joint_sensor.link.port)
+                        : nullptr),
       amplifier_server_(options.coil_driver.link.host, options.coil_driver.link.port),
       fixture_(options.fixture, Eigen::Vector3d::Zero()),
       amplifier_(options.coil_driver, options.amplifier, truth_.coils.size(), amplifier_server_),
@@ -70,32 +75,39 @@ LabEmulatorNode::LabEmulatorNode(const ros::NodeHandle& node,
         private_node_.advertiseService("release_fixture", &LabEmulatorNode::releaseFixture, this));
     services_.push_back(private_node_.advertiseService("push", &LabEmulatorNode::push, this));
   }
-  for (const RegisterContent& content : encodeJoints(options_.joint_sensor, fixture_.position())) {
-    joint_server_.addUnit(content.unit);
-  }
   history_.add(now_, {position(), amplifier_.currents()});
-  showJoints();
-  joint_server_.beforeRequest([this] { answerJointSensor(); });
+  if (joint_server_) {
+    startJointSensor();
+    followTargets<sensor_msgs::JointState>("fixture/target");
+  } else {
+    followTargets<geometry_msgs::QuaternionStamped>("fixture/orientation_target");
+  }
   amplifier_server_.beforeRequest([this] { answerAmplifier(); });
-  target_subscriber_ = subscribeChecked<sensor_msgs::JointState>(
-      node_,
-      "fixture/target",
-      kQueueLength,
-      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveTarget(*message); },
-      tellRefusal("fixture/target"));
   advertiseFaults();
   thread_ = std::make_unique<PeriodicThread>(options_.ft_sensor.stream.rate, [this] { beat(); });
 }
 
 LabEmulatorNode::~LabEmulatorNode() {
   // The servers end later than what answers them.
-  joint_server_.beforeRequest({});
+  if (joint_server_) {
+    joint_server_->beforeRequest({});
+  }
   amplifier_server_.beforeRequest({});
+}
+
+void LabEmulatorNode::startJointSensor() {
+  for (const RegisterContent& content : encodeJoints(options_.joint_sensor, position())) {
+    joint_server_->addUnit(content.unit);
+  }
+  showJoints();
+  joint_server_->beforeRequest([this] { answerJointSensor(); });
 }
 
 void LabEmulatorNode::advertiseFaults() {
   advertiseFault("lose_tracker", tracker_lost_, "The tracker has lost its marker.");
-  advertiseFault("freeze_sensor", sensor_frozen_, "The joint sensors' registers stand still.");
+  if (joint_server_) {
+    advertiseFault("freeze_sensor", sensor_frozen_, "The joint sensors' registers stand still.");
+  }
   advertiseFault("trip_amplifier", amplifier_tripped_, "The amplifier has tripped.");
   services_.push_back(private_node_.advertiseService<Trigger::Request, Trigger::Response>(
       "inject_outlier", [this](Trigger::Request& /*request*/, Trigger::Response& response) {
@@ -119,14 +131,20 @@ void LabEmulatorNode::advertiseFault(const char* name, bool& flag, const char* w
       }));
 }
 
-void LabEmulatorNode::receiveTarget(const sensor_msgs::JointState& message) {
-  try {
-    const Eigen::Vector3d target = targetOf(message);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    fixture_.setTarget(target);
-  } catch (const DataError& error) {
-    ROS_WARN_STREAM("fixture/target: " << printable(error.what()));
-  }
+template <typename Message>
+void LabEmulatorNode::followTargets(const std::string& topic) {
+  target_subscriber_ = subscribeChecked<Message>(
+      node_,
+      topic,
+      kQueueLength,
+      [this, topic](const typename Message::ConstPtr& message) {
+        try {
+          setTarget(targetOf(*message));
+        } catch (const DataError& error) {
+          ROS_WARN_STREAM(topic << ": " << printable(error.what()));
+        }
+      },
+      tellRefusal(topic));
 }
 
 Eigen::Vector3d LabEmulatorNode::targetOf(const sensor_msgs::JointState& message) const {
@@ -143,13 +161,27 @@ Eigen::Vector3d LabEmulatorNode::targetOf(const sensor_msgs::JointState& message
     target[static_cast<Eigen::Index>(k)] =
         message.position[static_cast<std::size_t>(place - message.name.begin())];
   }
+  return target;
+}
+
+Eigen::Vector3d LabEmulatorNode::targetOf(const geometry_msgs::QuaternionStamped& message) const {
+  if (!isFrame(message.header.frame_id, options_.stator_frame)) {
+    throw DataError("the target " + otherFrame(message.header.frame_id, options_.stator_frame) +
+                    ".");
+  }
+  return freeRotorAngles(quaternionFromRos(message.quaternion));
+}
+
+void LabEmulatorNode::setTarget(const Eigen::Vector3d& target) {
   const double limit = truth_.workspace.tilt_limit;
   constexpr double kRounding = 1e-6;
   if (!target.allFinite() || target.head<2>().cwiseAbs().maxCoeff() > limit + kRounding) {
     throw DataError("the target lies outside of the workspace, ±" + std::to_string(limit) +
                     " rad of tilt.");
   }
-  return target;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  // Joints turn to the very angles, an orientation is reached by the shortest turn.
+  fixture_.setTarget(truth_.has_joints ? target : nearestTurns(target, fixture_.position()));
 }
 
 bool LabEmulatorNode::releaseFixture(SetBool::Request& request, SetBool::Response& response) {
@@ -255,7 +287,7 @@ void LabEmulatorNode::showJoints() {
   const LaboratoryMoment seen = history_.at(now_ - options_.delays.joints);
   const JointMeasurement reading = joints_.measure(0, seen.position, {});
   for (const RegisterContent& content : encodeJoints(options_.joint_sensor, reading.position)) {
-    joint_server_.setWords(content.unit, content.table, content.address, content.words);
+    joint_server_->setWords(content.unit, content.table, content.address, content.words);
   }
 }
 

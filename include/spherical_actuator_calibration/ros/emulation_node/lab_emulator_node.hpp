@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <geometry_msgs/PoseStamped.h>
@@ -34,17 +35,19 @@ namespace sac {
 /// The laboratory without hardware, at the level of its wires: Modbus TCP devices for joint sensor
 /// and coil amplifier, and what the ROS drivers of a tracker and a force/torque sensor publish
 /// (`tracker/pose`, `ft_sensor/wrench`), each in its own frame. A fixture holds the rotor and
-/// follows `fixture/target`; released by the private service release_fixture, the rotor moves by
-/// coils and gravity, and the force/torque sensor, which goes with the fixture, is silent. The
-/// private topic `true_orientation` tells what no laboratory knows. The unit in it is made from the
-/// description by the seed, as `simulate_recording --seed` makes it.
+/// follows `fixture/target`; that of a rotor without joints, where there is no joint sensor either,
+/// follows `fixture/orientation_target`. Released by the private service release_fixture, the rotor
+/// moves by coils and gravity, and the force/torque sensor, which goes with the fixture, is silent.
+/// The private topic `true_orientation` tells what no laboratory knows. The unit in it is made from
+/// the description by the seed, as `simulate_recording --seed` makes it.
 ///
 /// Registers are those of the very time of a request, as far as the streams are not late
 /// (StreamDelays): laboratories are as exact at 1 kHz as their drivers' threads.
 ///
 /// The private service push turns the released rotor as a hand would, for a while. Others inject
 /// faults: lose_tracker, freeze_sensor (the joint sensors' registers stand
-/// still), inject_outlier (one tracker pose and one wrench far off), trip_amplifier.
+/// still; not without joints), inject_outlier (one tracker pose and one wrench far off),
+/// trip_amplifier.
 class LabEmulatorNode {
  public:
   /// Throws TransportError when a port is taken, DataError when the truth cannot be written.
@@ -60,10 +63,14 @@ class LabEmulatorNode {
   using SetBool = std_srvs::SetBool;
   using Trigger = std_srvs::Trigger;
 
+  void startJointSensor();
   void advertiseFaults();
   void advertiseFault(const char* name, bool& flag, const char* what);
-  void receiveTarget(const sensor_msgs::JointState& message);
+  template <typename Message>
+  void followTargets(const std::string& topic);
   Eigen::Vector3d targetOf(const sensor_msgs::JointState& message) const;
+  Eigen::Vector3d targetOf(const geometry_msgs::QuaternionStamped& message) const;
+  void setTarget(const Eigen::Vector3d& target);
   bool releaseFixture(SetBool::Request& request, SetBool::Response& response);
   bool push(msg::Push::Request& request, msg::Push::Response& response);
   void answerJointSensor();
@@ -72,7 +79,8 @@ class LabEmulatorNode {
   /// Everything on to a time [s]. Precondition of this and of all below: mutex_ is held.
   void advanceTo(double now);
   void moveRotor(double step);
-  /// What the joint sensors would read without their errors [rad].
+  /// What the joint sensors would read without their errors, or where there are no joints the
+  /// angles that stand for the orientation [rad].
   const Eigen::Vector3d& position() const;
   void showJoints();
   void showCurrents();
@@ -85,7 +93,7 @@ class LabEmulatorNode {
   const LabEmulatorOptions options_;
   const Actuator truth_;
   TrueActuator actuator_;
-  ModbusServer joint_server_;
+  std::unique_ptr<ModbusServer> joint_server_;  ///< null without joints
   ModbusServer amplifier_server_;
 
   std::mutex mutex_;  ///< of all below, up to the publishers
