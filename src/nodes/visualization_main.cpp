@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
                         const sac::VisualizationNode visualization(
                             node,
                             private_node,
-                            sac::loadJointedDescriptionParameter(node).actuator,
+                            sac::loadDescriptionParameter(node).actuator,
                             sac::loadVisualizationOptions(private_node));
                         sac::spinUntilTermination();
                       });

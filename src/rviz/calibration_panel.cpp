@@ -34,7 +34,6 @@ constexpr const char* kLegend =
     "<span style='color:#3c78c8'>■</span> enough <span style='color:#289646'>■</span> identified"
     "</small>";
 constexpr int kMostCoils = 999;
-constexpr int kMostRevisions = 1000000;
 
 constexpr const char* kPrimaryStyle =
     "QPushButton { background: #1b7f3b; color: white; font-weight: bold; padding: 4px 10px; }"
@@ -88,6 +87,8 @@ void CalibrationPanel::build() {
       [this] { return validation_->isChecked(); },
       [this] { return duration_->value(); });
   layout->addWidget(hand_guide_);
+  coil_look_ = new CoilLook(node_);
+  layout->addWidget(coil_look_);
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
   answer_ = wrappingLabel();
@@ -166,15 +167,6 @@ QLayout* CalibrationPanel::makeFileRow() {
           this,
           [this] { trigger("save"); });
   connect(
-      addButton(row, "Restore", "Put this revision of the parameters back in force; 0: nominal"),
-      &QPushButton::clicked,
-      this,
-      &CalibrationPanel::restore);
-  revision_ = new QSpinBox;
-  revision_->setRange(0, kMostRevisions);
-  revision_->setPrefix("revision ");
-  row->addWidget(revision_);
-  connect(
       addButton(row, "Forget samples", "Take all samples out of use; they stay in the database"),
       &QPushButton::clicked,
       this,
@@ -187,11 +179,14 @@ QWidget* CalibrationPanel::makeResults() {
   estimates_ = new ParameterTable;
   samples_ = new SampleTable([this](std::uint32_t id) { removeSample(id); });
   buttons_.push_back(samples_->removeButton());
+  revisions_ = new RevisionTable(node_, [this](std::uint32_t number) { restore(number); });
+  buttons_.push_back(revisions_->restoreButton());
   chart_ = new ConvergenceChart;
   auto* tabs = new QTabWidget;
   tabs->addTab(parameters_, "In force");
   tabs->addTab(estimates_, "Last cycle");
   tabs->addTab(samples_, "Samples");
+  tabs->addTab(revisions_, "&Revisions");
   tabs->addTab(chart_, "Convergence");
   return tabs;
 }
@@ -229,6 +224,8 @@ void CalibrationPanel::feed(const std::string& topic) {
 void CalibrationPanel::refresh() {
   showAnswer();
   hand_guide_->refresh();
+  coil_look_->refresh(static_cast<int>(model_.coils()));
+  revisions_->refresh(model_.revision());
   if (ticks_++ % kTicksOfHealth == 0) {
     const ros::WallTime now = ros::WallTime::now();
     health_->fill(model_.streams(now), model_.troubles(now));
@@ -343,9 +340,9 @@ void CalibrationPanel::removeSample(std::uint32_t id) {
   call<msg::RemoveSample>("remove_sample", request);
 }
 
-void CalibrationPanel::restore() {
+void CalibrationPanel::restore(std::uint32_t revision) {
   msg::Restore::Request request;
-  request.revision = static_cast<std::uint32_t>(revision_->value());
+  request.revision = revision;
   call<msg::Restore>("restore", request);
 }
 

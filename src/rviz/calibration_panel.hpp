@@ -15,12 +15,14 @@
 #include <ros/subscriber.h>
 #include <rviz/panel.h>
 
+#include "coil_look.hpp"
 #include "convergence_chart.hpp"
 #include "coverage_bars.hpp"
 #include "hand_guide.hpp"
 #include "health_view.hpp"
 #include "panel_model.hpp"
 #include "parameter_table.hpp"
+#include "revision_table.hpp"
 #include "sample_table.hpp"
 #include "service_caller.hpp"
 
@@ -29,7 +31,7 @@ namespace sac {
 /// Panel of rviz for a calibration in the namespace that rviz runs in: streams and their health,
 /// what is sampled and what is missing, buttons for the services of the calibration node, the
 /// grade, the parameters in force with their uncertainty, and what the last cycle did. It talks
-/// through topics and services only.
+/// through topics, services and actions only.
 class CalibrationPanel : public rviz::Panel {
   Q_OBJECT
 
@@ -67,7 +69,7 @@ class CalibrationPanel : public rviz::Panel {
   void trigger(const std::string& service);
   void forgetSamples();
   void removeSample(std::uint32_t id);
-  void restore();
+  void restore(std::uint32_t revision);
   void setAutoCapture(bool on);
   template <typename Service>
   void call(const std::string& service, const typename Service::Request& request);
@@ -87,10 +89,10 @@ class CalibrationPanel : public rviz::Panel {
   QDoubleSpinBox* duration_ = nullptr;
   QCheckBox* validation_ = nullptr;
   HandGuide* hand_guide_ = nullptr;
+  CoilLook* coil_look_ = nullptr;
   QCheckBox* auto_capture_ = nullptr;
   std::optional<bool> auto_capture_asked_;  ///< what the running call asks for
   QSpinBox* coil_ = nullptr;
-  QSpinBox* revision_ = nullptr;
   QLabel* answer_ = nullptr;
   QString called_;       ///< service of the running or the last call
   QElapsedTimer since_;  ///< its begin, or its answer
@@ -98,6 +100,7 @@ class CalibrationPanel : public rviz::Panel {
   ParameterTable* parameters_ = nullptr;
   ParameterTable* estimates_ = nullptr;
   SampleTable* samples_ = nullptr;
+  RevisionTable* revisions_ = nullptr;
   std::uint32_t removal_ = 0;  ///< sample that the last call of remove_sample names
   ConvergenceChart* chart_ = nullptr;
 };

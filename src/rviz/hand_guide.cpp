@@ -3,12 +3,13 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include "spherical_actuator_calibration/PlanPoses.h"
+#include "named_button.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 
@@ -49,7 +50,14 @@ HandGuide::HandGuide(const ros::NodeHandle& node,
       model_(model),
       hold_out_(std::move(hold_out)),
       duration_(std::move(duration)),
-      capture_(node),
+      capture_(node,
+               "calibration/capture",
+               [this](const msg::CaptureFeedback& feedback) { words_.receive(feedback.progress); }),
+      planning_(node,
+                "calibration/plan",
+                [this](const msg::PlanFeedback& feedback) {
+                  planned_ = "Planning, " + std::to_string(std::lround(feedback.elapsed)) + " s …";
+                }),
       wanted_pose_(node_.advertise<sensor_msgs::JointState>("wanted_pose", 1, true)) {
   build();
   listen();
@@ -63,10 +71,9 @@ void HandGuide::build() {
   advice_->setWordWrap(true);
   layout->addWidget(advice_);
   auto* row = new QHBoxLayout;
-  plan_ = new QPushButton("Plan");
+  plan_ = new QPushButton;
   plan_->setToolTip("Choose the poses that tell most, given the samples held (F2)");
-  plan_->setShortcut(QKeySequence("F2"));
-  connect(plan_, &QPushButton::clicked, this, [this] { plan(); });
+  connect(plan_, &QPushButton::clicked, this, [this] { planOrStop(); });
   row->addWidget(plan_);
   poses_ = new QSpinBox;
   poses_->setRange(1, kMostPoses);
@@ -101,6 +108,14 @@ void HandGuide::listen() {
       kNewest,
       [this](const sensor_msgs::JointState::ConstPtr& message) { guide_.receive(*message); },
       tellRefusal("joint_states")));
+  subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
+      node_,
+      "measured_orientation",
+      kNewest,
+      [this](const geometry_msgs::QuaternionStamped::ConstPtr& message) {
+        guide_.receive(*message);
+      },
+      tellRefusal("measured_orientation")));
   subscribers_.push_back(subscribeChecked<msg::CalibrationSample>(
       node_,
       "samples",
@@ -111,31 +126,37 @@ void HandGuide::listen() {
 
 void HandGuide::refresh() {
   guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
-  if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
-    takePlan(*answer);
-  }
+  showPlan();
   showMeasurement();
   tellTarget();
   showAdvice();
 }
 
-void HandGuide::plan() {
-  if (caller_.isBusy()) {
+void HandGuide::planOrStop() {
+  if (planning_.isRunning()) {
+    planning_.cancel();
     return;
   }
-  msg::PlanPoses::Request request;
-  request.cycle = "refine";
-  request.max_poses = static_cast<std::uint32_t>(poses_->value());
-  outcome_->setText("Planning …");
-  caller_.call<msg::PlanPoses>(node_.resolveName("calibration/plan_poses"), request);
+  msg::PlanGoal goal;
+  goal.max_poses = static_cast<std::uint32_t>(poses_->value());
+  planned_ = "Planning …";
+  planning_.begin(goal);
 }
 
-void HandGuide::takePlan(const ServiceAnswer& answer) {
-  if (answer.success) {
-    guide_.nameJoints(jointNames(node_, guide_.jointNames()));
-    guide_.take(answer.poses);
+void HandGuide::showPlan() {
+  if (const auto end = planning_.takeEnd()) {
+    if (end->success) {
+      if (model_.hasJoints()) {
+        guide_.nameJoints(jointNames(node_, guide_.jointNames()));
+      } else {
+        guide_.followOrientations();
+      }
+      guide_.take(end->result.poses);
+    }
+    outcome_->setText(QString::fromStdString(end->message));
+  } else if (planning_.isRunning()) {
+    outcome_->setText(QString::fromStdString(planned_));
   }
-  outcome_->setText(QString::fromStdString(answer.message));
 }
 
 void HandGuide::measureOrStop() {
@@ -148,9 +169,6 @@ void HandGuide::measureOrStop() {
 
 // Without a plan, or between its poses: the pose as it is, without current.
 void HandGuide::measure() {
-  if (caller_.isBusy()) {
-    return;
-  }
   msg::CaptureGoal goal;
   goal.current = current_->value();
   goal.duration = duration_();
@@ -174,17 +192,18 @@ void HandGuide::measure() {
     outcome_->setText("Choose the current of the planned coils first.");
     return;
   }
+  words_ = ProgressWords();
   capture_.begin(goal);
 }
 
 void HandGuide::showMeasurement() {
-  if (const std::optional<CaptureEnd> end = capture_.takeEnd()) {
+  if (const auto end = capture_.takeEnd()) {
     if (end->success && pose_) {
       guide_.noteMeasured(*pose_);
     }
     outcome_->setText(QString::fromStdString(end->message));
   } else if (capture_.isRunning()) {
-    outcome_->setText(QString::fromStdString(capture_.progress()));
+    outcome_->setText(QString::fromStdString(words_.text()));
   }
 }
 
@@ -208,13 +227,10 @@ void HandGuide::showAdvice() {
   if (advice != advice_->text()) {
     advice_->setText(advice);
   }
-  // A new text takes the shortcut away.
-  const char* what = capture_.isRunning() ? "Stop" : "Measure pose";
-  if (measure_->text() != what) {
-    measure_->setText(what);
-    measure_->setShortcut(QKeySequence("F3"));
-  }
-  plan_->setEnabled(!caller_.isBusy() && !capture_.isRunning());
+  nameButton(*measure_, capture_.isRunning() ? "Stop" : "Measure pose", "F3");
+  nameButton(*plan_, planning_.isRunning() ? "Stop" : "Plan", "F2");
+  measure_->setEnabled(!planning_.isRunning());
+  plan_->setEnabled(!capture_.isRunning());
 }
 
 }  // namespace sac

@@ -9,21 +9,24 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
 
+#include "engine_action.hpp"
 #include "panel_model.hpp"
-#include "pose_capture.hpp"
 #include "pose_guide.hpp"
-#include "service_caller.hpp"
+#include "progress_words.hpp"
+#include "spherical_actuator_calibration/CaptureAction.h"
+#include "spherical_actuator_calibration/PlanAction.h"
 
 namespace sac {
 
-/// For a rotor that a hand turns: plans poses, tells which way to turn, in degrees, and has the
-/// engine measure a pose by one button: without current, then with each planned coil excited in
+/// For a rotor that a hand turns: has the engine plan poses, tells which way to turn, in degrees,
+/// and has it measure a pose by one button: without current, then with each planned coil excited in
 /// turn. Publishes the pose that is next on `wanted_pose`, so that it can be seen.
 class HandGuide : public QWidget {
  public:
@@ -39,8 +42,8 @@ class HandGuide : public QWidget {
  private:
   void build();
   void listen();
-  void plan();
-  void takePlan(const ServiceAnswer& answer);
+  void planOrStop();
+  void showPlan();
   void measureOrStop();
   void measure();
   void showMeasurement();
@@ -52,8 +55,10 @@ class HandGuide : public QWidget {
   std::function<bool()> hold_out_;
   std::function<double()> duration_;
   PoseGuide guide_;
-  PoseCapture capture_;
-  ServiceCaller caller_;
+  ProgressWords words_;
+  EngineAction<msg::CaptureAction> capture_;
+  EngineAction<msg::PlanAction> planning_;
+  std::string planned_;  ///< how far it is
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;

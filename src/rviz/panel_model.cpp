@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include "shown_unit.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
@@ -31,34 +31,9 @@ std::string withoutSlash(const std::string& name_space) {
   return start == std::string::npos ? "" : name_space.substr(start) + "/";
 }
 
-/// A number by a format of printf.
-std::string number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
 /// "joint", 1 → "joint_1"
 std::string numbered(const std::string& name, std::size_t index) {
   return name + "_" + std::to_string(numberOf(index));
-}
-
-/// In what small quantities are shown: angles and torques in thousandths, others as they come.
-struct ShownUnit {
-  double factor;
-  std::string name;
-  const char* format;  ///< of printf
-};
-
-ShownUnit shownIn(const std::string& unit) {
-  if (unit == "rad" || unit == "N·m") {
-    return {1e3, "m" + unit, "%.3f"};
-  }
-  return {1.0, unit == "1" ? "" : unit, "%.2g"};
-}
-
-std::string withUnit(const char* format, double value, const std::string& unit) {
-  return number(format, value) + (unit.empty() ? "" : " " + unit);
 }
 
 ParameterLine line(const std::string& name, double value, double stddev, const std::string& unit) {
@@ -122,9 +97,18 @@ void PanelModel::receive(const diagnostic_msgs::DiagnosticArray& message,
   }
 }
 
+// Of a rotor without joints their parameters are all zero.
+bool PanelModel::hasJoints() const {
+  const auto& axis = parameters_.joints[0].axis;
+  return parameters_.source.empty() || axis.x != 0.0 || axis.y != 0.0 || axis.z != 0.0;
+}
+
 std::vector<HealthLine> PanelModel::streams(const ros::WallTime& now) const {
   std::vector<HealthLine> lines;
   for (const char* const stream : kStreams) {
+    if (!hasJoints() && stream == kStreams[0]) {
+      continue;
+    }
     HealthLine line = {stream, HealthLine::Level::kUnknown, "nothing was heard of it"};
     const auto place = heard_.find(std::string("calibration: ") + stream);
     if (place != heard_.end() && (now - place->second.at).toSec() < kLongestSilence) {
@@ -153,7 +137,10 @@ std::vector<HealthLine> PanelModel::troubles(const ros::WallTime& now) const {
 }
 
 std::vector<CoverageGroup> PanelModel::coverage() const {
-  std::vector<CoverageGroup> groups = {{"Joint", {{"orientations", status_.joint}}}};
+  std::vector<CoverageGroup> groups;
+  if (hasJoints()) {
+    groups.push_back({"Joint", {{"orientations", status_.joint}}});
+  }
   if (!status_.poles.empty()) {
     groups.push_back({"Poles", bars("pole", status_.poles)});
     groups.push_back({"Coils", bars("coil", status_.coils)});
@@ -181,7 +168,7 @@ std::vector<ParameterLine> PanelModel::parameters() const {
     return {};
   }
   std::vector<ParameterLine> lines;
-  for (std::size_t k = 0; k < parameters_.joints.size(); ++k) {
+  for (std::size_t k = 0; hasJoints() && k < parameters_.joints.size(); ++k) {
     const msg::JointAxis& joint = parameters_.joints[k];
     const std::string name = numbered("joint", k);
     lines.push_back(line(name + "/offset", joint.offset, joint.offset_stddev, "rad"));

@@ -71,13 +71,16 @@ class PanelModel {
   /// Keeps what the nodes in the namespace tell.
   void receive(const diagnostic_msgs::DiagnosticArray& message, const ros::WallTime& now);
 
-  /// The four streams of measurements that the calibration node lives on. Unknown when nothing was
-  /// heard for some seconds.
+  /// Whether the rotor has joints, by the parameters in force; true before any came.
+  bool hasJoints() const;
+
+  /// The streams of measurements that the calibration node lives on, without joints three. Unknown
+  /// when nothing was heard for some seconds.
   std::vector<HealthLine> streams(const ros::WallTime& now) const;
   /// What else is wrong, most serious first.
   std::vector<HealthLine> troubles(const ros::WallTime& now) const;
 
-  /// Joint, poles and coils: what has been sampled, and what is missing.
+  /// Joint, where there is one, poles and coils: what has been sampled, and what is missing.
   std::vector<CoverageGroup> coverage() const;
   std::uint32_t coils() const { return static_cast<std::uint32_t>(status_.coils.size()); }
 

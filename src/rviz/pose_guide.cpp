@@ -17,6 +17,27 @@ std::string inDegrees(double angle) {
   return (angle < 0.0 ? "−" : "+") + std::string(text);
 }
 
+/// Of two angles [rad]; a full turn makes none.
+double difference(double a, double b) {
+  return std::remainder(a - b, 2.0 * kPi);
+}
+
+/// Turns about x, then y, then z [rad] of a unit quaternion.
+std::array<double, 3> turnsOf(const geometry_msgs::Quaternion& q) {
+  const double r12 = 2.0 * (q.y * q.z - q.w * q.x);
+  const double r22 = 1.0 - 2.0 * (q.x * q.x + q.y * q.y);
+  const double first = std::atan2(-r12, r22);
+  const double second = std::atan2(2.0 * (q.x * q.z + q.w * q.y), std::hypot(r12, r22));
+  // The second row of what is left after the first turn was taken back.
+  const double sine = std::sin(first);
+  const double cosine = std::cos(first);
+  const double left_0 =
+      cosine * 2.0 * (q.x * q.y + q.w * q.z) + sine * 2.0 * (q.x * q.z - q.w * q.y);
+  const double left_1 =
+      cosine * (1.0 - 2.0 * (q.x * q.x + q.z * q.z)) + sine * 2.0 * (q.y * q.z + q.w * q.x);
+  return {first, second, std::atan2(left_0, left_1)};
+}
+
 std::string listed(const std::vector<std::uint32_t>& coils) {
   std::string text;
   for (const std::uint32_t coil : coils) {
@@ -39,6 +60,20 @@ void PoseGuide::take(const std::vector<msg::PlannedPose>& poses) {
     std::copy(planned.joint_position.begin(), planned.joint_position.end(), pose.joints.begin());
     pose.coils.assign(planned.coils.begin(), planned.coils.end());
     poses_.push_back(std::move(pose));
+  }
+}
+
+void PoseGuide::followOrientations() {
+  has_joints_ = false;
+  names_ = {"rotation_x", "rotation_y", "rotation_z"};
+}
+
+void PoseGuide::receive(const geometry_msgs::QuaternionStamped& message) {
+  constexpr double kUnitTolerance = 2e-3;  // of the square of the norm
+  const geometry_msgs::Quaternion& q = message.quaternion;
+  const double square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  if (!has_joints_ && std::abs(square - 1.0) < kUnitTolerance) {
+    joints_ = turnsOf(q);
   }
 }
 
@@ -81,7 +116,7 @@ void PoseGuide::noteMeasured(std::size_t pose) {
 
 bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) const {
   return std::equal(one.begin(), one.end(), other.begin(), [this](double a, double b) {
-    return std::abs(a - b) <= tolerance_;
+    return std::abs(difference(a, b)) <= tolerance_;
   });
 }
 
@@ -150,7 +185,7 @@ std::string PoseGuide::advice() const {
   const std::string which =
       "Pose " + std::to_string(numberOf(*target)) + " of " + std::to_string(poses_.size()) + ": ";
   if (!joints_) {
-    return which + "the joint angles are silent.";
+    return which + (has_joints_ ? "the joint angles are silent." : "the tracker is silent.");
   }
   if (isSame(poses_[*target].joints, *joints_)) {
     const std::vector<std::uint32_t> open = missing(*target);
@@ -160,7 +195,7 @@ std::string PoseGuide::advice() const {
   }
   std::string turns;
   for (std::size_t k = 0; k < joints_->size(); ++k) {
-    const double left = poses_[*target].joints[k] - (*joints_)[k];
+    const double left = difference(poses_[*target].joints[k], (*joints_)[k]);
     if (std::abs(left) > tolerance_) {
       turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + inDegrees(left);
     }

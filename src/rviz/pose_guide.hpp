@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <geometry_msgs/QuaternionStamped.h>
 #include <sensor_msgs/JointState.h>
 
 #include "spherical_actuator_calibration/CalibrationSample.h"
@@ -25,12 +26,17 @@ class PoseGuide {
   void judgeBy(double tolerance, double threshold);
   /// As the description names the joints; joint_1..3 by default.
   void nameJoints(const std::array<std::string, 3>& names) { names_ = names; }
+  /// The rotor has no joints: poses are turns about x, then y, then z of the stator, and
+  /// orientations tell where it is.
+  void followOrientations();
   const std::array<std::string, 3>& jointNames() const { return names_; }
 
   /// Poses to measure at, in their order, instead of those before.
   void take(const std::vector<msg::PlannedPose>& poses);
   /// Joint angles [rad]: by their names, or the first three where there are none.
   void receive(const sensor_msgs::JointState& message);
+  /// Orientation of a rotor without joints; of another one it tells nothing here.
+  void receive(const geometry_msgs::QuaternionStamped& message);
   /// A sample that is held, to judge or not: its pose and pattern are measured, and with the
   /// pattern its opposite, which tells the same.
   void receive(const msg::CalibrationSample& sample);
@@ -68,6 +74,7 @@ class PoseGuide {
   double tolerance_ = 0.0;  ///< [rad]
   double threshold_ = 0.0;  ///< [A]
   std::array<std::string, 3> names_ = {"joint_1", "joint_2", "joint_3"};
+  bool has_joints_ = true;
   std::vector<Pose> poses_;
   std::optional<std::array<double, 3>> joints_;
 };

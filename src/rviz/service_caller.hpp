@@ -11,7 +11,7 @@
 
 #include <ros/service.h>
 
-#include "spherical_actuator_calibration/PlanPoses.h"
+#include "spherical_actuator_calibration/ListRevisions.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -19,8 +19,8 @@ namespace sac {
 /// What a service answered, or why it did not.
 struct ServiceAnswer {
   bool success = false;
-  std::string message;                  ///< one sentence
-  std::vector<msg::PlannedPose> poses;  ///< of plan_poses
+  std::string message;                   ///< one sentence
+  std::vector<msg::Revision> revisions;  ///< of list_revisions
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -36,14 +36,14 @@ class ServiceCaller {
       service.request = request;
       constexpr bool kTellAbsence = false;
       if (!ros::service::exists(name, kTellAbsence)) {
-        return {false, "The calibration node does not answer (" + name + "): is it running?", {}};
+        return {false, "Nobody answers (" + name + "): is its node running?", {}};
       }
       if (!ros::service::call(name, service)) {
         return {false, "The connection to " + name + " was lost before its answer.", {}};
       }
       ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
-      if constexpr (std::is_same_v<Service, msg::PlanPoses>) {
-        answer.poses = service.response.poses;
+      if constexpr (std::is_same_v<Service, msg::ListRevisions>) {
+        answer.revisions = service.response.revisions;
       }
       return answer;
     });

@@ -2,11 +2,14 @@
 
 import os
 import subprocess
+import time
 
+from calibration_client import wait_for
 from emulated_lab import LabCase
 
 SIZE = (1280, 720)
 FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
+PAUSE = 1.0  # [s] between two presses of a key that did nothing: buttons are disabled while a service runs
 
 
 class Screen:
@@ -70,3 +73,30 @@ class ViewedLabCase(LabCase):
         cls.addClassCleanup(cls.screen.stop)
         environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
         super().make_lab(environment=environment, rviz=True, **arguments)
+
+    def press(self, key, done, what, pause=PAUSE):
+        """A key, again after a pause [s] where the panel was still busy, until something is so."""
+        end = [0.0]
+
+        def is_done():
+            if done():
+                return True
+            if time.monotonic() > end[0]:
+                end[0] = time.monotonic() + pause
+                self.key(key)
+            return False
+
+        wait_for(is_done, what)
+
+    def key(self, key):
+        environment = {**os.environ, "DISPLAY": self.screen.display}
+        windows = subprocess.run(
+            ["xdotool", "search", "--onlyvisible", "--class", "rviz"],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=False,
+            env=environment,
+        ).stdout.split()
+        for window in windows[:1]:
+            subprocess.run(["xdotool", "windowfocus", window], check=False, env=environment)
+        subprocess.run(["xdotool", "key", key], check=True, env=environment)

@@ -130,6 +130,19 @@ TEST(PanelModel, AJointWithoutTorqueModelHasNoPolesAndCoils) {
   EXPECT_EQ(panel.coverage().size(), 1U);
 }
 
+TEST(PanelModel, ARotorWithoutJointsHasNothingOfThem) {
+  PanelModel panel("/actuator");
+  EXPECT_TRUE(panel.hasJoints());
+  msg::ActuatorParameters levitated = parameters();
+  levitated.joints = {};
+  panel.receive(levitated);
+  EXPECT_FALSE(panel.hasJoints());
+  ASSERT_EQ(panel.streams(now()).size(), 3U);
+  EXPECT_EQ(panel.streams(now())[0].name, "coil_currents");
+  EXPECT_TRUE(panel.coverage().empty());
+  EXPECT_EQ(panel.parameters().front().name, "pole_1/polar");
+}
+
 TEST(PanelModel, ShowsTheGradeThatItIsTold) {
   PanelModel panel("/actuator");
   EXPECT_EQ(panel.grade(), "");

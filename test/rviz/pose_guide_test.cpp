@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include <gtest/gtest.h>
 
 namespace sac {
@@ -112,6 +114,31 @@ TEST_F(PoseGuideTest, CallsJointsAsTheDescriptionDoes) {
   message.position = {-1.0, 0.0, 0.0};
   guide_.receive(message);
   EXPECT_EQ(guide_.advice(), "Pose 1 of 2: turn roll by +5.7°.");
+}
+
+TEST_F(PoseGuideTest, OrientationsLeadARotorWithoutJoints) {
+  geometry_msgs::QuaternionStamped orientation;
+  orientation.quaternion.w = 1.0;
+  guide_.receive(orientation);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 2: the joint angles are silent.");
+  guide_.followOrientations();
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 2: the tracker is silent.");
+  // Turned by 0.3 about x, then 0.2 about y, then −3 about z.
+  guide_.take({planned(0.3, 0.2, 3.0, {})});
+  const Eigen::Quaterniond q = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()) *
+                               Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(-3.0, Eigen::Vector3d::UnitZ());
+  orientation.quaternion.x = q.x();
+  orientation.quaternion.y = q.y();
+  orientation.quaternion.z = q.z();
+  orientation.quaternion.w = q.w();
+  guide_.receive(orientation);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 1: turn rotation_z by −16.2°.");
+  orientation.quaternion.w = 2.0;
+  guide_.receive(orientation);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 1: turn rotation_z by −16.2°.");
+  guide_.judgeBy(0.3, 0.1);
+  EXPECT_EQ(guide_.here(), 0U);
 }
 
 TEST_F(PoseGuideTest, KeepsTheLastAnglesWhereAMessageHasNone) {

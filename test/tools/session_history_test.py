@@ -2,11 +2,13 @@
 """What list_revisions tells of sessions of one unit."""
 
 import contextlib
+import math
 import pathlib
 import sqlite3
 import tempfile
 import unittest
 
+from spherical_actuator_calibration.session_guide.revisions import revisions_told, sessions_beside
 from spherical_actuator_calibration.session_tables.export import APPLICATION, ExportError
 from spherical_actuator_calibration.session_tables.history import drift_between, history_of
 
@@ -63,6 +65,24 @@ class History(unittest.TestCase):
             lines[-1].strip(),
             "furthest from the session before: joint_1/offset by +0.005 rad, 3.5 standard deviations of the change",
         )
+
+    def test_tells_the_same_to_those_who_cannot_read_files(self):
+        folders = {"old": ("2026-01-01T00:00:00Z", "unit-7"), "new": ("2026-03-01T00:00:00Z", "unit-7"), "other": ("", "unit-8")}
+        for folder, (date, serial) in folders.items():
+            (self.folder / folder).mkdir()
+            self.session(f"{folder}/session.db", date, 0.1 + 5e-3 * (folder == "new"), serial)
+        (self.folder / "broken").mkdir()
+        (self.folder / "broken" / "session.db").write_text("no database")
+        present = self.folder / "new" / "session.db"
+        beside = sessions_beside(present)
+        self.assertEqual(beside, [self.folder / "old" / "session.db"])
+        start, joint, present_start, present_joint = revisions_told(present, beside)
+        self.assertEqual([start.restorable, present_joint.restorable], [False, True])
+        self.assertTrue(math.isnan(present_start.error_before))
+        self.assertEqual((joint.number, joint.origin, joint.error_unit, joint.samples_used), (1, "joint", "rad", 40))
+        self.assertEqual((joint.error_before, joint.error_after), (0.05, 0.002))
+        self.assertEqual([start.drift, joint.drift, present_start.drift], ["", "", ""])
+        self.assertIn("joint_1/offset by +0.005 rad, 3.5 standard deviations", present_joint.drift)
 
     def test_refuses_sessions_of_two_units(self):
         sessions = [self.session("a.db", "2026-01-01", 0.1), self.session("b.db", "2026-01-02", 0.1, "unit-8")]

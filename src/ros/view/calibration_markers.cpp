@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
@@ -29,6 +30,11 @@ constexpr double kDot = 0.006;
 constexpr double kDotGap = 0.008;
 constexpr double kNumberGap = 0.006;     ///< between an arrow's end and its number
 constexpr double kNumberHeight = 0.009;  ///< of a capital letter
+constexpr double kRingGap = 0.018;       ///< between the rotor and the ring of its joints
+constexpr double kRingWidth = 0.003;
+constexpr double kRodRadius = 0.0025;
+constexpr double kRodEnd = 0.012;  ///< of the rod that carries the ring, beyond it
+constexpr int kRingPoints = 72;
 constexpr double kLegendHeight = 0.005;
 constexpr double kLegendDistance = 0.028;  ///< beyond the shaft's end and the dots
 
@@ -43,6 +49,7 @@ constexpr MarkerColor kGrey = {0.55F, 0.55F, 0.55F, 0.9F};
 constexpr MarkerColor kNorth = {0.85F, 0.15F, 0.15F, 1.0F};
 constexpr MarkerColor kSouth = {0.15F, 0.3F, 0.85F, 1.0F};
 constexpr MarkerColor kCopper = {0.72F, 0.45F, 0.2F, 1.0F};
+constexpr MarkerColor kJoint = {0.0F, 0.55F, 0.6F, 1.0F};
 constexpr MarkerColor kGlow = {1.0F, 0.9F, 0.1F, 0.85F};
 constexpr MarkerColor kDark = {1.0F, 0.9F, 0.1F, 0.0F};
 constexpr MarkerColor kUncertain = {0.6F, 0.2F, 0.7F, 0.35F};
@@ -122,6 +129,7 @@ class Drawing {
   MarkerArray markers() {
     addPoles();
     addCoils();
+    addJoints();
     addGhost();
     addWantedPose();
     addSamples();
@@ -223,6 +231,60 @@ class Drawing {
     array_.markers.push_back(glow);
   }
 
+  /// As a gimbal around the rotor: what is inside it, nobody would see.
+  void addJoints() {
+    if (!scene_.nominal.has_joints) {
+      return;
+    }
+    const Eigen::Matrix3d nominal = jointGeometry(scene_.nominal).axes;
+    const Eigen::Matrix3d identified = jointGeometry(scene_.identified).axes;
+    Eigen::Matrix3d axes;
+    for (Eigen::Index k = 0; k < axes.cols(); ++k) {
+      axes.col(k) = magnified(
+          nominal.col(k).normalized(), identified.col(k).normalized(), scene_.magnification);
+    }
+    const ActuatorDimensions& d = scene_.dimensions;
+    const double radius = d.rotor_radius + kRingGap;
+    const SceneFrames& frames = scene_.frames;
+    addRod(0, frames.stator, axes.col(0), kRodRadius, radius + kRodEnd, radius + kRodEnd);
+    addRod(1, frames.joint_1, axes.col(1), kRodRadius, radius, radius + kRodEnd);
+    // Around the shaft.
+    addRod(2, frames.joint_2, axes.col(2), d.shaft_radius + kRodRadius, radius, d.shaft_length);
+    addRing(axes.col(0), axes.col(1), radius);
+  }
+
+  /// To `end` [m] on both sides; its number at `number_at`.
+  void addRod(int id,
+              const std::string& frame,
+              const Eigen::Vector3d& axis,
+              double radius,
+              double end,
+              double number_at) {
+    Marker rod = emptyMarker(frame, "joints", id, kJoint);
+    drawCylinder(rod, axis, 0.0, radius, 2.0 * end);
+    array_.markers.push_back(rod);
+    Marker number = emptyMarker(frame, "joint numbers", id, kJoint);
+    drawText(number,
+             (number_at + kNumberGap) * axis,
+             "J" + std::to_string(numberOf(static_cast<std::size_t>(id))),
+             kNumberHeight);
+    array_.markers.push_back(number);
+  }
+
+  /// Through the ends of two unit axes [m], in the frame between them.
+  void addRing(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double radius) {
+    Marker ring = emptyMarker(scene_.frames.joint_1, "joint ring", 0, kJoint);
+    ring.type = Marker::LINE_STRIP;
+    ring.scale.x = kRingWidth;
+    const Eigen::Vector3d across = (second - second.dot(first) * first).normalized();
+    for (int n = 0; n <= kRingPoints; ++n) {
+      const double angle = 2.0 * kPi * n / kRingPoints;
+      ring.points.push_back(
+          pointToRos(radius * (std::cos(angle) * first + std::sin(angle) * across)));
+    }
+    array_.markers.push_back(ring);
+  }
+
   void addGhost() {
     addRotor("nominal rotor", scene_.frames.nominal_rotor, Eigen::Matrix3d::Identity(), kGrey);
   }
@@ -295,6 +357,7 @@ class Drawing {
              "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
              "its error " +
                  times + "; violet cone: 1 sigma " + times +
+                 "; ring: gimbal of the joints, about J1, J2, J3" +
                  "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle",
              kLegendHeight);
     array_.markers.push_back(legend);

@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
+#include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
@@ -37,6 +38,8 @@ SceneFrames prefixed(const std::string& prefix) {
   frames.stator = prefix + frames.stator;
   frames.rotor = prefix + frames.rotor;
   frames.nominal_rotor = prefix + frames.nominal_rotor;
+  frames.joint_1 = prefix + frames.joint_1;
+  frames.joint_2 = prefix + frames.joint_2;
   return frames;
 }
 
@@ -81,12 +84,23 @@ VisualizationNode::VisualizationNode(const ros::NodeHandle& node,
   constexpr bool kLatched = true;
   publisher_ = node_.advertise<visualization_msgs::MarkerArray>("calibration_markers", 1, kLatched);
   constexpr std::uint32_t kQueueLength = 1000;
-  subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
-      node_,
-      "joint_states",
-      kQueueLength,
-      [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
-      tellRefusal("joint_states")));
+  if (nominal.has_joints) {
+    subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+        node_,
+        "joint_states",
+        kQueueLength,
+        [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJoints(*message); },
+        tellRefusal("joint_states")));
+  } else {
+    subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
+        node_,
+        "measured_orientation",
+        kQueueLength,
+        [this](const geometry_msgs::QuaternionStamped::ConstPtr& message) {
+          receiveOrientation(*message);
+        },
+        tellRefusal("measured_orientation")));
+  }
   feed<msg::ActuatorParameters>("parameters", 1);
   feed<msg::CalibrationReport>("report", kQueueLength);
   feed<msg::CalibrationStatus>("status", 1);
@@ -117,9 +131,13 @@ void VisualizationNode::show() {
   }
 }
 
+bool VisualizationNode::isDue(const ros::Time& stamp) const {
+  const double age = secondsBetween(last_broadcast_, stamp);
+  return age < 0.0 || age >= kFramePeriod;
+}
+
 void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
-  const double age = secondsBetween(last_broadcast_, message.header.stamp);
-  if (age >= 0.0 && age < kFramePeriod) {
+  if (!isDue(message.header.stamp)) {
     return;
   }
   const std::optional<JointMeasurement> joints = joint_reader_.read(message);
@@ -127,6 +145,21 @@ void VisualizationNode::receiveJoints(const sensor_msgs::JointState& message) {
     broadcast(message.header.stamp, joints->position);
     last_broadcast_ = message.header.stamp;
   }
+}
+
+// The tracker measures what is shown: nothing of it is calibrated.
+void VisualizationNode::receiveOrientation(const geometry_msgs::QuaternionStamped& message) {
+  const OrientationMeasurement orientation = orientationFromRos(message);
+  if (!isDue(message.header.stamp) || !isUnit(orientation.q_stator_rotor) ||
+      !isFrame(message.header.frame_id, frames_.stator)) {
+    return;
+  }
+  const Eigen::Matrix3d R_stator_rotor = orientation.q_stator_rotor.normalized().toRotationMatrix();
+  const ros::Time& stamp = message.header.stamp;
+  broadcaster_.sendTransform(std::vector<geometry_msgs::TransformStamped>{
+      rotationTransform(stamp, frames_.stator, frames_.rotor, R_stator_rotor),
+      rotationTransform(stamp, frames_.stator, frames_.nominal_rotor, R_stator_rotor)});
+  last_broadcast_ = stamp;
 }
 
 void VisualizationNode::broadcast(const ros::Time& stamp, const Eigen::Vector3d& q) {

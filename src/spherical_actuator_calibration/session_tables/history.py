@@ -11,6 +11,7 @@ SELECT revisions.number, revisions.date, revisions.origin, cycles.error_measure,
   (SELECT error FROM cycle_errors WHERE cycle_errors.cycle = cycles.id ORDER BY iteration DESC LIMIT 1) AS after
 FROM revisions LEFT JOIN cycles ON revisions.cycle = cycles.id ORDER BY revisions.number
 """
+ERROR_UNITS = {"orientation": "rad", "torque": "N·m", "standardized": "1"}  # of each measure of errors
 SHOWN = {"orientation": (1e3, "mrad"), "torque": (1e3, "mN·m"), "standardized": (1.0, "")}  # of each measure of errors
 
 
@@ -57,13 +58,36 @@ def line_of(row):
     return f"{text}  {factor * row['before']:.4g} → {factor * row['after']:.4g} {unit}".rstrip() + f", {row['samples_used']} samples"
 
 
-def history_of(paths):
+@dataclasses.dataclass(frozen=True)
+class SessionHistory:
+    """What became of a unit in one session."""
+
+    path: str
+    revisions: list  # see revisions_of()
+    drift: Drift = None  # since the session before; None without a common parameter
+
+
+def sentence_of(drift):
+    """A Drift for people."""
+    return (
+        f"furthest from the session before: {drift.name} by {drift.change:+.3g} {drift.unit}, "
+        f"{drift.deviations:.1f} standard deviations of the change"
+    )
+
+
+def unit_of(session):
+    """Name and serial number of the unit of a Session."""
+    return tuple(session.rows("SELECT name, serial FROM unit")[0])
+
+
+def histories_of(paths):
+    """SessionHistory of each session of one unit, by date. Raises ExportError and sqlite3.Error."""
     """Lines for people: revisions of each session, and the drift from each to the next one by date. Raises ExportError
     and sqlite3.Error."""
     sessions, units = [], {}
     for path in paths:
         with Session(path) as session:
-            unit = tuple(session.rows("SELECT name, serial FROM unit")[0])
+            unit = unit_of(session)
             sessions.append((path, revisions_of(session), identified(session)))
         units.setdefault(unit, path)
         if len(units) > 1:
@@ -71,12 +95,15 @@ def history_of(paths):
     sessions.sort(key=lambda told: told[1][-1]["date"] if told[1] else "")
     known = {}
     for path, revisions, parameters in sessions:
-        yield f"{path}: revision, date, made by, error before → after"
-        yield from map(line_of, revisions)
-        drift = drift_between(known, parameters)
-        if drift is not None:
-            yield (
-                f"      furthest from the session before: {drift.name} by {drift.change:+.3g} {drift.unit}, "
-                f"{drift.deviations:.1f} standard deviations of the change"
-            )
+        yield SessionHistory(path, revisions, drift_between(known, parameters))
         known = parameters or known
+
+
+def history_of(paths):
+    """Lines for people: revisions of each session, and the drift from each to the next one by date. Raises as
+    histories_of()."""
+    for told in histories_of(paths):
+        yield f"{told.path}: revision, date, made by, error before → after"
+        yield from map(line_of, told.revisions)
+        if told.drift is not None:
+            yield "      " + sentence_of(told.drift)

@@ -69,6 +69,40 @@ TEST(CalibrationMarkers, ShowEveryPoleAndCoilTwice) {
   EXPECT_EQ(counts["coils"], 12);
 }
 
+Eigen::Vector3d axisOf(const Marker& cylinder) {
+  const auto& q = cylinder.pose.orientation;
+  return Eigen::Quaterniond(q.w, q.x, q.y, q.z) * Eigen::Vector3d::UnitZ();
+}
+
+TEST(CalibrationMarkers, JointsAreAGimbalThatTurnsWithTheirFrames) {
+  CalibrationScene scene = paperScene();
+  scene.magnification = 1.0;
+  const auto array = calibrationMarkers(scene);
+  const Eigen::Matrix3d axes = jointGeometry(scene.identified).axes;
+  const char* const frames[] = {"stator", "joint_1", "joint_2"};
+  for (int joint = 0; joint < 3; ++joint) {
+    const Marker& rod = markerOf(array, "joints", joint);
+    EXPECT_EQ(rod.header.frame_id, frames[joint]);
+    EXPECT_NEAR(std::abs(axisOf(rod).dot(axes.col(joint).normalized())), 1.0, 1e-9);
+    // To be seen it comes out of the rotor.
+    EXPECT_GT(0.5 * rod.scale.z, scene.dimensions.rotor_radius);
+  }
+  const Marker& ring = markerOf(array, "joint ring", 0);
+  EXPECT_EQ(ring.header.frame_id, "joint_1");
+  const Eigen::Vector3d normal = axes.col(0).cross(axes.col(1)).normalized();
+  for (const auto& point : ring.points) {
+    const Eigen::Vector3d at(point.x, point.y, point.z);
+    EXPECT_NEAR(at.dot(normal), 0.0, 1e-9);
+    EXPECT_GT(at.norm(), scene.dimensions.rotor_radius);
+  }
+}
+
+TEST(CalibrationMarkers, WithoutJointsThereIsNoGimbal) {
+  CalibrationScene scene = paperScene();
+  scene.nominal.has_joints = scene.identified.has_joints = false;
+  EXPECT_EQ(countsOf(calibrationMarkers(scene)).count("joints"), 0U);
+}
+
 TEST(CalibrationMarkers, ColourPolesByPolarity) {
   const auto array = calibrationMarkers(paperScene());
   for (int pole = 0; pole < 8; ++pole) {

@@ -18,6 +18,8 @@ struct SceneFrames {
   std::string stator = "stator";
   std::string rotor = "rotor";                  ///< by the parameters in force
   std::string nominal_rotor = "rotor_nominal";  ///< by the nominal ones
+  std::string joint_1 = "joint_1";              ///< after the first joint, before the second
+  std::string joint_2 = "joint_2";              ///< after the second, before the third
 };
 
 /// A sample as a dot: where the rotor's z axis pointed, and how well it fits.
@@ -52,6 +54,10 @@ struct CalibrationScene {
 /// - "pole uncertainty", "coil uncertainty": cones about the identified axes whose half angle is
 /// the
 ///   magnified standard deviation;
+/// - "joints", "joint ring": rods along the identified joint axes, magnified likewise, each in the
+/// frame
+///   that carries it, and the ring of a gimbal that the first one carries and that carries the
+///   second; none where the rotor has no joints;
 /// - "nominal rotor": a ghost of the rotor in its nominal frame;
 /// - "wanted pose": another, green, where the rotor is to go (stator frame);
 /// - "currents": coils that carry current glow;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <geometry_msgs/QuaternionStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
@@ -31,7 +32,8 @@ VisualizationOptions loadVisualizationOptions(const ros::NodeHandle& private_nod
 
 /// Shows a calibration in rviz:
 /// - on /tf the frames joint_1, joint_2 and rotor by the parameters in force, and rotor_nominal by
-///   the nominal ones;
+///   the nominal ones; of a rotor without joints rotor and rotor_nominal, both as the tracker
+///   measures them;
 /// - the latched topic `calibration_markers`, see calibration_markers.hpp;
 /// - the private parameter `robot_description`, made from the description of the actuator with the
 ///   prefix before the names of its links, so that it fits these frames.
@@ -48,6 +50,8 @@ class VisualizationNode {
 
   void show();
   void receiveJoints(const sensor_msgs::JointState& message);
+  void receiveOrientation(const geometry_msgs::QuaternionStamped& message);
+  bool isDue(const ros::Time& stamp) const;
   void broadcast(const ros::Time& stamp, const Eigen::Vector3d& q);
   void publishMarkers();
 

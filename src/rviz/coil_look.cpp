@@ -1,0 +1,108 @@
+#include "coil_look.hpp"
+
+#include <QHBoxLayout>
+#include <QHideEvent>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "named_button.hpp"
+
+namespace sac {
+namespace {
+
+constexpr double kLargestCurrent = 100.0;    // [A]; the coil driver has its own limits
+constexpr double kShortestExcitation = 0.5;  // [s]
+constexpr double kLongestExcitation = 60.0;  // [s] that the engine allows
+constexpr double kExcitation = 10.0;         // [s]
+
+QDoubleSpinBox* spinBox(double least, double most, double value, const QString& unit) {
+  auto* box = new QDoubleSpinBox;
+  box->setRange(least, most);
+  box->setSingleStep(0.5);
+  box->setDecimals(1);
+  box->setValue(value);
+  box->setSuffix(" " + unit);
+  return box;
+}
+
+}  // namespace
+
+CoilLook::CoilLook(const ros::NodeHandle& node)
+    : excitation_(node, "calibration/excite", [this](const msg::ExciteFeedback& feedback) {
+        words_.receive(feedback);
+      }) {
+  build();
+  showExcitation();
+}
+
+void CoilLook::build() {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* row = new QHBoxLayout;
+  excite_ = new QPushButton;
+  excite_->setToolTip("Let a coil carry current for a while, and show what it carries (F12)");
+  connect(excite_, &QPushButton::clicked, this, [this] { exciteOrStop(); });
+  row->addWidget(excite_);
+  coil_ = new QSpinBox;
+  coil_->setRange(1, 1);
+  coil_->setPrefix("coil ");
+  row->addWidget(coil_);
+  current_ = spinBox(-kLargestCurrent, kLargestCurrent, 2.0, "A");
+  row->addWidget(current_);
+  duration_ = spinBox(kShortestExcitation, kLongestExcitation, kExcitation, "s");
+  row->addWidget(duration_);
+  layout->addLayout(row);
+  outcome_ = new QLabel;
+  outcome_->setWordWrap(true);
+  outcome_->hide();
+  layout->addWidget(outcome_);
+}
+
+void CoilLook::refresh(int coils) {
+  coil_->setRange(1, std::max(1, coils));
+  showExcitation();
+}
+
+void CoilLook::exciteOrStop() {
+  if (excitation_.isRunning()) {
+    excitation_.cancel();
+    return;
+  }
+  if (current_->value() == 0.0) {
+    tell("Choose a current first.");
+    return;
+  }
+  msg::ExciteGoal goal;
+  goal.coils = {current_->value() < 0.0 ? -coil_->value() : coil_->value()};
+  goal.current = std::abs(current_->value());
+  goal.duration = duration_->value();
+  words_ = ExcitationWords();
+  excitation_.begin(goal);
+}
+
+void CoilLook::showExcitation() {
+  if (const auto end = excitation_.takeEnd()) {
+    tell(QString::fromStdString(end->message +
+                                (words_.carried().empty() ? "" : "\n" + words_.carried())));
+  } else if (excitation_.isRunning()) {
+    tell(QString::fromStdString(words_.text()));
+  }
+  nameButton(*excite_, excitation_.isRunning() ? "Stop" : "Excite", "F12");
+}
+
+void CoilLook::tell(const QString& text) {
+  outcome_->setText(text);
+  outcome_->show();
+}
+
+// A window that is made small on the screen hides spontaneously.
+void CoilLook::hideEvent(QHideEvent* event) {
+  if (!event->spontaneous()) {
+    excitation_.cancel();
+  }
+  QWidget::hideEvent(event);
+}
+
+}  // namespace sac

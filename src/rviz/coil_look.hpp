@@ -1,0 +1,45 @@
+#pragma once
+
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QWidget>
+
+#include <ros/node_handle.h>
+
+#include "engine_action.hpp"
+#include "progress_words.hpp"
+#include "spherical_actuator_calibration/ExciteAction.h"
+
+namespace sac {
+
+/// A look at a coil: has the engine excite it for a while, and shows what all coils carry
+/// meanwhile. Nothing is excited by a window that nobody sees: where it is hidden or closed, the
+/// currents end.
+class CoilLook : public QWidget {
+ public:
+  explicit CoilLook(const ros::NodeHandle& node);
+
+  /// Of the actuator; to be called ten times a second.
+  void refresh(int coils);
+
+ protected:
+  void hideEvent(QHideEvent* event) override;
+
+ private:
+  void build();
+  void exciteOrStop();
+  void showExcitation();
+  void tell(const QString& text);
+
+  ExcitationWords words_;
+  EngineAction<msg::ExciteAction> excitation_;
+  QPushButton* excite_ = nullptr;
+  QSpinBox* coil_ = nullptr;
+  QDoubleSpinBox* current_ = nullptr;
+  QDoubleSpinBox* duration_ = nullptr;
+  QLabel* outcome_ = nullptr;
+};
+
+}  // namespace sac

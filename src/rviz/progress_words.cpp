@@ -1,0 +1,91 @@
+#include "progress_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+
+namespace sac {
+namespace {
+
+using msg::MeasurementProgress;
+
+std::string coilsInWords(const MeasurementProgress& progress) {
+  std::string text;
+  for (const std::int32_t coil : progress.coils) {
+    text += (text.empty() ? "" : " ") + std::to_string(coil);
+  }
+  return text;
+}
+
+std::string inAmperes(double current) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3f A", current);
+  return text;
+}
+
+/// "1.998 A, the others at most 0.004 A." of measured currents [A]; `coils` as in a message.
+std::string currentsInWords(const std::vector<std::int32_t>& coils,
+                            const std::vector<double>& measured) {
+  std::string text;
+  std::vector<double> others = measured;
+  for (const std::int32_t coil : coils) {
+    const std::size_t j = static_cast<std::size_t>(std::abs(coil)) - 1;
+    if (j < measured.size()) {
+      text += (text.empty() ? "" : ", ") + inAmperes(measured[j]);
+      others[j] = 0.0;
+    }
+  }
+  double most = 0.0;
+  for (const double current : others) {
+    most = std::max(most, std::abs(current));
+  }
+  return text + ", the others at most " + inAmperes(most) + ".";
+}
+
+std::string stageInWords(const MeasurementProgress& progress) {
+  if (progress.stage == MeasurementProgress::TURNING) {
+    return "Waiting until the rotor rests there …";
+  }
+  return progress.coils.empty() ? "Measuring without current …"
+                                : "Measuring with coil " + coilsInWords(progress) + " …";
+}
+
+}  // namespace
+
+void ProgressWords::receive(const MeasurementProgress& progress) {
+  text_ = stageInWords(progress);
+  if (progress.captures != captures_) {
+    captures_ = progress.captures;
+    told_ = progress.told;
+  }
+  if (progress.told != told_ && !progress.sentences.empty()) {
+    text_ += "\n" + printable(progress.sentences.back());
+  }
+}
+
+void ExcitationWords::receive(const msg::ExciteFeedback& feedback) {
+  const MeasurementProgress& progress = feedback.progress;
+  if (progress.stage != MeasurementProgress::EXCITING || progress.coils.empty()) {
+    text_ = "Waiting for the laboratory …";
+  } else if (feedback.measured.empty()) {
+    text_ = "Coil " + coilsInWords(progress) + " is excited, but no measured currents arrive.";
+  } else {
+    const std::string currents = currentsInWords(progress.coils, feedback.measured);
+    text_ = "Coil " + coilsInWords(progress) +
+            (progress.carries != 0 ? " carries " : ": measured ") + currents +
+            (progress.carries != 0 ? "" : " It does not carry its current yet.");
+    if (progress.carries != 0) {
+      carried_ = "Coil " + coilsInWords(progress) + " carried " + currents;
+    }
+  }
+  if (progress.carries == 0 && !progress.sentences.empty()) {
+    text_ += "\n" + printable(progress.sentences.back());
+  }
+}
+
+}  // namespace sac

@@ -1,0 +1,103 @@
+#include "revision_table.hpp"
+
+#include <QHeaderView>
+#include <QShowEvent>
+#include <QVBoxLayout>
+#include <utility>
+
+#include "spherical_actuator_calibration/ListRevisions.h"
+
+namespace sac {
+
+RevisionTable::RevisionTable(const ros::NodeHandle& node,
+                             std::function<void(std::uint32_t)> restore)
+    : node_(node), restore_(new QPushButton), trouble_(new QLabel), table_(new QTableWidget(0, 5)) {
+  table_->setHorizontalHeaderLabels({"revision", "date (UTC)", "made by", "error", "drift"});
+  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  table_->horizontalHeader()->setStretchLastSection(true);
+  table_->verticalHeader()->hide();
+  table_->verticalHeader()->setDefaultSectionSize(20);
+  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+  table_->setSelectionMode(QAbstractItemView::SingleSelection);
+  restore_->setToolTip("Put the chosen revision of the parameters back in force, as a new one");
+  trouble_->setWordWrap(true);
+  trouble_->setStyleSheet("color: #c62828;");
+  trouble_->hide();
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(restore_);
+  layout->addWidget(trouble_);
+  layout->addWidget(table_);
+  connect(table_, &QTableWidget::itemSelectionChanged, this, [this] { showChoice(); });
+  connect(restore_, &QPushButton::clicked, this, [this, restore = std::move(restore)] {
+    if (const auto number = chosen()) {
+      restore(*number);
+    }
+  });
+  showChoice();
+}
+
+void RevisionTable::refresh(const std::string& in_force) {
+  if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
+    trouble_->setText(QString::fromStdString(answer->message));
+    trouble_->setVisible(!answer->success);
+    if (answer->success) {
+      fill(revisionLines(answer->revisions));
+    }
+  }
+  is_old_ = is_old_ || in_force != in_force_;
+  in_force_ = in_force;
+  if (is_old_ && isVisible() && !caller_.isBusy()) {
+    is_old_ = false;
+    caller_.call<msg::ListRevisions>(node_.resolveName("calibration/list_revisions"),
+                                     msg::ListRevisions::Request());
+  }
+}
+
+void RevisionTable::showEvent(QShowEvent* event) {
+  is_old_ = true;
+  table_->setFocus();
+  QWidget::showEvent(event);
+}
+
+void RevisionTable::fill(std::vector<RevisionLine> lines) {
+  if (lines == lines_) {
+    return;
+  }
+  lines_ = std::move(lines);
+  table_->clearSelection();
+  table_->setCurrentItem(nullptr);
+  table_->setRowCount(static_cast<int>(lines_.size()));
+  int row = 0;
+  for (const RevisionLine& line : lines_) {
+    int column = 0;
+    for (const std::string& text : {line.name, line.date, line.origin, line.error, line.drift}) {
+      auto* item = new QTableWidgetItem(QString::fromStdString(text));
+      item->setToolTip(item->text());
+      table_->setItem(row, column++, item);
+    }
+    ++row;
+  }
+  showChoice();
+}
+
+std::optional<std::uint32_t> RevisionTable::chosen() const {
+  const int row = table_->currentRow();
+  if (row < 0 || row >= static_cast<int>(lines_.size())) {
+    return std::nullopt;
+  }
+  const RevisionLine& line = lines_[static_cast<std::size_t>(row)];
+  return line.restorable ? std::make_optional(line.number) : std::nullopt;
+}
+
+// A new text takes the shortcut away, so that the key is a part of it.
+void RevisionTable::showChoice() {
+  const auto number = chosen();
+  restore_->setText(number ? QString("R&estore revision %1").arg(*number)
+                    : table_->currentRow() < 0
+                        ? QString("Restore revision: choose one below")
+                        : QString("Restore revision: that one is of another session"));
+}
+
+}  // namespace sac
