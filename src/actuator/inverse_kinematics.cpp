@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -48,6 +49,10 @@ Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor) {
                     " instead of 1.");
   }
   return freeRotorAngles(q_stator_rotor.normalized().toRotationMatrix());
+}
+
+Eigen::Vector3d nearestTurns(const Eigen::Vector3d& angles, const Eigen::Vector3d& others) {
+  return {angles[0], angles[1], others[2] + std::remainder(angles[2] - others[2], 2.0 * kPi)};
 }
 
 }  // namespace sac

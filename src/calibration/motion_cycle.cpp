@@ -140,8 +140,7 @@ std::string failure(const MotionProblem& problem,
       break;
   }
   const MotionSummary& summary = found.summary;
-  const std::size_t held_out = summary.held_out.windows + summary.held_out.rejected;
-  const auto rejected = static_cast<double>(summary.windows - summary.used - held_out);
+  const auto rejected = static_cast<double>(summary.windows - summary.used);
   if (rejected > options.max_rejected_fraction * static_cast<double>(summary.windows) &&
       summary.used * summary.values < 2 * static_cast<std::size_t>(estimate.belief.x.size())) {
     return format(
@@ -198,7 +197,7 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
     words += format(" %zu windows left out: %s.", left_out.count, left_out.reason.c_str());
   }
   if (summary.held_out.windows > 0) {
-    words += format(" %zu more windows judge it.", summary.held_out.windows);
+    words += format(" %zu of the windows judged it before they served.", summary.held_out.windows);
   }
   if (unobservable > 0) {
     words += format(" %zu parameters are not told by this motion: they stay at the prior.",

@@ -32,8 +32,9 @@ SampleCounts::SampleCounts(const CalibrationModel& model, const EstimationOption
                            demandOf(Cycle::kJoint, model.space().poles()).advised),
       joint_poses_(
           options.min_joint_motion, 1, demandOf(Cycle::kJoint, model.space().poles()).needed),
-      torque_poses_(
-          options.min_joint_motion, 1, demandOf(Cycle::kRefine, model.space().poles()).needed),
+      torque_poses_(options.min_joint_motion,
+                    model_has_joints_ ? 1 : kMostOfAPose,
+                    demandOf(Cycle::kRefine, model.space().poles()).needed),
       per_coil_(model.hasTorqueModel() ? model.space().coils() : 0, 0) {}
 
 SampleCounts::SampleCounts(const CalibrationModel& model,

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
                         sac::CalibrationNode calibration(
                             node,
                             private_node,
-                            sac::loadJointedDescriptionParameter(node),
+                            sac::loadDescriptionParameter(node),
                             sac::loadCalibrationNodeOptions(private_node));
                         ros::AsyncSpinner spinner(kServiceThreads);
                         spinner.start();

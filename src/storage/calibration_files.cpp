@@ -40,7 +40,7 @@ std::string CalibrationFiles::save(const LiveSession& session,
                                    const RobotDescription& robot) const {
   const Revision& revision = session.revision();
   if (!anyIdentified(revision.state)) {
-    throw DataError("Nothing is calibrated yet: run calibrate_joint first.");
+    throw DataError("Nothing is calibrated yet: run a cycle first.");
   }
   const CalibratedDescription description = session.description(revision.date);
   const std::string yaml_path = directory_.description(revision.number);

@@ -65,5 +65,16 @@ TEST(InverseKinematics, AnglesOfAFreeRotorGiveItsOrientationEverywhere) {
   EXPECT_LT((freeRotorAngles(rotorOrientation(joints, q)) - q).norm(), 1e-15);
 }
 
+TEST(FreeRotor, AnglesOfARotorThatTurnsOnDoNotJump) {
+  const JointGeometry joints = jointGeometry(freeRotorJoints());
+  Eigen::Vector3d followed(0.2, -0.3, 0.0);
+  for (double q3 = 0.0; q3 < 20.0; q3 += 0.1) {
+    const Eigen::Matrix3d R = rotorOrientation(joints, {0.2, -0.3, q3});
+    followed = nearestTurns(freeRotorAngles(R), followed);
+    EXPECT_NEAR(followed[2], q3, 1e-12);
+  }
+  EXPECT_EQ(nearestTurns({3.0, 0.1, -3.0}, {-3.0, 0.5, -2.9}), Eigen::Vector3d(3.0, 0.1, -3.0));
+}
+
 }  // namespace
 }  // namespace sac

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/frame_registration.hpp"
 #include "spherical_actuator_calibration/calibration/prediction.hpp"
+#include "spherical_actuator_calibration/calibration/sample_counts.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 
@@ -100,6 +101,20 @@ TEST_F(LevitatedRotor, NothingOfJointsIsReported) {
   for (const char* word : {"joint_", "rotation_", "offset"}) {
     EXPECT_EQ(text.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(LevitatedRotor, AFewPosesOfSingleCoilsAreEnoughToRefine) {
+  const auto next = [&](std::size_t poses, std::size_t coils_per_pose) {
+    const CalibrationSession session(
+        {nominal_},
+        scenarios::levitatedSession(truth_, poses, coils_per_pose, 0.0, 0.0, generator_),
+        {});
+    return nextCycles(session.model(), SampleCounts(session.model(), {}, session.samples()));
+  };
+  EXPECT_TRUE(next(2, 6).empty());
+  const std::vector<CycleRequest> cycles = next(3, 6);
+  ASSERT_EQ(cycles.size(), 1U);
+  EXPECT_EQ(cycles.front().cycle, Cycle::kRefine);
 }
 
 TEST_F(LevitatedRotor, ASampleWithoutOrientationIsRefused) {

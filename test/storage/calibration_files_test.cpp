@@ -51,7 +51,7 @@ class CalibrationFilesTest : public ::testing::Test {
 
 TEST_F(CalibrationFilesTest, NothingIsSavedBeforeAnythingIsCalibrated) {
   EXPECT_EQ(errorMessage<DataError>([&] { files_.save(session_, robot()); }),
-            "Nothing is calibrated yet: run calibrate_joint first.");
+            "Nothing is calibrated yet: run a cycle first.");
   EXPECT_FALSE(files_.isSaved(session_.revision().number));
 }
 

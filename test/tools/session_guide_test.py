@@ -2,6 +2,7 @@
 """What a guided session does next, and what it tells, without ROS."""
 
 import io
+import math
 import threading
 import unittest
 from types import SimpleNamespace
@@ -46,6 +47,7 @@ class Excitation(unittest.TestCase):
     def test_commands_the_signs_of_a_pattern(self):
         bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
         bench._coils, bench._lock, bench._is_held = 4, threading.Lock(), False
+        bench._listeners = [lambda: None]  # it listens already
         bench.excite((1,), 1.5)
         self.assertEqual(bench._command, [0.0] * 4)
         bench.hold()
@@ -104,6 +106,12 @@ class WayToAPose(unittest.TestCase):
         way = progress.way_to(pose, ("a", "b", "c"), (0.0, -0.21, 2.0), TOLERANCE)
         self.assertEqual(way, "a by +28.6\N{DEGREE SIGN}, c by -28.6\N{DEGREE SIGN}")
         self.assertEqual(progress.way_to(pose, ("a", "b", "c"), (0.5, -0.16, 1.46), TOLERANCE), "")
+
+    def test_is_the_shorter_one_round(self):
+        pose = Pose((0.0, 0.0, 3.1), ())
+        way = progress.way_to(pose, ("a", "b", "c"), (0.0, 0.0, -3.0), TOLERANCE)
+        self.assertEqual(way, "c by -10.5\N{DEGREE SIGN}")
+        self.assertTrue(pose.is_at((0.0, 0.0, 3.1 - 2.0 * math.pi), TOLERANCE))
 
 
 class PosesOf(unittest.TestCase):

@@ -24,4 +24,8 @@ Eigen::Vector3d freeRotorAngles(const Eigen::Matrix3d& R_stator_rotor);
 /// 1e-3.
 Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor);
 
+/// Angles about freeRotorJoints() of the same orientation, by full turns of the third as near to
+/// others as they come [rad]: those of a rotor that turns on within its workspace do not jump.
+Eigen::Vector3d nearestTurns(const Eigen::Vector3d& angles, const Eigen::Vector3d& others);
+
 }  // namespace sac

@@ -50,7 +50,8 @@ class SampleCounts {
   std::size_t usefulOrientations() const { return useful_orientations_.count(); }
   /// At different poses, as many orientations as the joint needs.
   bool enoughForJoint() const { return joint_poses_.isEnough(); }
-  /// At different poses, as many torques as a refinement needs.
+  /// At different poses, as many torques as a refinement needs; without joints, which need poses of
+  /// their own, up to three of a pose count.
   bool enoughForRefinement() const { return torque_poses_.isEnough(); }
   /// Per coil, with a torque and no other coil excited; empty without a torque model.
   const std::vector<std::size_t>& perCoil() const { return per_coil_; }

@@ -33,7 +33,8 @@ constexpr double kCapturePoll = 0.01;  // [s]
 MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
-    : builder_(config.samples, modelledCoils(nominal)),
+    : has_joints_(nominal.has_joints),
+      builder_(config.samples, modelledCoils(nominal), nominal.has_joints),
       motion_(modelledCoils(nominal)),
       reader_(nominal, config.frames),
       joints_("joint_states", kLimits),
@@ -43,7 +44,9 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
       node_(node),
       receiver_(1, &queue_) {
   node_.setCallbackQueue(&queue_);
-  subscribe<sensor_msgs::JointState>(joints_);
+  if (has_joints_) {
+    subscribe<sensor_msgs::JointState>(joints_);
+  }
   subscribe<geometry_msgs::QuaternionStamped>(orientations_);
   subscribe<geometry_msgs::Vector3Stamped>(torques_);
   subscribe<msg::CoilCurrents>(currents_);
@@ -142,7 +145,10 @@ void MeasurementIntake::forgetMotion() {
 }
 
 void MeasurementIntake::addDiagnostics(NodeDiagnostics& diagnostics) {
-  for (StreamMonitor* monitor : {&joints_, &orientations_, &torques_, &currents_}) {
+  if (has_joints_) {
+    diagnostics.add(joints_);
+  }
+  for (StreamMonitor* monitor : {&orientations_, &torques_, &currents_}) {
     diagnostics.add(*monitor);
   }
   diagnostics.add("dwells", [this](DiagnosticStatus& status) { diagnoseDwells(status); });
@@ -164,17 +170,25 @@ void MeasurementIntake::buildInOrder() {
 void MeasurementIntake::build(const AnyMeasurement& measurement) {
   const SampleBuilderReport& report = builder_.report();
   if (const auto* joints = std::get_if<JointMeasurement>(&measurement)) {
-    motion_.add(*joints);
+    follow(*joints);
     build(*joints, report.joints, joints_);
   } else if (const auto* orientation = std::get_if<OrientationMeasurement>(&measurement)) {
-    motion_.add(*orientation);
+    follow(*orientation);
     build(*orientation, report.orientations, orientations_);
   } else if (const auto* torque = std::get_if<TorqueMeasurement>(&measurement)) {
     build(*torque, report.torques, torques_);
   } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
-    motion_.add(*current);
+    follow(*current);
     newest_currents_ = current->current;
     build(*current, report.currents, currents_);
+  }
+}
+
+// Motions are told by the readings of joints.
+template <typename Measurement>
+void MeasurementIntake::follow(const Measurement& measurement) {
+  if (has_joints_) {
+    motion_.add(measurement);
   }
 }
 

@@ -13,8 +13,8 @@ CalibratedDescription loadJointedDescriptionParameter(const ros::NodeHandle& nod
   CalibratedDescription description = loadDescriptionParameter(node);
   if (!description.actuator.has_joints) {
     throw ConfigError("The description of " + description.actuator.name +
-                      " has no joints, and this node needs their readings. Record tracker, torques "
-                      "and currents, and calibrate the recording by calibrate_bag.");
+                      " has no joints, and this node reads them: leave it out, as lab.launch does "
+                      "with joint_sensor:=false. The tracker tells the orientation.");
   }
   return description;
 }

@@ -71,5 +71,5 @@ class Account(Narrator):
         with self._lock:
             message = copy.copy(self._message)
             is_led = self._pose is not None and joints is not None
-            message.way = [wanted - angle for wanted, angle in zip(self._pose.joints, joints)] if is_led else []
+            message.way = self._pose.way_from(joints) if is_led else []
         return message

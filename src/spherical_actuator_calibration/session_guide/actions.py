@@ -37,12 +37,12 @@ class _AtTheBench:
     def _take(self, task, account):
         self._calibration.serve(task, account)
         self._calibration.wait_until_up()
-        account.set(joint_names=self._laboratory.names)
+        account.set(joint_names=self._laboratory.readings.names)
         self._laboratory.hold()
         task.check()
 
     def _progress(self, account):
-        message = account.message(self._laboratory.joints())
+        message = account.message(self._laboratory.readings.fresh())
         message.carries = self._carries(message.coils)
         return message
 
@@ -61,7 +61,7 @@ class SessionAction(_AtTheBench):
     def __init__(self, ns, calibration, laboratory, actuator):
         super().__init__(ns, calibration, laboratory)
         self._actuator = actuator
-        self._wanted_pose = WantedPose(ns, laboratory.names)
+        self._wanted_pose = WantedPose(ns, laboratory.readings.names)
 
     def work(self, goal, task, account):
         self._take(task, account)

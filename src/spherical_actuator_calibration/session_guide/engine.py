@@ -4,6 +4,7 @@ import threading
 
 import actionlib
 import rospy
+from spherical_actuator_calibration.rotor_readings import readings_of
 from spherical_actuator_calibration.text_files import printable
 
 from .account import Account
@@ -11,6 +12,7 @@ from .actions import CaptureAction, ExciteAction, PlanAction, SaveAction, Sessio
 from .calibration import Calibration
 from .job import Job, client_of
 from .laboratory import Laboratory
+from .revisions import Revisions
 from .terminal import Terminal
 
 ENDING = 1.0  # [s] for goals under way to be answered at the end
@@ -66,11 +68,11 @@ class Lane:
 
 
 class Engine:
-    """Serves the actions capture, excite, session, plan and save of an actuator."""
+    """Serves the actions capture, excite, session, plan and save of an actuator, and the service list_revisions."""
 
     def __init__(self, ns, actuator):
         coils = len(actuator.get("coils", []))
-        self._laboratory = Laboratory(ns, coils, [joint["name"] for joint in actuator["joints"]])
+        self._laboratory = Laboratory(ns, coils, readings_of(ns, actuator))
         console = Terminal()
         bench = Calibration(ns, console)
         self._lanes = [Lane() for _ in range(3)]
@@ -83,6 +85,7 @@ class Engine:
         )
         for action, lane in actions:
             self._lanes[lane].serve(ns, action)
+        self._revisions = Revisions(ns)
 
     def close(self):
         """Ends what is under way; the currents are zero."""

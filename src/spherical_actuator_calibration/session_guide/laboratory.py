@@ -1,25 +1,28 @@
-"""The laboratory as a session sees it: joint angles, currents, and what moves and excites the rotor."""
+"""The laboratory as a session sees it: where the rotor is, currents, and what moves and excites the rotor."""
 
 import threading
+import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from sensor_msgs.msg import JointState
-from spherical_actuator_calibration.joint_readings import JointReadings
 from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
+from .task import LOOK
+
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
-STILL = 2e-3  # [rad] change of the joint angles while the rotor rests
+FIRST = 1.0  # [s] for the first reading and currents
 
 
 class Laboratory:
-    """Commands coils and fixture while it is held, and keeps the last joint angles and currents."""
+    """While it is held it commands coils and fixture, and keeps the last currents; else nobody here listens to the
+    streams: at 1 kHz that alone takes a fifth of a processor. `readings`: of rotor_readings, not listening."""
 
-    def __init__(self, ns, coils, joint_names):
+    def __init__(self, ns, coils, readings):
+        self._ns = ns
         self._coils = coils
-        self.names = list(joint_names)
-        self._readings = JointReadings(ns, joint_names)
+        self.readings = readings
+        self._listeners = []
         self._currents = None
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
@@ -27,11 +30,8 @@ class Laboratory:
         self._is_held = False
         self._lock = threading.Lock()
         self._commands = rospy.Publisher(ns + "/coil_command", CoilCurrents, queue_size=1)
-        self._targets = rospy.Publisher(ns + "/fixture/target", JointState, queue_size=1, latch=True)
-        self._subscribers = [
-            rospy.Subscriber(ns + "/coil_currents", CoilCurrents, self._keep_currents),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics),
-        ]
+        self._targets = rospy.Publisher(f"{ns}/{readings.fixture}", readings.target_type, queue_size=1, latch=True)
+        self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics)
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
 
     def _keep_currents(self, message):
@@ -54,15 +54,30 @@ class Laboratory:
         message.header.stamp = wall_stamp()
         self._commands.publish(message)
 
-    def joints(self):
-        """Joint angles [rad]; None without fresh ones."""
-        return self._readings.fresh()
-
     def hold(self):
-        """From now on currents are commanded, zero at first; others may not command then."""
+        """From now on currents are commanded, zero at first; others may not command then. Returns when readings and
+        currents come, or do not for FIRST."""
+        if not self._listeners:
+            self._listen()
         with self._lock:
             self._command = [0.0] * self._coils
             self._is_held = True
+
+    def _listen(self):
+        self.readings.listen()
+        currents = rospy.Subscriber(self._ns + "/coil_currents", CoilCurrents, self._keep_currents)
+        with self._lock:
+            self._listeners = [self.readings.close, currents.unregister]
+        end = time.monotonic() + FIRST
+        while time.monotonic() < end and not (self.readings.fresh() and self.currents()):
+            time.sleep(LOOK)
+
+    def _stop_listening(self):
+        with self._lock:
+            listeners, self._listeners = self._listeners, []
+            self._currents = None
+        for close in listeners:
+            close()
 
     def excite(self, pattern, current):
         """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none. Without effect
@@ -73,7 +88,7 @@ class Laboratory:
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
 
     def currents(self):
-        """The last measured ones [A]; empty before the first."""
+        """The last measured ones [A]; empty before the first, and while it is not held."""
         with self._lock:
             return self._currents or ()
 
@@ -83,7 +98,8 @@ class Laboratory:
         return status.message if status is not None and status.level != DiagnosticStatus.OK else ""
 
     def drive_to(self, joints):
-        self._targets.publish(JointState(name=self.names, position=list(joints)))
+        """By the fixture, to a reading of the rotor [rad]."""
+        self._targets.publish(self.readings.target(joints))
 
     def release(self):
         """All currents to zero at once, told several times, as a last message may be lost; nothing is commanded any
@@ -97,3 +113,4 @@ class Laboratory:
                 if not self._is_held:
                     self._publish()
             rospy.rostime.wallsleep(0.02)
+        self._stop_listening()

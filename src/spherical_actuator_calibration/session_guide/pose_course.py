@@ -6,7 +6,6 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 from . import progress
-from .laboratory import STILL
 
 POLL = 0.05  # [s]
 SLOW = 5.0  # [s] after which the operator is told what is waited for
@@ -81,7 +80,7 @@ class PoseCourse:
             self._laboratory.drive_to(pose.joints)
         if self._options.drive_fixture or not which:
             return
-        angles = zip(self._laboratory.names, pose.joints)
+        angles = zip(self._laboratory.readings.names, pose.joints)
         self._account.say(
             f"Turn the rotor to {which}: {', '.join(f'{name} {progress.in_degrees(q)}' for name, q in angles)}, "
             f"each within {math.degrees(self._calibration.pose_tolerance()):.1f}\N{DEGREE SIGN}, and clamp it. "
@@ -89,35 +88,36 @@ class PoseCourse:
         )
 
     def wait_for_rest(self, pose):
-        """Until the joint sensors see the rotor at rest at the pose; None: anywhere. Raises RuntimeError when that
-        takes too long."""
+        """Until joint sensors, or without joints the tracker, see the rotor at rest at the pose; None: anywhere.
+        Raises RuntimeError when that takes too long."""
         self._account.set(stage=MeasurementProgress.TURNING, is_at_rest=False)
         begin = still_since = self._task.time()
+        readings = self._laboratory.readings
         last = None
         while True:
-            joints = self._laboratory.joints()
+            joints = readings.fresh()
             now = self._task.time()
             way = None if joints is None else self._way(pose, joints)
             if joints is None:
-                self._account.say_once("No joint angles arrive: check the joint sensor.")
+                self._account.say_once(f"No {readings.quantity} arrive: check the {readings.device}.")
                 still_since = now
-            elif last is None or progress.distance(joints, last) > STILL:
+            elif last is None or progress.distance(joints, last) > readings.still:
                 last, still_since = joints, now
             elif now - still_since >= self._options.rest and not way:
                 self._account.set(is_at_rest=True)
                 return
             elif way and now - begin > SLOW and self._options.drive_fixture:
-                self._account.say_once(f"The rotor is not at the pose ({way}): check fixture and joint sensor.")
+                self._account.say_once(f"The rotor is not at the pose ({way}): check fixture and {readings.device}.")
             if now - begin > self._options.pose_timeout:
                 raise RuntimeError(
                     f"The rotor did not come to rest at the pose in {now - begin:.0f} s "
-                    f"({'no joint angles' if joints is None else way or 'it moves'}). "
+                    f"({f'no {readings.quantity}' if joints is None else way or 'it moves'}). "
                     "See to that, and start again: it goes on."
                 )
             self._task.pause(POLL)
 
     def _way(self, pose, joints):
-        return "" if pose is None else progress.way_to(pose, self._laboratory.names, joints, self._tolerance())
+        return "" if pose is None else progress.way_to(pose, self._laboratory.readings.names, joints, self._tolerance())
 
     def _tolerance(self):
         """[rad] of arrival. A hand does not meet the angles as a fixture does; any pose nearby tells as much."""

@@ -7,7 +7,8 @@ import random
 
 @dataclasses.dataclass(frozen=True)
 class Pose:
-    """A pose to measure at: raw joint angles [rad], patterns of coils to excite in turn.
+    """A pose to measure at: raw joint angles [rad], or turns of a rotor without joints, and patterns of coils to
+    excite in turn.
 
     A pattern holds the numbers of the coils that are excited at once, counted from 1, ascending, negative where the
     current is; it is empty without current.
@@ -20,6 +21,10 @@ class Pose:
     def is_at(self, joints, tolerance):
         """Whether joint angles [rad] differ from the pose by no more than the tolerance."""
         return distance(self.joints, joints) <= tolerance
+
+    def way_from(self, joints):
+        """[rad] by which each joint is to turn from these angles, the shorter way round."""
+        return [difference(wanted, angle) for wanted, angle in zip(self.joints, joints)]
 
     def patterns(self):
         """In the order of their capture; that without current comes first."""
@@ -57,14 +62,19 @@ def in_degrees(angle):
     return f"{math.degrees(angle):+.1f}\N{DEGREE SIGN}"
 
 
+def difference(angle, other):
+    """Of two angles [rad]; a full turn makes none."""
+    return math.remainder(angle - other, math.tau)
+
+
 def distance(joints, others):
     """The largest difference of joint angles [rad]."""
-    return max((abs(one - other) for one, other in zip(joints, others)), default=0.0)
+    return max((abs(difference(one, other)) for one, other in zip(joints, others)), default=0.0)
 
 
 def way_to(pose, names, joints, tolerance):
     """What is left to turn: "joint_1 by +4.8°, joint_3 by -30.0°"; empty at the pose."""
-    left = ((name, wanted - angle) for name, wanted, angle in zip(names, pose.joints, joints))
+    left = zip(names, pose.way_from(joints))
     return ", ".join(f"{name} by {in_degrees(way)}" for name, way in left if abs(way) > tolerance)
 
 

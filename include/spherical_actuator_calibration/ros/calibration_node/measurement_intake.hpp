@@ -25,7 +25,8 @@ namespace sac {
 
 /// Receives the four streams of measurements (joint_states, measured_orientation, measured_torque,
 /// coil_currents) in a thread of its own, so that nothing else delays them, and makes samples of
-/// them. All member functions may be called from any thread.
+/// them. Of a rotor without joints there are three: joint_states are not waited for, and no motion
+/// is kept. All member functions may be called from any thread.
 class MeasurementIntake {
  public:
   /// Subscribes below the namespace of `node`, and receives from then on.
@@ -64,6 +65,9 @@ class MeasurementIntake {
   void finish();
   void buildInOrder();
   void build(const AnyMeasurement& measurement);
+  /// Keeps what tells how the rotor moves.
+  template <typename Measurement>
+  void follow(const Measurement& measurement);
   template <typename Measurement>
   void build(const Measurement& measurement,
              const StreamStatistics& statistics,
@@ -73,6 +77,7 @@ class MeasurementIntake {
   std::optional<Stamp> newest() const;
   void diagnoseDwells(DiagnosticStatus& status);
 
+  const bool has_joints_;
   std::atomic<std::uint64_t> received_{0};
 
   mutable std::mutex mutex_;  ///< of all down to finished_

@@ -10,7 +10,7 @@ namespace sac {
 /// ConfigError when it is missing, or as parseDescription().
 CalibratedDescription loadDescriptionParameter(const ros::NodeHandle& node);
 
-/// The same for a node that lives on joint readings: throws ConfigError also where the description
+/// The same for a node that reads joints: throws ConfigError also where the description
 /// has no joints.
 CalibratedDescription loadJointedDescriptionParameter(const ros::NodeHandle& node);
 
