@@ -21,11 +21,14 @@ class Outcome:
 
     def __init__(self, lines):
         self.parameters, self.left_out = {}, {}
+        rows = []
         for line in lines:
             word, *rest = line.split()
             if word == "parameter":
                 name, value, stddev, state = rest
                 self.parameters[name] = float(value), float(stddev), state == "identified"
+            elif word == "covariance":
+                rows.append([float(value) for value in rest])
             elif word == "left_out":
                 self.left_out[" ".join(rest[1:])] = int(rest[0])
             elif word == "held_out":
@@ -33,6 +36,8 @@ class Outcome:
             elif word == "motion":
                 self.moves, self.converged = rest[0] == "moves", rest[2] == "0"
                 self.chi_square = float(rest[rest.index("chi_square") + 1])
+
+        self.covariance = np.array(rows)  # of all parameters in their order
 
     def value(self, name):
         return self.parameters[name][0]
@@ -43,6 +48,13 @@ class Outcome:
         apart = np.array([row[0] for row in rows]) - unit.values(errors)
         apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
         return apart, np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+
+    def distance(self, unit, errors):
+        """Squared error of all the unit's parameters together by their covariance, over their number: 1 in the mean."""
+        apart, _, _ = self.judged(unit, errors)
+        names = list(self.parameters)
+        places = [names.index(name) for name in unit.names()]
+        return apart @ np.linalg.solve(self.covariance[np.ix_(places, places)], apart) / len(apart)
 
 
 def calibrate(recording, nominal=NOMINAL, options=()):

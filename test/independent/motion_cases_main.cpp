@@ -1,7 +1,7 @@
 // motion_cases ACTUATOR.yaml STREAMS.txt...: runs the cycle motion on each file of streams and
 // prints what came out, one line a fact, for programs that know the truth and share no code with
-// this package. A line of a file is J, C or O, a stamp [ns], and values: joint angles, currents, or
-// an orientation as x y z w.
+// this package; last the rows of the covariance of all parameters. A line of a file is J, C or O, a
+// stamp [ns], and values: joint angles, currents, or an orientation as x y z w.
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
@@ -93,6 +94,15 @@ void calibrate(const Actuator& nominal, const EffectSelection& effects, const ch
                 values[p],
                 stddevs[p],
                 is_open ? "open" : "identified");
+  }
+  const Eigen::MatrixXd jacobian = reportedJacobian(model.space(), estimate.belief.x);
+  const Eigen::MatrixXd covariance = jacobian * estimate.belief.covariance * jacobian.transpose();
+  for (const auto& row : covariance.rowwise()) {
+    std::printf("covariance");
+    for (const double value : row) {
+      std::printf(" %.17g", value);
+    }
+    std::printf("\n");
   }
 }
 

@@ -45,6 +45,7 @@ class Tally:
 
     def __init__(self):
         self.inside, self.squares, self.normalised, self.worst, self.refused = [], [], [], [], 0
+        self.distances = []
         self.error_over_bound, self.stated_over_bound = [], []  # squared
 
     def add(self, outcome, unit, errors):
@@ -57,10 +58,11 @@ class Tally:
         self.squares.append(np.mean(apart**2))
         self.normalised.append(np.mean((apart / stddevs) ** 2))
         self.worst.append(np.max(stddevs))
+        self.distances.append(outcome.distance(unit, errors))
         return (
             f"inside {100.0 * self.inside[-1]:5.1f} %  rms {np.sqrt(self.squares[-1]) / MILLI:.4f} mrad  "
             f"normalised {np.sqrt(self.normalised[-1]):.2f}  worst std {self.worst[-1] / MILLI:.4f} mrad  "
-            f"chi-square {outcome.chi_square:.3f}  held out {outcome.probability:.2g}"
+            f"by covariance {np.sqrt(self.distances[-1]):.2f}  chi-square {outcome.chi_square:.3f}  held out {outcome.probability:.2g}"
         )
 
     def compare(self, outcome, unit, errors, limits):
@@ -93,7 +95,8 @@ class Tally:
         return (
             f"{len(self.inside)} units, {self.refused} refused: inside {100.0 * np.mean(self.inside):.1f} +- "
             f"{100.0 * np.std(self.inside) / root:.1f} %  rms {np.sqrt(np.mean(self.squares)) / MILLI:.4f} mrad  "
-            f"normalised {np.sqrt(np.mean(self.normalised)):.2f}  worst std {np.median(self.worst) / MILLI:.4f} mrad (median)"
+            f"normalised {np.sqrt(np.mean(self.normalised)):.2f}  by covariance {np.sqrt(np.mean(self.distances)):.3f} +- "
+            f"{np.std(self.distances) / root / (2.0 * np.sqrt(np.mean(self.distances))):.3f}  worst std {np.median(self.worst) / MILLI:.4f} mrad (median)"
         ) + self.bounds()
 
 

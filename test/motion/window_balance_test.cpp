@@ -1,5 +1,7 @@
 #include "window_balance.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -119,6 +121,80 @@ TEST_F(WindowBalanceTest, CoversThreeSquareNoisesByItsCovariance) {
   // χ² with 60 × 18 degrees of freedom: within 4 of its standard deviations.
   const double freedom = kTrials * static_cast<double>(exact.residual.size());
   EXPECT_NEAR(squares / freedom, 1.0, 4.0 * std::sqrt(2.0 / freedom));
+}
+
+// Beside the largest delay of the currents at both ends, nothing is lost.
+TEST_F(WindowBalanceTest, WindowsFillWhatHasCurrents) {
+  ASSERT_EQ(windows_.size(), 3U);
+  EXPECT_TRUE(left_out_.empty());
+  const JointTrack& track = spans_[0].track;
+  const std::vector<double>& currents = spans_[0].current_times;
+  const double step = track.step();
+  EXPECT_NEAR(track.time(windows_.front().first), currents.front() + options_.largest_delay, step);
+  EXPECT_NEAR(track.time(windows_.back().last), currents.back() - options_.largest_delay, step);
+  for (std::size_t n = 0; n + 1 < windows_.size(); ++n) {
+    EXPECT_EQ(windows_[n].last, windows_[n + 1].first);
+  }
+}
+
+TEST_F(WindowBalanceTest, WindowsWithoutCurrentsAreCounted) {
+  MotionStreams late = recording_.spans.front();
+  constexpr Eigen::Index kMissing = 600;
+  late.current_stamps.erase(late.current_stamps.begin(), late.current_stamps.begin() + kMissing);
+  late.currents = late.currents.bottomRows(late.currents.rows() - kMissing).eval();
+  std::vector<WindowsLeftOut> left_out;
+  const std::vector<MotionWindow> windows = cutWindows({MotionSpan(late)}, options_, left_out);
+  EXPECT_EQ(windows.size(), 1U);
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_EQ(left_out[0].reason, "currents are missing");
+  EXPECT_EQ(left_out[0].count, 2U);
+}
+
+/// A rotor at a tilt whose joints 1 and 3 turn steadily, without currents.
+MotionRecording steadyMotion(const Eigen::Vector3d& begin, const Eigen::Vector3d& rates) {
+  MotionRecorder recorder(scenarios::paperNominal().coils.size());
+  for (int n = 0; n < 500; ++n) {
+    const double t = 1e-3 * n;
+    const auto stamp = static_cast<Stamp>(std::llround((t + 10.0) * 1e9));
+    recorder.add(JointMeasurement{stamp, begin + t * rates});
+    recorder.add(CurrentMeasurement{stamp, Eigen::VectorXd::Zero(24)});
+  }
+  return recorder.take();
+}
+
+// The rates of the joints are not its components: at a tilt their axes are not at right angles.
+TEST(DryFriction, IsThatOfTheRotorsSpeed) {
+  const Eigen::Vector3d begin(0.1, 0.6, -0.4);
+  const Eigen::Vector3d rates(1.5, 0.0, 1.5);
+  const MotionRecording recording = steadyMotion(begin, rates);
+  const MotionSpan span(recording.spans.front());
+  const CalibrationModel model(ParameterSpace(scenarios::paperNominal(), withMotionEffects({})));
+  const MotionPoint point(
+      model, MotionPlaces(model.space()), Eigen::VectorXd::Zero(model.space().size()));
+  const MotionOptions options;
+  BalanceEvaluator evaluator(options, Eigen::Vector3d::Constant(1e-5));
+  WindowBalance balance;
+  const MotionWindow window{0, 100, 350};
+  evaluator.evaluate(span, window, point, {}, balance);
+  const TestFunctions functions(0.1, 0.35, options.test_functions);
+  TestFunctionValues values;
+  const auto orientation = [&](double t) {
+    return rotorOrientation(JointGeometry(), begin + t * rates);
+  };
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(balance.residual.size());
+  constexpr double kStep = 1e-3;
+  for (double t = 0.1 + 0.5 * kStep; t < 0.35; t += kStep) {
+    functions.evaluate(t, values);
+    const Eigen::Vector3d rate =
+        rotationLog(orientation(t + 1e-4) * orientation(t - 1e-4).transpose()) / 2e-4;
+    for (Eigen::Index k = 0; k < functions.count(); ++k) {
+      expected.segment<3>(3 * k) +=
+          kStep * values.value[k] / std::hypot(rate.norm(), options.friction_speed) * rate;
+    }
+  }
+  const Eigen::Index place = point.places().coulomb;
+  EXPECT_LT((balance.jacobian.col(place) / point.scaleAt(place) - expected).norm(),
+            1e-3 * expected.norm());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 """The emulated laboratory under test, with ports of its own, and what an operator does in it."""
 
+import contextlib
 import os
 import pathlib
 import signal
@@ -13,13 +14,12 @@ import yaml
 from calibration_client import DEADLINE, NAMESPACE, CalibrationClient, wait_for
 from launch_client import Launch, launch_file
 from links import free_port
-from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CoilCurrents
+from spherical_actuator_calibration.rotor_readings import readings_of
+from spherical_actuator_calibration.session_guide.progress import distance
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 from std_srvs.srv import SetBool, Trigger
 
-COILS = 24
-JOINTS = ["joint_1", "joint_2", "joint_3"]
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
@@ -44,14 +44,20 @@ def configuration_with_free_ports(folder):
 
 class EmulatedLab:
     """emulated_lab.launch on the master of the test; `folder` keeps its files. Without `commands` it is
-    somebody else who moves and excites."""
+    somebody else who moves and excites. `unit`: name of a shipped description, with its URDF."""
 
-    def __init__(self, folder, commands=True, environment=None, **arguments):
+    def __init__(self, folder, commands=True, environment=None, unit="pm_spherical_8x24", **arguments):
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
         self.config = configuration_with_free_ports(folder)
+        shipped = pathlib.Path(rospy.get_param("~config"))
+        self.actuator = yaml.safe_load((shipped / f"{unit}.yaml").read_text())["actuator"]
+        self.coils = len(self.actuator["coils"])
         self._arguments = {
+            "actuator": str(shipped / f"{unit}.yaml"),
+            "urdf": str(shipped.parent / "urdf" / f"{unit}.urdf"),
+            "joint_sensor": bool(self.actuator["joints"]),
             "config": self.config,
             "directory": self.directory,
             "truth": self.truth,
@@ -59,28 +65,45 @@ class EmulatedLab:
         }
         self._environment = environment
         self._launch = None
-        self._position = None
         self._currents = None
         self._timer = None
-        self._command = CoilCurrents(current=[0.0] * COILS)
+        self._command = CoilCurrents(current=[0.0] * self.coils)
         self._commands = rospy.Publisher(f"{NAMESPACE}/coil_command", CoilCurrents, queue_size=1)
-        self._targets = rospy.Publisher(f"{NAMESPACE}/fixture/target", JointState, queue_size=1)
         if commands:
             self._timer = rospy.Timer(rospy.Duration(1.0 / WATCHDOG_RATE), self._repeat)
-        rospy.Subscriber(f"{NAMESPACE}/joint_states", JointState, self._keep)
-        rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, self._keep_currents)
+        self._listen()
+        fixture = f"{NAMESPACE}/{self.readings.fixture}"
+        self.targets = rospy.Publisher(fixture, self.readings.target_type, queue_size=1)
+
+    def _listen(self):
+        self.readings = readings_of(NAMESPACE, self.actuator).listen()
+        self._subscriber = rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, self._keep_currents)
+
+    @contextlib.contextmanager
+    def left_alone(self):
+        """Nobody listens meanwhile, which takes much of a small computer's time at 1 kHz."""
+        self.readings.close()
+        self._subscriber.unregister()
+        self._currents = None
+        yield
+        self._listen()
+        self._wait_for_readings()
 
     def change_emulator(self, **sections):
         """Sections of the emulator's configuration, before the start."""
         path = pathlib.Path(self.config) / "lab_emulator.yaml"
         path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), **sections}))
 
+    def use_coil_driver(self, name):
+        """Another of the shipped configurations, before the start."""
+        self._arguments["coil_driver"] = os.path.join(self.config, name)
+
     def start(self):
         self._launch = Launch(
             launch_file("emulated_lab.launch"), environment=self._environment, **self._arguments
         )
-        wait_for(lambda: self._position is not None, "joint angles")
-        wait_for(lambda: self._targets.get_num_connections() > 0, "the fixture")
+        self._wait_for_readings()
+        wait_for(lambda: self.targets.get_num_connections() > 0, "the fixture")
         wait_for(lambda: self._commands.get_num_connections() > 0, "the coil driver")
         # Of its services the last to be advertised.
         rospy.wait_for_service(f"{NAMESPACE}/lab_emulator/inject_outlier", DEADLINE)
@@ -91,16 +114,21 @@ class EmulatedLab:
         if self._launch:
             self._launch.stop()
 
-    @staticmethod
-    def kill(node, number=signal.SIGKILL):
+    @classmethod
+    def kill(cls, node, number=signal.SIGKILL):
         """Sends a signal to a node; by SIGKILL it does not hear of it."""
+        os.kill(cls.process_of(node), number)
+
+    @staticmethod
+    def process_of(node):
+        """Its process id, which a node that is stopped does not tell."""
         name = f"{NAMESPACE}/{node}"
         address = rosgraph.Master(rospy.get_name()).lookupNode(name)
         _, _, process = xmlrpc.client.ServerProxy(address).getPid(rospy.get_name())
-        os.kill(process, number)
+        return process
 
-    def _keep(self, message):
-        self._position = message.position
+    def _wait_for_readings(self):
+        wait_for(lambda: self.readings.fresh() is not None, self.readings.quantity)
 
     def _keep_currents(self, message):
         self._currents = message.current
@@ -114,16 +142,18 @@ class EmulatedLab:
 
     def excite(self, coil, current):
         """Only this coil, counted from 1."""
-        self._command = CoilCurrents(current=[0.0] * COILS)
+        self._command = CoilCurrents(current=[0.0] * self.coils)
         if coil:
             self._command.current[coil - 1] = current
 
     def is_at(self, target):
-        return max(abs(a - b) for a, b in zip(self._position, target)) < 1e-3
+        """A reading [rad]; by noise and quantisation it is never at another one exactly."""
+        reading = self.readings.fresh()
+        return reading is not None and distance(reading, target) < 0.5 * self.readings.still
 
     def move(self, target):
-        """Returns when the joint sensors see the fixture at the target."""
-        self._targets.publish(JointState(name=JOINTS, position=target))
+        """Returns when the fixture is seen at the target."""
+        self.targets.publish(self.readings.target(target))
         wait_for(lambda: self.is_at(target), f"the fixture at {target}")
 
     def fault(self, name, active):

@@ -187,7 +187,7 @@ class JointSensor(unittest.TestCase):
         error = node.wait_for_end()
         self.assertEqual(node.process.returncode, 1)
         self.assertIn("has no joints", error)
-        self.assertIn("calibrate_bag", error)
+        self.assertIn("joint_sensor:=false", error)
 
 
 if __name__ == "__main__":

@@ -42,6 +42,8 @@ class LaunchLab(unittest.TestCase):
         self.assertEqual(names(nodes_of(path)), NODES)
         self.assertEqual(names(nodes_of(path, drivers=False)), ["calibration", "session_engine", "tracker_bridge"])
         self.assertNotIn("session_engine", names(nodes_of(path, engine=False)))
+        without = [name for name in NODES if name != "joint_sensor"]
+        self.assertEqual(names(nodes_of(path, joint_sensor=False)), without)
         self.assertIn("rviz", names(nodes_of(path, rviz=True)))
         self.assertEqual({node.namespace for node in nodes_of(path, ns="second")}, {"/second/"})
 
