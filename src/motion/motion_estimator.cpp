@@ -34,6 +34,7 @@ class Estimator {
 
  private:
   bool solve();
+  bool takeHeldOut();
   bool rejectOutliers();
   bool weighAnew();
   std::size_t activeWindows() const;
@@ -174,6 +175,7 @@ void Estimator::judgeMisfit() {
   constexpr double kSignificance = 1e-3;
   Estimate& estimate = result_.estimate;
   const double freedom = windowFreedom();
+  estimate.covariance_scale = 1.0;
   estimate.degrees_of_freedom = static_cast<int>(std::lround(freedom));
   if (freedom <= 0.0) {
     return;
@@ -277,6 +279,20 @@ void Estimator::judgeHeldOut() {
   held_out.probability = chiSquareProbability(freedom, squares);
 }
 
+/// Lets what is held out judge the solution, and then serve like all else: what was found is known
+/// better for it, by so much that its derivatives stay as they are.
+bool Estimator::takeHeldOut() {
+  if (!terms_.holdsOut() || descent_.estimated().empty()) {
+    return true;
+  }
+  judgeMisfit();
+  findCovariance();
+  result_.summary.held_out = countHeldOut();
+  judgeHeldOut();
+  terms_.admitHeldOut();
+  return descent_.settleAnew();
+}
+
 /// Mean torque error over a window, stator frame [N·m].
 ObservationResidual Estimator::residualOf(std::size_t window) const {
   const WindowTerm& term = terms_.windows()[window];
@@ -304,7 +320,6 @@ void Estimator::listResiduals() {
 void Estimator::summarise() {
   MotionSummary& summary = result_.summary;
   summary.left_out = terms_.leftOut();
-  summary.held_out = countHeldOut();
   summary.values = static_cast<std::size_t>(terms_.valuesPerWindow());
   summary.windows = terms_.windowCount();
   for (const WindowsLeftOut& left_out : summary.left_out) {
@@ -342,7 +357,7 @@ MotionEstimate Estimator::run() {
     summarise();
     return std::move(result_);
   }
-  const bool solved = solve();
+  const bool solved = solve() && takeHeldOut();
   estimate.unobservable = descent_.open().coordinates;
   estimate.open_directions = descent_.open().directions;
   estimate.error_history = descent_.errors();
@@ -356,7 +371,6 @@ MotionEstimate Estimator::run() {
   if (estimate.termination == Termination::kConverged) {
     judgeMisfit();
     findCovariance();
-    judgeHeldOut();
   }
   estimate.solve_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

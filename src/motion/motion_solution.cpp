@@ -13,6 +13,9 @@
 namespace sac {
 namespace {
 
+/// Where a step is as good as none, in standard deviations of all coordinates together.
+constexpr double kSettled = 0.02;
+
 double medianOrOne(std::vector<double> values) {
   return values.empty() ? 1.0 : medianOf(std::move(values));
 }
@@ -276,7 +279,6 @@ void MotionDescent::solveCoarsely() {
 bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
   // A step as short as this one changes the derivatives by nothing that counts.
   constexpr double kEnd = 1.0;
-  constexpr double kSettled = 0.02;
   // Where nothing fits, outliers come and go for ever.
   constexpr int kMostWeighings = 6;
   int weighings = 0;
@@ -303,6 +305,10 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
     advance(start, order);
   }
   return false;
+}
+
+bool MotionDescent::settleAnew() {
+  return settle(kSettled);
 }
 
 }  // namespace sac

@@ -35,6 +35,9 @@ class MotionDescent {
   /// what counts.
   bool solveFinely(const std::function<bool()>& weigh_anew);
 
+  /// On with terms that serve only now, as they are linearised; false where nothing can be told.
+  bool settleAnew();
+
   const Eigen::VectorXd& x() const { return x_; }
   const MotionSums& sums() const { return sums_; }
   const UnidentifiedPart& open() const { return open_; }

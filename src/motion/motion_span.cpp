@@ -22,6 +22,60 @@ bool hasCurrents(const MotionSpan& span, double begin, double end) {
   return true;
 }
 
+/// Readings of a span at which windows may begin and end.
+struct ReadingRange {
+  std::size_t first;
+  std::size_t last;
+};
+
+/// Where there are currents, also within the largest delay: the first and the last of `whole`
+/// without those that have none.
+ReadingRange drivenReadings(const MotionSpan& span,
+                            const ReadingRange& whole,
+                            double largest_delay) {
+  ReadingRange driven = whole;
+  if (span.current_times.empty()) {
+    return driven;
+  }
+  const double begin = span.current_times.front() + largest_delay;
+  const double end = span.current_times.back() - largest_delay;
+  while (driven.first < driven.last && span.track.time(driven.first) <= begin) {
+    ++driven.first;
+  }
+  while (driven.last > driven.first && span.track.time(driven.last) > end) {
+    --driven.last;
+  }
+  return driven;
+}
+
+/// Readings between windows of about `length`. They fill what has currents, without a rest; the
+/// windows before and after it are there to be refused.
+std::vector<std::size_t> bordersOf(const MotionSpan& span,
+                                   double largest_delay,
+                                   std::size_t length) {
+  // Two readings more on either side, for what is interpolated there.
+  constexpr std::size_t kBeside = 2;
+  std::vector<std::size_t> borders;
+  if (span.track.size() < 2 * kBeside + length) {
+    return borders;
+  }
+  const ReadingRange whole{kBeside, span.track.size() - 1 - kBeside};
+  const ReadingRange driven = drivenReadings(span, whole, largest_delay);
+  const std::size_t before = (driven.first - whole.first) / length;
+  for (std::size_t n = before; n > 0; --n) {
+    borders.push_back(driven.first - n * length);
+  }
+  const std::size_t count = (driven.last - driven.first) / length;
+  for (std::size_t n = 0; n <= count; ++n) {
+    const std::size_t share = count == 0 ? 0 : (driven.last - driven.first) * n / count;
+    borders.push_back(driven.first + share);
+  }
+  while (borders.back() + length <= whole.last) {
+    borders.push_back(borders.back() + length);
+  }
+  return borders;
+}
+
 /// Fastest joint between readings some steps apart [rad/s].
 double largestSpeed(const JointTrack& track, const MotionWindow& window) {
   constexpr std::size_t kParts = 5;
@@ -83,17 +137,15 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
     }
     const std::size_t length = std::max(
         kLeastReadings, static_cast<std::size_t>(std::lround(options.window / track.step())));
-    // Two readings more on either side, for what is interpolated there.
-    std::size_t first = 2;
-    while (first + length + 2 < track.size()) {
-      const MotionWindow window{s, first, first + length};
+    const std::vector<std::size_t> borders = bordersOf(spans[s], options.largest_delay, length);
+    for (std::size_t n = 0; n + 1 < borders.size(); ++n) {
+      const MotionWindow window{s, borders[n], borders[n + 1]};
       const std::string reason = refusal(spans[s], window, options);
       if (reason.empty()) {
         windows.push_back(window);
       } else {
         countLeftOut(reason, left_out);
       }
-      first += length;
     }
   }
   return windows;

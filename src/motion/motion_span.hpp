@@ -29,8 +29,9 @@ struct MotionWindow {
   std::size_t last = 0;   ///< reading at the end
 };
 
-/// Cuts windows one after the other out of what has no holes, also within the largest delay of the
-/// currents, and where the rotor moves. What is left out is added to `left_out`.
+/// Cuts windows one after the other, without a rest at the end, out of what has currents, also
+/// within their largest delay. Those with holes, or in which the rotor rests, are added to
+/// `left_out`.
 std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out);

@@ -242,6 +242,20 @@ void MotionTerms::holdOut() {
   }
 }
 
+bool MotionTerms::holdsOut() const {
+  return std::any_of(
+      windows_.begin(), windows_.end(), [](const WindowTerm& term) { return term.held_out; });
+}
+
+void MotionTerms::admitHeldOut() {
+  for (WindowTerm& term : windows_) {
+    term.held_out = false;
+  }
+  for (OrientationTerm& term : orientations_) {
+    term.held_out = false;
+  }
+}
+
 InformationSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& values) {
   InformationSum sum(x.size());
   values = 0;

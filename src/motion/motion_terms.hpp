@@ -21,7 +21,7 @@ struct WindowTerm {
   Eigen::VectorXd residual;  ///< whitened
   double square = 0.0;       ///< squared whitened residual, over the number of residuals
   bool active = true;
-  bool held_out = false;  ///< judges, and serves nothing else
+  bool held_out = false;  ///< judges, and does not serve as long as it does
 
   bool serves() const { return active && !held_out; }
 };
@@ -89,6 +89,10 @@ class MotionTerms {
   /// orientation within each, so that white noise of the tracker does not hide the rest. `values`:
   /// how many residuals.
   InformationSum heldOut(const Eigen::VectorXd& x, std::size_t& values);
+  /// Whether anything is.
+  bool holdsOut() const;
+  /// From now on all that is active serves.
+  void admitHeldOut();
 
  private:
   void holdOut();

@@ -52,16 +52,6 @@ IntervalMomentum::IntervalMomentum(const Eigen::Matrix3d& before,
   d_inertia = R_middle * inertiaColumns(R_middle.transpose() * turn);
 }
 
-/// Speed over a few readings around an interval, less noisy than that of the interval alone.
-double smoothSpeed(const JointTrack& track, const MotionWindow& window, std::size_t reading) {
-  constexpr double kSpan = 0.01;  // [s]
-  const auto reach = static_cast<std::size_t>(kSpan / (2.0 * track.step()));
-  const std::size_t from = std::max(window.first - 1, reading - std::min(reading, reach));
-  const std::size_t to = std::min(window.last + 1, reading + 1 + reach);
-  return 1.0 / (track.time(to) - track.time(from)) *
-         (track.reading(to) - track.reading(from)).norm();
-}
-
 }  // namespace
 
 void BalanceEvaluator::start(const MotionSpan& span,
@@ -120,6 +110,28 @@ Eigen::VectorXd BalanceEvaluator::momentumFactors(std::size_t place, double h) c
   return factor;
 }
 
+/// Of dry friction, by the rate over a few readings around an interval: less noisy than that of the
+/// interval alone.
+BalanceEvaluator::Fading BalanceEvaluator::fadingAt(const JointTrack& track,
+                                                    std::size_t place) const {
+  constexpr double kSpan = 0.01;  // [s]
+  const auto reach = static_cast<std::size_t>(kSpan / (2.0 * track.step()));
+  const std::size_t first = place - std::min(place, reach);
+  const std::size_t last = std::min(turned_.size() - 1, place + 1 + reach);
+  const std::size_t origin = window_.first - 1;
+  const double per_time = 1.0 / (track.time(origin + last) - track.time(origin + first));
+  const TurnedRotor& before = turned_[first];
+  const TurnedRotor& after = turned_[last];
+  const Eigen::Vector3d rate =
+      per_time * rotationLog(after.R_stator_rotor * before.R_stator_rotor.transpose());
+  Fading fading;
+  fading.value = 1.0 / std::hypot(rate.norm(), options_.friction_speed);
+  // What turns about the axis of the turn adds to its angle.
+  fading.d_x =
+      -std::pow(fading.value, 3) * per_time * rate.transpose().lazyProduct(after.d_x - before.d_x);
+  return fading;
+}
+
 void BalanceEvaluator::addInterval(const MotionSpan& span,
                                    const MotionPoint& point,
                                    std::size_t place,
@@ -130,14 +142,15 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
   const Eigen::VectorXd factor =
       momentumFactors(place, span.track.time(reading + 1) - span.track.time(reading));
   const IntervalMomentum interval(before.R_stator_rotor, after.R_stator_rotor, point.inertia());
-  const double speed = smoothSpeed(span.track, window_, reading);
-  const double fading = 1.0 / std::hypot(speed, options_.friction_speed);
-  const double friction = point.viscous() + point.coulomb() * fading;
+  const Fading fading = fadingAt(span.track, place);
+  const double friction = point.viscous() + point.coulomb() * fading.value;
   // Products of three by three and three by some: too small for the general way.
   const Eigen::Matrix3Xd d_turn =
       interval.turn_after.lazyProduct(after.d_x) + interval.turn_before.lazyProduct(before.d_x);
   const Eigen::Matrix3Xd d_momentum = interval.momentum_after.lazyProduct(after.d_x) +
                                       interval.momentum_before.lazyProduct(before.d_x);
+  const Eigen::Matrix3Xd d_braking =
+      friction * d_turn + (point.coulomb() * interval.turn).lazyProduct(fading.d_x);
   const MotionPlaces& places = point.places();
   const auto add = [](Eigen::Index coordinate, const auto& derivative, auto column) {
     column.template segment<3>(3 * coordinate) += derivative;
@@ -149,7 +162,7 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
     auto column = sum_.col(k);
     for (Eigen::Index t = 0; t < d_turn.cols(); ++t) {
       add(point.turning()[static_cast<std::size_t>(t)],
-          c * d_momentum.col(t) + (f * friction) * d_turn.col(t),
+          c * d_momentum.col(t) + f * d_braking.col(t),
           column);
     }
     for (Eigen::Index n = 0; places.inertia >= 0 && n < 6; ++n) {
@@ -161,7 +174,7 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
       add(places.viscous, f * point.scaleAt(places.viscous) * interval.turn, column);
     }
     if (places.coulomb >= 0) {
-      add(places.coulomb, f * point.scaleAt(places.coulomb) * fading * interval.turn, column);
+      add(places.coulomb, f * point.scaleAt(places.coulomb) * fading.value * interval.turn, column);
     }
     if (!wants_noise_) {
       continue;

@@ -38,6 +38,12 @@ class BalanceEvaluator {
                 WindowBalance& out);
 
  private:
+  /// 1/√(ω² + v²) of dry friction.
+  struct Fading {
+    double value = 0.0;      ///< [s/rad]
+    Eigen::RowVectorXd d_x;  ///< by MotionPoint::turning()
+  };
+
   void start(const MotionSpan& span, const MotionWindow& window, const MotionPoint& point);
   void addMomentum(const MotionSpan& span, const MotionPoint& point, WindowBalance& out);
   void addInterval(const MotionSpan& span,
@@ -53,6 +59,7 @@ class BalanceEvaluator {
                    double step,
                    const BalanceOrder& order,
                    WindowBalance& out);
+  Fading fadingAt(const JointTrack& track, std::size_t place) const;
   Eigen::VectorXd momentumFactors(std::size_t place, double h) const;
   void addNoise(const TrackPoint& track,
                 double step,

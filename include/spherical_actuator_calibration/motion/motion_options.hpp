@@ -10,7 +10,7 @@ struct MotionOptions {
   int test_functions = 6;       ///< per window; each gives three residuals
   double least_speed = 0.05;    ///< a rotor that never turns faster in a window rests [rad/s]
   double largest_delay = 0.06;  ///< that is looked for, of currents and tracker [s]
-  /// Every so manieth window judges instead of serving, where there are enough of them; 0: none.
+  /// Every so manieth window judges before it serves, where there are enough of them; 0: none.
   std::size_t hold_out_every = 10;
   std::size_t least_windows_to_hold_out = 40;
   /// Speed v below which dry friction fades [rad/s].

@@ -16,10 +16,10 @@ struct WindowsLeftOut {
   std::size_t count = 0;
 };
 
-/// How windows that served nothing else agree with what was found.
+/// How windows that did not serve agree with what was found without them. Then they serve, too.
 struct HeldOutMotion {
   std::size_t windows = 0;
-  std::size_t rejected = 0;  ///< beside them: they contradict as outliers do
+  std::size_t rejected = 0;  ///< beside them: they contradict as outliers do, and never serve
   std::size_t orientations = 0;
   double orientation_rms = 0.0;  ///< norm of the rotation error, with the tracker's noise [rad]
   double torque_rms = 0.0;       ///< norm of the mean torque error of a window [N·m]
