@@ -57,6 +57,7 @@ CoilDriver::Beat CoilDriver::beat(double now) {
       connect();
     }
     Beat result = exchange(clock);
+    beat_time_ = clock.now() - clock.begin();
     link_.success();
     return result;
   } catch (const TransportError& error) {
@@ -103,7 +104,10 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
   const double elapsed = std::min(now - last_beat_.value_or(now), kLongestStep);
   last_beat_ = clock.begin();
   const std::optional<double> given_at = supervisor_.givenAt(now);
-  const std::optional<Eigen::VectorXd> command = supervisor_.command(now);
+  // What is set now flows until the next beat sets something else: slow answers take from the time
+  // of a command, they do not add to it.
+  const double until = now + beat_time_;
+  const std::optional<Eigen::VectorXd> command = supervisor_.command(until);
   const bool may_flow = command && is_measured_;
   if (may_flow) {
     if (given_at && given_at != last_given_at_) {
@@ -112,7 +116,7 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
     }
     limiter_.follow(*command, elapsed);
   } else {
-    result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(now);
+    result.zero_reason = command ? "no current was measured yet" : supervisor_.zeroReason(until);
     result.fault = !supervisor_.fault().empty();
     limiter_.stop();
   }

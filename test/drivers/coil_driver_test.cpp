@@ -45,6 +45,17 @@ TEST_F(CoilDriverTest, GoesToZeroWithoutAFreshCommand) {
   EXPECT_FALSE(enabled());
 }
 
+// Its setpoints stay until the next beat writes others: they must not outlive the command by one.
+TEST_F(CoilDriverTest, SlowAnswersDoNotAddToTheTimeOfACommand) {
+  follow(pattern(3, 1.5));
+  now_ += shippedOptions().supervision.watchdog - 0.04;
+  EXPECT_EQ(beat().zero_reason, "");
+  bus_.setSlow(0, 0.06);
+  EXPECT_EQ(beat().zero_reason, "");
+  EXPECT_EQ(beat().zero_reason, "no fresh command");
+  EXPECT_TRUE(allZero());
+}
+
 TEST_F(CoilDriverTest, ARefusedCommandLetsTheOneBeforeRunOut) {
   follow(pattern(3, 1.5));
   EXPECT_NE(offer(Eigen::VectorXd::Zero(3)), "");

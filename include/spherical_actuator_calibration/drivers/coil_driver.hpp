@@ -86,6 +86,7 @@ class CoilDriver {
   CurrentSupervisor supervisor_;
   LinkSupervisor link_;
   std::optional<double> last_beat_;
+  double beat_time_ = 0.0;               ///< of the last beat that was answered [s]
   std::optional<double> last_given_at_;  ///< the last command that was set, by the steady clock [s]
   bool is_measured_ = false;             ///< currents were, by the last beat
   bool was_tripped_ = false;             ///< the amplifier, likewise
