@@ -269,5 +269,17 @@ TEST(LaboratoryEffects, AreNamedAndMeasuredInTheirUnits) {
   EXPECT_EQ(layout.scale(3), 1.0);
 }
 
+// What was saved is calibrated again, month after month.
+TEST(LaboratoryEffects, AnUnbalanceThatTheDescriptionHasIsReplacedNotAddedTo) {
+  Actuator saved = scenarios::paperNominal();
+  const ParameterSpace unknown(saved, only({"rotor_unbalance"}));
+  saved.unbalance << 3.0e-3, -2.0e-3, 4.2e-3;
+  const ParameterSpace known(saved, only({"rotor_unbalance"}));
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(known.size());
+  EXPECT_EQ(known.actuatorAt(x).unbalance, saved.unbalance);
+  x.tail<3>() << 3.1e-3, -2.1e-3, 4.0e-3;
+  EXPECT_EQ(known.actuatorAt(x).unbalance, unknown.actuatorAt(x).unbalance);
+}
+
 }  // namespace
 }  // namespace sac

@@ -26,7 +26,10 @@ class RotorUnbalance final : public LaboratoryEffect {
     return skew(Eigen::Vector3d(values)) * R_rotor_stator * skew(down());
   }
   void applyTo(Actuator& actuator, const Values& values) const override {
-    actuator.unbalance += values;
+    // Observations count all of it as unknown, whatever the description knew before.
+    if (!values.isZero(0.0)) {
+      actuator.unbalance = values;
+    }
   }
 
  private:
