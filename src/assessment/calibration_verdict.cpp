@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
@@ -70,6 +71,7 @@ class Judge {
     addMisfit(steps);
     addIrreplaceable(steps);
     addModelChoice(steps);
+    addLinearity(steps);
     addValidation(steps);
     if (steps.empty()) {
       addWeakest(steps);
@@ -192,6 +194,14 @@ class Judge {
     if (best.converged && best.effects != "all") {
       steps.push_back("The samples are explained best by other laboratory effects: \"" +
                       best.effects + "\" instead of all that are modelled.");
+    }
+  }
+
+  void addLinearity(std::vector<std::string>& steps) const {
+    const auto linearity = torqueLinearity(session_.samples(), session_.config());
+    if (linearity && !linearity->isProportional()) {
+      steps.push_back(describe(linearity) +
+                      " Calibrate at the currents that the actuator is to work with.");
     }
   }
 

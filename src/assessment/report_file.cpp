@@ -3,6 +3,7 @@
 #include <optional>
 #include <sstream>
 
+#include "report_judgements.hpp"
 #include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
@@ -279,53 +280,6 @@ std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
                           session.config().estimation);
 }
 
-void writeInfluences(YamlWriter& writer, const std::vector<SampleInfluence>& influences) {
-  std::vector<std::string> lines;
-  for (const SampleInfluence& influence : influences) {
-    YamlLine line;
-    line.add("id", std::to_string(influence.id));
-    line.add("quantity", quantityName(influence.quantity));
-    line.add("leverage", yamlNumber(influence.leverage));
-    line.add("largest_shift", yamlNumber(influence.largest_shift));
-    line.add("irreplaceable", yamlBoolean(influence.irreplaceable));
-    line.add("parameter", influence.parameter);
-    lines.push_back(line.text());
-  }
-  writer.list(1, "influences", lines);
-}
-
-void writeModelChoice(YamlWriter& writer, const std::vector<ModelFit>& fits) {
-  std::vector<std::string> lines;
-  for (const ModelFit& fit : fits) {
-    YamlLine line;
-    line.add("effects", yamlText(fit.effects));
-    line.add("converged", yamlBoolean(fit.converged));
-    line.add("parameters", std::to_string(fit.parameters));
-    line.add("chi_square", yamlNumber(fit.chi_square));
-    line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
-    line.add("bic", yamlNumber(fit.bic));
-    if (fit.held_out) {
-      line.add("held_out", yamlNumber(*fit.held_out));
-    }
-    lines.push_back(line.text());
-  }
-  if (!lines.empty()) {
-    writer.list(1, "model_choice", lines);
-  }
-}
-
-void writeOrientationMap(YamlWriter& writer, const OrientationMapChoice& choice) {
-  if (choice.record) {
-    YamlLine line;
-    line.add("chosen", yamlBoolean(choice.map != nullptr));
-    line.add("regions", std::to_string(choice.record->regions));
-    line.add("axes_rms", yamlNumber(choice.record->axes_rms));
-    line.add("map_rms", yamlNumber(choice.record->map_rms));
-    line.add("inside", yamlNumber(choice.record->inside));
-    writer.entry(1, "orientation_map", line.text());
-  }
-}
-
 void writeDiagnoses(YamlWriter& writer, const std::vector<Diagnosis>& diagnoses) {
   std::vector<std::string> lines;
   for (const Diagnosis& diagnosis : diagnoses) {
@@ -379,6 +333,7 @@ std::string renderReport(const CalibrationSession& session,
   writeInfluences(writer, influences);
   writeOrientationMap(writer, session.orientationMap());
   writeModelChoice(writer, fits);
+  writeTorqueLinearity(writer, session);
   return writer.text();
 }
 

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "problem_check.hpp"
-#include "same_dwell.hpp"
+#include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
 namespace sac {
 

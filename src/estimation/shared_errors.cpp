@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "same_dwell.hpp"
+#include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
 namespace sac {
 namespace {

@@ -247,7 +247,7 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
     std::cout << validationParagraph(*validation);
   }
   std::cout << "\n" << parameterTable(session, truth);
-  std::cout << influenceParagraph(session);
+  std::cout << influenceParagraph(session) << linearityParagraph(session);
   // Samples judge effects; motion has more of its own.
   if (session.motion() == nullptr) {
     for (const std::string& line :

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
@@ -186,6 +187,13 @@ std::string influenceParagraph(const CalibrationSession& session) {
              most->parameter.c_str(),
              most->largest_shift) +
          irreplaceableSentence(influences);
+}
+
+std::string linearityParagraph(const CalibrationSession& session) {
+  const std::vector<Sample>& samples = session.samples();
+  const bool has_torque = std::any_of(
+      samples.begin(), samples.end(), [](const Sample& sample) { return sample.has_torque; });
+  return has_torque ? describe(torqueLinearity(samples, session.config())) + "\n" : "";
 }
 
 std::string validationParagraph(const HeldOutValidation& validation) {

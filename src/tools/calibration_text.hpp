@@ -15,6 +15,9 @@ std::string cycleParagraph(const CycleReport& report);
 /// The observation that moves the result of the last cycle most; empty when that one failed.
 std::string influenceParagraph(const CalibrationSession& session);
 
+/// Whether torque is proportional to current; empty without torques.
+std::string linearityParagraph(const CalibrationSession& session);
+
 /// How the held-out samples agree.
 std::string validationParagraph(const HeldOutValidation& validation);
 

@@ -63,6 +63,7 @@ class GuidedSession(LabCase):
         self.node_restarted(session)
         self.assertEqual(session.wait(), 0, "\n".join(session.lines))
         self.assertTrue(session.says("they agree with the parameters"), session.lines)
+        self.assertTrue(session.says("Torque is proportional to current: coil "), session.lines)
         self.assertTrue(session.says("all 73 parameters are identified"), session.lines)
         self.assertTrue(session.says("Grade: good."), session.lines)
         self.check_result(session)

@@ -108,6 +108,7 @@ class LevitatedSession(LabCase):
         session.wait_until_it_says("measured already")
         self.assertEqual(session.wait(), 0, "\n".join(session.lines))
         self.assertTrue(session.says("they agree with the parameters"), session.lines)
+        self.assertTrue(session.says("Torque is proportional to current: coil "), session.lines)
         self.assertTrue(session.says("all 56 parameters are identified"), session.lines)
         saved = next(line for line in session.lines if line.startswith("Saved "))
         live = re.match(r"Saved (\S+\.yaml)", saved).group(1)

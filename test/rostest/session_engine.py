@@ -80,6 +80,7 @@ class SessionEngine(LabCase):
         self.assertRegex(result.message, r"Saved (\S+\.yaml)")
         expect_truth(self, result.message.split()[1].rstrip(","), self.lab.truth)
         self.check_nothing_is_measured_twice()
+        self.check_linearity()
         self.assertIn("Saved ", self.saved(GoalStatus.SUCCEEDED))
 
     def saved(self, state):
@@ -147,15 +148,32 @@ class SessionEngine(LabCase):
     def check_nothing_is_measured_twice(self):
         samples = self.client.held().values()
         status = self.client.latest("status")
+        full = max(max(map(abs, sample.current)) for sample in samples)
         measured = [
             Measured(tuple(s.joint_position), excited_coils(s.current, status.current_threshold), s.validation)
             for s in samples
+            # Without that of one coil at other currents.
+            if not 0.4 * full < max(map(abs, s.current)) < 0.6 * full and min(s.current) > -0.5 * full
         ]
         for pose in poses_of(measured, status.pose_tolerance):
             there = [m for m in measured if m.validation == pose.validation and pose.is_at(m.joints, status.pose_tolerance)]
             patterns = [m.pattern for m in there if m.pattern]
             for place, pattern in enumerate(patterns):
                 self.assertFalse(any(is_same_pattern(pattern, other) for other in patterns[:place]), patterns)
+
+    def check_linearity(self):
+        """One coil at three currents in one rest, once, tells that torque is proportional to it."""
+        rests = {}
+        for sample in self.client.held().values():
+            for coil, current in enumerate(sample.current, 1):
+                if abs(current) > 0.5:
+                    rests.setdefault((sample.dwell, coil), []).append(current)
+        (currents,) = [sorted(each) for each in rests.values() if len(each) > 1]
+        for current, wanted in zip(currents, (-2.0, 1.0, 2.0)):
+            self.assertAlmostEqual(current, wanted, delta=0.1)
+        told = self.client.latest("status").torque_linearity
+        print(told)
+        self.assertRegex(told, r"^Torque is proportional to current: coil \d+ at .* deviates by -?\d\.\d+ ± \d\.\d+ %")
 
     def test_excitation_is_a_look_at_coils(self):
         excite = self.action("excite")

@@ -270,6 +270,14 @@ class ReportPage(unittest.TestCase):
         self.assertIn("best", page.row("all")[0])
         self.assertEqual(page.row("none")[-1], "+676.2")
 
+    def test_tells_whether_torque_is_proportional_to_current(self):
+        self.assertIn("proportional to current is not told", self.page.text)
+        told = {"sentence": "Torque is not proportional to current.", "told": True, "coil": 3, "currents": [2.0, 1.0, -2.0]}
+        told.update(deviation={"value": -0.0203, "stddev": 0.0011}, asymmetry={"value": 0.0, "stddev": 0.0004}, probability=1e-90)
+        page = self.render(dict(self.figures, torque_linearity=told), "linearity")
+        for part in ("Torque is not proportional to current.", "2.00, 1.00, −2.00 A", "−2.03 ± 0.11 %", "0.000 ± 0.040 %", "1e-90"):
+            self.assertIn(part, page.text)
+
     def test_refuses_what_is_no_report(self):
         page = os.path.join(self.folder.name, "none.html")
         for content, part in (

@@ -5,6 +5,7 @@
 #include <spherical_actuator_calibration/CalibrationStatus.h>
 #include <std_msgs/String.h>
 
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
@@ -93,6 +94,10 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.grade = gradeName(graded.grade);
   message.grade_reason = graded.reason;
   message.next_step = nextStep(calibration.model(), progress);
+  if (calibration.model().hasTorqueModel()) {
+    message.torque_linearity =
+        describe(torqueLinearity(calibration.samples(), calibration.config()));
+  }
   publishLatched(status_, message);
   if (last_report_ && (last_report_->grade != message.grade ||
                        last_report_->grade_reason != message.grade_reason)) {

@@ -365,6 +365,22 @@ class Report:
             for fit in fits
         ]
 
+    def linearity(self):
+        """Whether torque is proportional to current: sentence, and rows where it is told; None without torque."""
+        linearity = self._report.get("torque_linearity")
+        if linearity is None:
+            return None
+        rows = []
+        for key, name in (("deviation", "At full current, from proportion"), ("asymmetry", "Positive, from the mean of both signs")):
+            if key in linearity:
+                share = linearity[key]
+                rows.append((name, f"{plus_minus(100.0 * share['value'], 100.0 * share['stddev'])} %"))
+        if linearity["told"]:
+            currents = ", ".join(f"{current:.2f}" for current in linearity["currents"]).replace("-", "−")
+            rows.insert(0, (f"Coil {linearity['coil']} at", f"{currents} A"))
+            rows.append(("Probability if proportional", significant(linearity["probability"], 2)))
+        return {"sentence": linearity["sentence"], "rows": rows}
+
     # ---- configuration -------------------------------------------------------------------------------
 
     def configuration(self):

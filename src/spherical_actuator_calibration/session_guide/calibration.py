@@ -1,5 +1,7 @@
 """The calibration node as a session sees it: its services and latched topics, through its restarts."""
 
+import math
+
 import rospy
 from spherical_actuator_calibration.msg import CalibrationStatus
 from spherical_actuator_calibration.srv import Calibrate, Capture, CapturePlanned, ListSamples, PlanPoses
@@ -120,8 +122,18 @@ class Calibration:
 
     def measured(self):
         """Samples that are held."""
-        samples = self.call("list_samples").samples
-        return [Measured(tuple(s.joint_position), self.excited(s.current), s.validation) for s in samples]
+        return [self._measured(sample) for sample in self.call("list_samples").samples]
+
+    def _measured(self, sample):
+        torque = sample.torque
+        return Measured(
+            tuple(sample.joint_position),
+            self.excited(sample.current),
+            sample.validation,
+            max(map(abs, sample.current), default=0.0),
+            math.hypot(torque.x, torque.y, torque.z),
+            sample.dwell.to_sec(),
+        )
 
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""

@@ -9,7 +9,7 @@ from .calibration import excitations_of
 from .options import Options
 from .progress import Pose
 
-PLAIN = ("seed", "wanted_stddev", "drive_fixture")  # zero means zero
+PLAIN = ("seed", "wanted_stddev", "drive_fixture", "skip_linearity")  # zero means zero
 WITH_NONE = ("validation_poses", "settling")  # negative: none
 PATHS = ("plan", "repeat")
 DEFAULTS = dataclasses.asdict(Options())

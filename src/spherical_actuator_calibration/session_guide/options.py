@@ -31,6 +31,7 @@ class Options:
     pose_timeout: float = 900.0
     wanted_stddev: float = 0.0
     drive_fixture: bool = False
+    skip_linearity: bool = False
     seed: int = 1
     plan: typing.Optional[str] = None
     repeat: typing.Optional[str] = None
@@ -88,6 +89,11 @@ def _add_what_is_measured(add, default):
         type=float,
         default=default.total_current,
         help="sum of all |currents| of a pattern, at most, as the amplifier's limit [A] (%(default)s)",
+    )
+    add(
+        "--skip-linearity",
+        action="store_true",
+        help="do not measure one coil at half and at negative current, too, which tells whether torque is proportional to it",
     )
     add("--seed", type=int, default=default.seed, help="of the validation poses (%(default)s)")
     add("--plan", metavar="FILE", help="the poses, coils and current of a plan by plan_session")

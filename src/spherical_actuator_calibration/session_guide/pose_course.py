@@ -1,5 +1,6 @@
 """The course of one pose: arrival, rest, excitation, capture, and what to do when something disturbs it."""
 
+import contextlib
 import math
 
 from spherical_actuator_calibration.msg import MeasurementProgress
@@ -44,14 +45,16 @@ class PoseCourse:
         if total > self._options.total_current:
             raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A.")
 
-    def measure(self, pose, which, done):
-        """Measures what samples lack of a pose; calls done() after each capture. `which`: the pose in words, for
-        a hand that is told where to turn it; empty: it is not."""
+    def measure(self, pose, which, done, further=None):
+        """Measures what samples lack of a pose, then calls further(pose, done); calls done() after each capture.
+        `which`: the pose in words, for a hand that is told where to turn it; empty: it is not."""
         self._lead_to(pose, which)
         self.wait_for_rest(pose)
         for pattern in self.to_capture(pose, self._calibration.measured()):
             self.capture(pose, pattern)
             done()
+        if further:
+            further(pose, done)
         self._account.lead_to(None)
 
     def measure_here(self, validation):
@@ -67,6 +70,15 @@ class PoseCourse:
             if answer is not None:
                 self._account.say_once(answer.message)
             self._task.pause(POLL)
+
+    @contextlib.contextmanager
+    def at_current(self, current):
+        """Excited coils carry another current meanwhile [A]."""
+        usual, self.current = self.current, current
+        try:
+            yield
+        finally:
+            self.current = usual
 
     def excite(self, pattern):
         """Commands a pattern; empty: no current."""

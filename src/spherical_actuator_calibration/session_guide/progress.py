@@ -33,11 +33,14 @@ class Pose:
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here: where, which pattern, whether held out."""
+    """What counts of a sample here: where, which pattern, whether held out, at which current, and in which rest."""
 
     joints: tuple
     pattern: tuple
     validation: bool
+    current: float = 0.0  # [A] the largest |current| of a coil
+    torque: float = 0.0  # [N·m] its length
+    rest: float = 0.0  # [s] when that began; later ones are newer
 
 
 def excited_coils(currents, threshold):

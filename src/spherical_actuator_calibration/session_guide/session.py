@@ -3,6 +3,7 @@
 from spherical_actuator_calibration.msg import MeasurementProgress
 
 from . import progress
+from .linearity import LinearityTest
 from .plans import read_plan, read_session
 from .pose_course import PoseCourse
 from .progress import Progress
@@ -22,6 +23,7 @@ class Session:
         self._account = account
         self._calibration = calibration
         self._course = PoseCourse(calibration, laboratory, options, task, account)
+        self._linearity = LinearityTest(calibration, self._course, account, not options.skip_linearity)
         self._coils = len(actuator.get("coils", []))
         self._plan_file = read_plan(options.plan, actuator) if options.plan else None
         self._progress = None
@@ -91,12 +93,13 @@ class Session:
         measured = self._calibration.measured()
         to_capture = {pose: len(self._course.to_capture(pose, measured)) for pose in poses}
         open_poses = [pose for pose in poses if to_capture[pose]]
-        self._progress = Progress(sum(to_capture.values()), self._task.time)
+        further = max((self._linearity.captures(pose, measured) for pose in open_poses), default=0)
+        self._progress = Progress(sum(to_capture.values()) + further, self._task.time)
         self._account.count(self._progress)
         for number, pose in enumerate(open_poses, 1):
             self._account.set(pose=number, poses=len(open_poses))
             which = f"{'held-out pose' if pose.validation else 'pose'} {number} of {len(open_poses)}"
-            self._course.measure(pose, which, self._count)
+            self._course.measure(pose, which, self._count, self._linearity.measure)
             self._look_at_the_joint()
         self._course.excite(())
         self._account.set(pose=0)
@@ -132,6 +135,9 @@ class Session:
 
     def _conclude(self):
         """Validates and saves; returns whether the result can be used."""
+        linearity = self._calibration.status().torque_linearity
+        if linearity:
+            self._account.say(linearity)
         self._account.set(stage=MeasurementProgress.SAVING)
         if self._options.validation_poses:
             answer = self._calibration.call("validate", coil=0)

@@ -1,0 +1,286 @@
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/same_dwell.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kFewestSamples = 3;
+/// Deviation and asymmetry are looked for around zero with this standard deviation; one that the
+/// samples leave less certain than kMostUncertain is not told.
+constexpr double kWidest = 1.0;
+constexpr double kMostUncertain = 0.1;
+
+/// Of a measured mean current [A]: half of the step in which the shipped amplifier tells it.
+constexpr double kCurrentStddev = 5e-4;
+
+// Unknowns: g, deviation, asymmetry, T₀.
+constexpr Eigen::Index kDeviation = 3;
+constexpr Eigen::Index kAsymmetry = 4;
+constexpr Eigen::Index kTorqueAtZero = 5;
+constexpr Eigen::Index kUnknowns = 8;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+
+enum class Law { kProportional, kBent };
+
+/// Torques of one coil at one rest, and those without any current that were not taken off.
+struct CoilAtRest {
+  std::size_t coil = 0;
+  std::vector<const Sample*> samples;
+};
+
+double currentOf(const Sample& sample, std::size_t coil) {
+  return sample.current[static_cast<Eigen::Index>(coil)];
+}
+
+/// The only coil that is excited; nothing for several. Without any, `coils`.
+std::optional<std::size_t> onlyCoil(const Sample& sample, double threshold) {
+  auto found = static_cast<std::size_t>(sample.current.size());
+  for (Eigen::Index j = 0; j < sample.current.size(); ++j) {
+    if (std::abs(sample.current[j]) < threshold) {
+      continue;
+    }
+    if (found < static_cast<std::size_t>(sample.current.size())) {
+      return std::nullopt;
+    }
+    found = static_cast<std::size_t>(j);
+  }
+  return found;
+}
+
+/// Adds the coils of a rest that have enough torques.
+void collectCoils(const std::vector<const Sample*>& rest,
+                  double threshold,
+                  std::vector<CoilAtRest>& found) {
+  if (rest.size() < kFewestSamples) {
+    return;
+  }
+  const auto coils = static_cast<std::size_t>(rest.front()->current.size());
+  std::vector<std::vector<const Sample*>> of_coil(coils + 1);
+  for (const Sample* sample : rest) {
+    if (const std::optional<std::size_t> coil = onlyCoil(*sample, threshold)) {
+      of_coil[*coil].push_back(sample);
+    }
+  }
+  const std::vector<const Sample*>& without = of_coil.back();
+  for (std::size_t coil = 0; coil < coils; ++coil) {
+    std::vector<const Sample*>& excited = of_coil[coil];
+    // One without current still has what was taken off the others.
+    const auto is_whole = [](const Sample* sample) { return sample->torque_shared_stddev == 0.0; };
+    const auto whole = std::stable_partition(
+        excited.begin(), excited.end(), [&](const Sample* sample) { return !is_whole(sample); });
+    if (whole == excited.begin() && !excited.empty()) {
+      excited.insert(excited.end(), without.begin(), without.end());
+    } else {
+      excited.erase(whole, excited.end());
+    }
+    if (excited.size() >= kFewestSamples) {
+      found.push_back({coil, excited});
+    }
+  }
+}
+
+std::vector<CoilAtRest> coilsAtRest(const std::vector<Sample>& samples, double threshold) {
+  std::vector<CoilAtRest> found;
+  std::vector<const Sample*> rest;
+  for (const Sample& sample : samples) {
+    if (!rest.empty() && !isSameDwell(*rest.front(), sample)) {
+      collectCoils(rest, threshold, found);
+      rest.clear();
+    }
+    if (sample.has_torque) {
+      rest.push_back(&sample);
+    }
+  }
+  collectCoils(rest, threshold, found);
+  return found;
+}
+
+/// Weighted fit of the law to the torques of one coil at one rest.
+class LinearityFit {
+ public:
+  LinearityFit(const CoilAtRest& at, const CalibrationConfig& config)
+      : at_(at), default_torque_stddev_(config.estimation.default_torque_stddev) {
+    double largest_torque = default_torque_stddev_;
+    for (const Sample* sample : at.samples) {
+      full_ = std::max(full_, std::abs(currentOf(*sample, at.coil)));
+      largest_torque = std::max(largest_torque, sample->torque.norm());
+      shared_stddev_ = std::max(shared_stddev_, sample->torque_shared_stddev);
+    }
+    // Wherever nothing was taken off, what is without current may be anything.
+    constexpr double kAnything = 100.0;
+    stddev_at_zero_ = isZeroTakenOff() ? shared_stddev_ : kAnything * largest_torque;
+  }
+
+  std::optional<TorqueLinearity> result() {
+    const double proportional = minimise(Law::kProportional);
+    const double bent = minimise(Law::kBent);
+    using Square = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+    const Square information = A_.transpose() * A_;
+    const Square covariance = information.llt().solve(Square::Identity());
+    const Unknowns stddevs = covariance.diagonal().cwiseSqrt();
+    if (!(stddevs[kDeviation] <= kMostUncertain)) {
+      return std::nullopt;
+    }
+    TorqueLinearity found;
+    found.coil = at_.coil;
+    found.full_current = full_;
+    for (const Sample* sample : at_.samples) {
+      found.samples.push_back(sample->id);
+      found.currents.push_back(currentOf(*sample, at_.coil));
+    }
+    const bool tells_asymmetry = stddevs[kAsymmetry] <= kMostUncertain;
+    found.chi_square = proportional;
+    found.degrees_of_freedom = freedom();
+    found.probability = chiSquareProbability(found.degrees_of_freedom, proportional);
+    const int left = freedom() - (tells_asymmetry ? 2 : 1);
+    found.law_probability = chiSquareProbability(left, bent);
+    // As in every cycle, a misfit widens what is told.
+    const double widened = std::sqrt(std::max(1.0, bent / left));
+    found.deviation = {x_[kDeviation], widened * stddevs[kDeviation]};
+    if (tells_asymmetry) {
+      found.asymmetry = UncertainValue{x_[kAsymmetry], widened * stddevs[kAsymmetry]};
+    }
+    return found;
+  }
+
+ private:
+  bool isZeroTakenOff() const { return shared_stddev_ > 0.0; }
+
+  /// Of proportionality.
+  int freedom() const {
+    const int values = 3 * static_cast<int>(at_.samples.size());
+    return values - (isZeroTakenOff() ? 3 : 6);
+  }
+
+  /// Gauss–Newton, from where the last fit ended. Returns the sum of squares.
+  double minimise(Law law) {
+    constexpr int kMostSteps = 30;
+    constexpr double kEnough = 1e-12;
+    for (int n = 0; n < kMostSteps; ++n) {
+      linearise();
+      Eigen::MatrixXd A = A_;
+      if (law == Law::kProportional) {
+        A.topRows(rows()).middleCols<2>(kDeviation).setZero();
+      }
+      const Unknowns step = A.colPivHouseholderQr().solve(b_);
+      x_ += step;
+      if (step.norm() <= kEnough * (1.0 + x_.norm())) {
+        break;
+      }
+    }
+    linearise();
+    return b_.squaredNorm();
+  }
+
+  Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(at_.samples.size()); }
+
+  /// Whitened derivatives A and residuals b at x, with what is known beforehand as rows below.
+  void linearise() {
+    A_.setZero(rows() + kUnknowns - kDeviation, kUnknowns);
+    b_.setZero(A_.rows());
+    const Eigen::Vector3d g = x_.head<3>();
+    for (Eigen::Index n = 0; n < rows() / 3; ++n) {
+      const Sample& sample = *at_.samples[static_cast<std::size_t>(n)];
+      const double share = currentOf(sample, at_.coil) / full_;
+      const double bent = 1.0 + x_[kDeviation] * std::abs(share) + x_[kAsymmetry] * share;
+      Eigen::Matrix<double, 3, kUnknowns> J;
+      J.leftCols<3>() = share * bent * Eigen::Matrix3d::Identity();
+      J.col(kDeviation) = share * std::abs(share) * g;
+      J.col(kAsymmetry) = share * share * g;
+      J.rightCols<3>().setIdentity();
+      const Eigen::Vector3d residual = sample.torque - x_.tail<3>() - share * bent * g;
+      const Eigen::LLT<Eigen::Matrix3d> noise(noiseOf(sample, g));
+      A_.middleRows<3>(3 * n) = noise.matrixL().solve(J);
+      b_.segment<3>(3 * n) = noise.matrixL().solve(residual);
+    }
+    for (Eigen::Index p = kDeviation; p < kUnknowns; ++p) {
+      const double stddev = p < kTorqueAtZero ? kWidest : stddev_at_zero_;
+      A_(rows() + p - kDeviation, p) = 1.0 / stddev;
+      b_[rows() + p - kDeviation] = -x_[p] / stddev;
+    }
+  }
+
+  /// Of the torque itself, and of the current that goes with it.
+  Eigen::Matrix3d noiseOf(const Sample& sample, const Eigen::Vector3d& g) const {
+    const double stated =
+        sample.torque_stddev > 0.0 ? sample.torque_stddev : default_torque_stddev_;
+    const double shared = sample.torque_shared_stddev;
+    constexpr double kLeastPart = 1e-6;  // rounding of what is stated
+    const double own = std::max(stated * stated - shared * shared, kLeastPart * stated * stated);
+    const double relative = kCurrentStddev / full_;
+    return own * Eigen::Matrix3d::Identity() + relative * relative * g * g.transpose();
+  }
+
+  const CoilAtRest& at_;
+  const double default_torque_stddev_;
+  double full_ = 0.0;
+  double shared_stddev_ = 0.0;
+  double stddev_at_zero_ = 0.0;
+  Unknowns x_ = Unknowns::Zero();
+  Eigen::MatrixXd A_;
+  Eigen::VectorXd b_;
+};
+
+std::string percent(const UncertainValue& share) {
+  // As many decimals as give the uncertainty two digits.
+  const int digits = static_cast<int>(std::floor(std::log10(100.0 * share.stddev)));
+  const int decimals = std::clamp(1 - digits, 0, 6);
+  return format("%.*f ± %.*f %%", decimals, 100.0 * share.value, decimals, 100.0 * share.stddev);
+}
+
+}  // namespace
+
+bool TorqueLinearity::isProportional() const {
+  return probability >= kLeastProbability;
+}
+
+std::optional<TorqueLinearity> torqueLinearity(const std::vector<Sample>& samples,
+                                               const CalibrationConfig& config) {
+  std::optional<TorqueLinearity> best;
+  for (const CoilAtRest& at : coilsAtRest(samples, config.estimation.current_threshold)) {
+    std::optional<TorqueLinearity> found = LinearityFit(at, config).result();
+    if (found && (!best || found->deviation.stddev < best->deviation.stddev)) {
+      best = std::move(found);
+    }
+  }
+  return best;
+}
+
+std::string describe(const std::optional<TorqueLinearity>& linearity) {
+  if (!linearity) {
+    return "Whether torque is proportional to current is not told: measure one coil at three "
+           "currents in one rest, such as full, half, and full with the other sign.";
+  }
+  std::string currents;
+  for (const double current : linearity->currents) {
+    currents += format("%s%.2f", currents.empty() ? "" : ", ", current);
+  }
+  std::string text = linearity->isProportional() ? "Torque is proportional to current: coil "
+                                                 : "Torque is not proportional to current: coil ";
+  text += format("%zu at %s A deviates by ", numberOf(linearity->coil), currents.c_str());
+  text += percent(linearity->deviation) + format(" at %.2f A", linearity->full_current);
+  if (linearity->asymmetry) {
+    text += ", a positive current by " + percent(*linearity->asymmetry) +
+            " from the mean of both signs";
+  }
+  text += format(" (probability %.2g if it is proportional).", linearity->probability);
+  if (linearity->law_probability < kLeastProbability) {
+    text +=
+        " Its torques follow no such law either: did the rotor move under them, or the bias "
+        "drift?";
+  }
+  return text;
+}
+
+}  // namespace sac
