@@ -147,11 +147,13 @@ QLayout* CalibrationPanel::makeCycleRow() {
     connect(button, &QPushButton::clicked, this, [this, service, has_coil] {
       calibrate(service, has_coil ? static_cast<std::uint32_t>(coil_->value()) : 0U);
     });
+    return button;
   };
   coil_ = new QSpinBox;
   coil_->setRange(1, kMostCoils);
   coil_->setPrefix("coil ");
-  add("Joint", "calibrate_joint", false, "F6");
+  joint_cycle_ = add("Joint", "calibrate_joint", false, "F6");
+  joint_cycle_help_ = joint_cycle_->toolTip();
   add("Poles", "calibrate_poles", true);
   add("Coil", "calibrate_coil", true);
   row->addWidget(coil_);
@@ -237,6 +239,7 @@ void CalibrationPanel::refresh() {
 }
 
 void CalibrationPanel::showCalibration() {
+  offerJointCycle();
   next_step_->setText(QString::fromStdString(model_.nextStep()));
   bars_->setGroups(model_.coverage());
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
@@ -289,10 +292,18 @@ void CalibrationPanel::showAge() {
 }
 
 void CalibrationPanel::setCallsEnabled(bool enabled) {
+  are_calls_enabled_ = enabled;
   for (QPushButton* button : buttons_) {
     button->setEnabled(enabled);
   }
   auto_capture_->setEnabled(enabled);
+  offerJointCycle();
+}
+
+void CalibrationPanel::offerJointCycle() {
+  const QString refusal = QString::fromStdString(model_.whyNoJointCycle());
+  joint_cycle_->setEnabled(refusal.isEmpty() && are_calls_enabled_);
+  joint_cycle_->setToolTip(refusal.isEmpty() ? joint_cycle_help_ : refusal);
 }
 
 template <typename Service>

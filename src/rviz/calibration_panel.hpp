@@ -64,6 +64,8 @@ class CalibrationPanel : public rviz::Panel {
   void showAge();
 
   void setCallsEnabled(bool enabled);
+  /// Level 1 is not offered where there is nothing to calibrate.
+  void offerJointCycle();
   void capture();
   void calibrate(const std::string& service, std::uint32_t coil);
   void trigger(const std::string& service);
@@ -86,6 +88,9 @@ class CalibrationPanel : public rviz::Panel {
   HealthView* health_ = nullptr;
   CoverageBars* bars_ = nullptr;
   std::vector<QPushButton*> buttons_;
+  bool are_calls_enabled_ = true;
+  QPushButton* joint_cycle_ = nullptr;
+  QString joint_cycle_help_;  ///< what its tool tip says where it is offered
   QDoubleSpinBox* duration_ = nullptr;
   QCheckBox* validation_ = nullptr;
   HandGuide* hand_guide_ = nullptr;

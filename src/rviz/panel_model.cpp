@@ -103,6 +103,13 @@ bool PanelModel::hasJoints() const {
   return parameters_.source.empty() || axis.x != 0.0 || axis.y != 0.0 || axis.z != 0.0;
 }
 
+std::string PanelModel::whyNoJointCycle() const {
+  return hasJoints()
+             ? ""
+             : "The rotor has no joints: the tracker alone tells its orientation, and level "
+               "1 has nothing to calibrate. Begin with poles and coils.";
+}
+
 std::vector<HealthLine> PanelModel::streams(const ros::WallTime& now) const {
   std::vector<HealthLine> lines;
   for (const char* const stream : kStreams) {

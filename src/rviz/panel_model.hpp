@@ -73,6 +73,8 @@ class PanelModel {
 
   /// Whether the rotor has joints, by the parameters in force; true before any came.
   bool hasJoints() const;
+  /// Why level 1 cannot be calibrated, in a sentence; empty where it can.
+  std::string whyNoJointCycle() const;
 
   /// The streams of measurements that the calibration node lives on, without joints three. Unknown
   /// when nothing was heard for some seconds.

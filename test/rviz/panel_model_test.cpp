@@ -133,10 +133,12 @@ TEST(PanelModel, AJointWithoutTorqueModelHasNoPolesAndCoils) {
 TEST(PanelModel, ARotorWithoutJointsHasNothingOfThem) {
   PanelModel panel("/actuator");
   EXPECT_TRUE(panel.hasJoints());
+  EXPECT_EQ(panel.whyNoJointCycle(), "");
   msg::ActuatorParameters levitated = parameters();
   levitated.joints = {};
   panel.receive(levitated);
   EXPECT_FALSE(panel.hasJoints());
+  EXPECT_NE(panel.whyNoJointCycle().find("The rotor has no joints: "), std::string::npos);
   ASSERT_EQ(panel.streams(now()).size(), 3U);
   EXPECT_EQ(panel.streams(now())[0].name, "coil_currents");
   EXPECT_TRUE(panel.coverage().empty());
