@@ -41,7 +41,7 @@ RevisionTable::RevisionTable(const ros::NodeHandle& node,
 void RevisionTable::refresh(const std::string& in_force) {
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
     trouble_->setText(QString::fromStdString(answer->message));
-    trouble_->setVisible(!answer->success);
+    trouble_->setVisible(!answer->success || answer->is_partial);
     if (answer->success) {
       fill(revisionLines(answer->revisions));
     }

@@ -21,6 +21,7 @@ struct ServiceAnswer {
   bool success = false;
   std::string message;                   ///< one sentence
   std::vector<msg::Revision> revisions;  ///< of list_revisions
+  bool is_partial = false;               ///< some are left out; the message tells which
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle.
@@ -44,6 +45,7 @@ class ServiceCaller {
       ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
       if constexpr (std::is_same_v<Service, msg::ListRevisions>) {
         answer.revisions = service.response.revisions;
+        answer.is_partial = !service.response.unread.empty();
       }
       return answer;
     });

@@ -3,14 +3,16 @@
 
 import contextlib
 import math
+import os
 import pathlib
 import sqlite3
+import subprocess
 import tempfile
 import unittest
 
 from spherical_actuator_calibration.session_guide.revisions import revisions_told, sessions_beside
 from spherical_actuator_calibration.session_tables.export import APPLICATION, ExportError
-from spherical_actuator_calibration.session_tables.history import drift_between, history_of
+from spherical_actuator_calibration.session_tables.history import drift_between, histories_of, lines_of
 
 TABLES = """
 CREATE TABLE unit (name, serial, description, effects);
@@ -49,8 +51,22 @@ class History(unittest.TestCase):
             database.commit()
         return path
 
+    @staticmethod
+    def lines(paths):
+        histories, unread = histories_of(paths)
+        assert not unread, unread
+        return [line for history in histories for line in lines_of(history)]
+
+    def damaged(self, name, statement):
+        """A session of the unit in which a statement changed something."""
+        path = self.session(name, "2026-02-01T00:00:00Z", 0.1)
+        with contextlib.closing(sqlite3.connect(path)) as database:
+            database.execute(statement)
+            database.commit()
+        return path
+
     def test_lists_revisions_with_their_errors(self):
-        lines = list(history_of([self.session("a.db", "2026-01-02T03:04:05Z", 0.1)]))
+        lines = self.lines([self.session("a.db", "2026-01-02T03:04:05Z", 0.1)])
         self.assertEqual(len(lines), 3)
         self.assertEqual(lines[1].split(), ["0", "2026-01-02T03:04:05Z", "start"])
         self.assertIn("joint", lines[2])
@@ -59,7 +75,7 @@ class History(unittest.TestCase):
     def test_tells_the_drift_in_the_order_of_dates(self):
         later = self.session("later.db", "2026-03-01T00:00:00Z", 0.1 + 5e-3)
         earlier = self.session("earlier.db", "2026-01-01T00:00:00Z", 0.1)
-        lines = list(history_of([later, earlier]))
+        lines = self.lines([later, earlier])
         self.assertIn("earlier.db", lines[0])
         self.assertEqual(
             lines[-1].strip(),
@@ -74,9 +90,12 @@ class History(unittest.TestCase):
         (self.folder / "broken").mkdir()
         (self.folder / "broken" / "session.db").write_text("no database")
         present = self.folder / "new" / "session.db"
-        beside = sessions_beside(present)
+        beside, unread = sessions_beside(present)
         self.assertEqual(beside, [self.folder / "old" / "session.db"])
-        start, joint, present_start, present_joint = revisions_told(present, beside)
+        self.assertEqual(len(unread), 1)
+        self.assertIn("broken/session.db: ", unread[0])
+        (start, joint, present_start, present_joint), unread = revisions_told(present, beside)
+        self.assertEqual(unread, [])
         self.assertEqual([start.restorable, present_joint.restorable], [False, True])
         self.assertTrue(math.isnan(present_start.error_before))
         self.assertEqual((joint.number, joint.origin, joint.error_unit, joint.samples_used), (1, "joint", "rad", 40))
@@ -84,10 +103,41 @@ class History(unittest.TestCase):
         self.assertEqual([start.drift, joint.drift, present_start.drift], ["", "", ""])
         self.assertIn("joint_1/offset by +0.005 rad, 3.5 standard deviations", present_joint.drift)
 
+    def test_names_damaged_sessions_and_lists_the_others(self):
+        whole = self.session("whole.db", "2026-01-01T00:00:00Z", 0.1)
+        damaged = [
+            self.damaged("without_revisions.db", "DROP TABLE revisions"),
+            self.damaged("date.db", "UPDATE revisions SET date = NULL"),
+            self.damaged("text.db", "UPDATE cycle_estimates SET stddev = 'small'"),
+            self.damaged("bytes.db", "UPDATE cycle_estimates SET name = CAST(x'ff41' AS TEXT)"),
+            self.damaged("unit.db", "DELETE FROM unit"),
+        ]
+        cut = self.session("cut.db", "2026-01-01T00:00:00Z", 0.1)
+        cut.write_bytes(cut.read_bytes()[:5000])
+        histories, unread = histories_of([*damaged, whole, cut])
+        self.assertEqual([history.path for history in histories], [whole])
+        for path, sentence in zip([*damaged, cut], unread):
+            self.assertIn(f"{path}: ", sentence)
+        told, unread = revisions_told(whole, [damaged[0]])
+        self.assertEqual(([revision.number for revision in told], len(unread)), ([0, 1], 1))
+        with self.assertRaisesRegex(ExportError, "without_revisions.db: "):
+            revisions_told(damaged[0], [whole])
+
+    def test_the_program_names_damaged_sessions_and_lists_the_others(self):
+        whole = self.session("whole.db", "2026-01-01T00:00:00Z", 0.1)
+        damaged = self.damaged("damaged.db", "DROP TABLE cycles")
+        for sessions, status in (((whole,), 0), ((damaged, whole), 1), ((damaged,), 2)):
+            result = subprocess.run(
+                [os.path.join(os.environ["PROGRAMS"], "list_revisions"), *sessions], capture_output=True, text=True, check=False
+            )
+            self.assertEqual(result.returncode, status, result.stderr)
+            self.assertEqual("whole.db: revision" in result.stdout, status < 2)
+            self.assertEqual("damaged.db: " in result.stderr, status > 0)
+
     def test_refuses_sessions_of_two_units(self):
         sessions = [self.session("a.db", "2026-01-01", 0.1), self.session("b.db", "2026-01-02", 0.1, "unit-8")]
         with self.assertRaisesRegex(ExportError, "b.db: is of another unit"):
-            list(history_of(sessions))
+            self.lines(sessions)
 
     def test_an_angle_drifts_the_short_way(self):
         drift = drift_between({"a": (3.1415, 1e-3, "rad")}, {"a": (-3.1415, 1e-3, "rad")})

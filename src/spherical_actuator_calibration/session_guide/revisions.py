@@ -2,7 +2,6 @@
 
 import math
 import pathlib
-import sqlite3
 import threading
 
 import rospy
@@ -12,7 +11,7 @@ from spherical_actuator_calibration.srv import ListRevisions, ListRevisionsRespo
 from spherical_actuator_calibration.text_files import printable
 
 from ..session_tables.export import ExportError, Session
-from ..session_tables.history import ERROR_UNITS, histories_of, sentence_of, unit_of
+from ..session_tables.history import ERROR_UNITS, UNREADABLE, histories_of, sentence_of, unit_of, why_unread
 
 DATABASE = "session.db"
 DIRECTORY = "directory"  # key of the diagnostics that tell the calibration directory
@@ -42,22 +41,34 @@ class Revisions:
             return ListRevisionsResponse(message="The calibration node does not tell its directory: is it running?")
         present = pathlib.Path(self._directory) / DATABASE
         try:
-            revisions = revisions_told(present, sessions_beside(present))
-        except (ExportError, OSError, sqlite3.Error) as error:
+            others, unread = sessions_beside(present)
+            revisions, damaged = revisions_told(present, others)
+        except UNREADABLE as error:
             return ListRevisionsResponse(message=printable(f"The session cannot be read: {error}"))
+        unread = [printable(sentence) for sentence in (*unread, *damaged)]
         count = sum(revision.restorable for revision in revisions)
         message = f"{count} revision{'' if count == 1 else 's'} of this session."
-        return ListRevisionsResponse(success=True, message=message, revisions=revisions)
+        if unread:
+            message += f" Left out, as they cannot be read: {' '.join(unread)}"
+        return ListRevisionsResponse(success=True, message=message, revisions=revisions, unread=unread)
 
 
 def sessions_beside(present):
-    """Paths of session databases of the same unit in folders beside that of `present`; what cannot be read is left out.
-    Raises ExportError and sqlite3.Error of `present`."""
+    """Paths of session databases of the same unit in folders beside that of `present`, and a sentence on each whose unit
+    cannot be read. Raises what UNREADABLE holds where `present` cannot."""
     with Session(present) as session:
         unit = unit_of(session)
     own = present.parent.resolve()
     others = [path for path in own.parent.glob("*/" + DATABASE) if path.parent.resolve() != own]
-    return [path for path in sorted(others, key=_time_of, reverse=True)[:MOST_SESSIONS] if _is_of(path, unit)]
+    found, unread = [], []
+    for path in sorted(others, key=_time_of, reverse=True)[:MOST_SESSIONS]:
+        try:
+            with Session(path) as session:
+                if unit_of(session) == unit:
+                    found.append(path)
+        except UNREADABLE as error:
+            unread.append(why_unread(path, error))
+    return found, unread
 
 
 def _time_of(path):
@@ -67,23 +78,19 @@ def _time_of(path):
         return 0.0
 
 
-def _is_of(path, unit):
-    try:
-        with Session(path) as session:
-            return unit_of(session) == unit
-    except (ExportError, OSError, sqlite3.Error, LookupError):
-        return False
-
-
 def revisions_told(present, others):
-    """Revision messages of the session `present` and of others of the same unit."""
+    """Revision messages of the session `present` and of others of the same unit, and a sentence on each of these that
+    cannot be read. Raises ExportError where `present` cannot."""
+    histories, unread = histories_of([*others, present])
+    if not any(history.path == present for history in histories):
+        raise ExportError(unread[-1])
     told = []
-    for history in histories_of([*others, present]):
+    for history in histories:
         revisions = [_revision(row, history.path, history.path == present) for row in history.revisions]
         if history.drift is not None and revisions:
             revisions[-1].drift = sentence_of(history.drift)
         told += revisions
-    return told
+    return told, unread
 
 
 def _revision(row, path, is_present):

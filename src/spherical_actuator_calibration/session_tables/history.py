@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import sqlite3
 
 from .export import ExportError, Session
 
@@ -13,6 +14,18 @@ FROM revisions LEFT JOIN cycles ON revisions.cycle = cycles.id ORDER BY revision
 """
 ERROR_UNITS = {"orientation": "rad", "torque": "N·m", "standardized": "1"}  # of each measure of errors
 SHOWN = {"orientation": (1e3, "mrad"), "torque": (1e3, "mN·m"), "standardized": (1.0, "")}  # of each measure of errors
+# What a damaged session gives instead of its rows.
+UNREADABLE = (ExportError, OSError, sqlite3.Error, LookupError, TypeError, ValueError, OverflowError)
+NUMBER = (int, float, type(None))
+KINDS = {  # of what a revision holds
+    "number": int,
+    "date": str,
+    "origin": str,
+    "error_measure": (str, type(None)),
+    "samples_used": (int, type(None)),
+    "before": NUMBER,
+    "after": NUMBER,
+}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -81,29 +94,45 @@ def unit_of(session):
 
 
 def histories_of(paths):
-    """SessionHistory of each session of one unit, by date. Raises ExportError and sqlite3.Error."""
-    """Lines for people: revisions of each session, and the drift from each to the next one by date. Raises ExportError
-    and sqlite3.Error."""
-    sessions, units = [], {}
+    """SessionHistory of each session of one unit that can be read, by date, and a sentence on each that cannot, which names
+    it. Raises ExportError where they are of different units."""
+    sessions, units, unread = [], {}, []
     for path in paths:
-        with Session(path) as session:
-            unit = unit_of(session)
-            sessions.append((path, revisions_of(session), identified(session)))
+        try:
+            unit, revisions, parameters = _read(path)
+        except UNREADABLE as error:
+            unread.append(why_unread(path, error))
+            continue
         units.setdefault(unit, path)
         if len(units) > 1:
             raise ExportError(f"{path}: is of another unit than {next(iter(units.values()))}.")
+        sessions.append((path, revisions, parameters))
     sessions.sort(key=lambda told: told[1][-1]["date"] if told[1] else "")
-    known = {}
+    histories, known = [], {}
     for path, revisions, parameters in sessions:
-        yield SessionHistory(path, revisions, drift_between(known, parameters))
+        histories.append(SessionHistory(path, revisions, drift_between(known, parameters)))
         known = parameters or known
+    return histories, unread
 
 
-def history_of(paths):
-    """Lines for people: revisions of each session, and the drift from each to the next one by date. Raises as
-    histories_of()."""
-    for told in histories_of(paths):
-        yield f"{told.path}: revision, date, made by, error before → after"
-        yield from map(line_of, told.revisions)
-        if told.drift is not None:
-            yield "      " + sentence_of(told.drift)
+def why_unread(path, error):
+    """A sentence that names the session, of what UNREADABLE holds."""
+    return str(error) if isinstance(error, ExportError) else f"{path}: cannot be read as a session: {error}."
+
+
+def _read(path):
+    """Unit, revisions and identified parameters of a session. Raises what UNREADABLE holds."""
+    with Session(path) as session:
+        unit, revisions, parameters = unit_of(session), revisions_of(session), identified(session)
+    for row in revisions:
+        if not all(isinstance(row[name], kinds) for name, kinds in KINDS.items()):
+            raise ExportError(f"{path}: a revision in it is not as this package writes them.")
+    return unit, revisions, parameters
+
+
+def lines_of(history):
+    """A SessionHistory for people."""
+    yield f"{history.path}: revision, date, made by, error before → after"
+    yield from map(line_of, history.revisions)
+    if history.drift is not None:
+        yield "      " + sentence_of(history.drift)
