@@ -121,6 +121,7 @@ Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
   result.cause = "coil_gain:" + number(coil);
   result.family = "coil:" + number(coil);
   result.start = Eigen::VectorXd::Constant(1, gain);
+  result.is_strength = true;
   result.correct = [coil](WiringCase& wiring, const Eigen::VectorXd& values) {
     // By the currents: the factor may pass zero on the way.
     for (Sample& sample : wiring.samples) {
@@ -163,6 +164,35 @@ Hypothesis poleMissing(std::size_t pole) {
                     " exerts no torque: its magnet is missing or lost its strength; mount it, or "
                     "take it out of the description.",
                 [](PoleAxis& axis) { axis.gain *= kNearlyNothing; });
+}
+
+Hypothesis poleGain(std::size_t pole, double gain, double tolerance) {
+  Hypothesis result;
+  result.cause = "pole_gain:" + number(pole);
+  result.family = "pole:" + number(pole);
+  result.start = Eigen::VectorXd::Constant(1, gain);
+  result.is_strength = true;
+  const auto change = [pole](Actuator& actuator, const Eigen::VectorXd& values) {
+    // The polarity is another hypothesis, and a description has no zero.
+    actuator.poles[pole].gain *= std::max(values[0], kNearlyNothing);
+  };
+  result.correct = [change](WiringCase& wiring, const Eigen::VectorXd& values) {
+    change(wiring.actuator, values);
+  };
+  result.redescribe = change;
+  result.is_material = [tolerance](const Eigen::VectorXd& values) {
+    return std::abs(values[0] - 1.0) > kMaterial * tolerance;
+  };
+  const std::string name = "pole " + number(pole);
+  result.sentence = [name](const Eigen::VectorXd& values) {
+    return name + format(
+                      " exerts %.3g times the torque that it should: check its magnet and its "
+                      "distance to the coils; set its `gain` in the description to %.4g, or model "
+                      "pole_gains in calibration.yaml.",
+                      values[0],
+                      values[0]);
+  };
+  return result;
 }
 
 }  // namespace sac

@@ -8,7 +8,9 @@
 
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
+#include "strength_screen.hpp"
 #include "torque_screen.hpp"
 #include "wiring_case.hpp"
 
@@ -135,11 +137,15 @@ class Diagnostician {
   }
 
   /// By the misfit of the torques as described, and beside it at the parameters that explain them
-  /// best so far: there a single coil shows that is lost in the tolerance of all.
+  /// best so far: there a single coil or pole shows that is lost in the tolerance of all.
   std::vector<ScreenedCandidate> screenedTorques(const PosteriorFit& base, bool with_joints) const {
     std::vector<ScreenedCandidate> all = screenTorques(case_, config_, with_joints);
     const WiringCase fitted{ParameterSpace(case_.actuator).actuatorAt(base.x), case_.samples};
-    for (ScreenedCandidate& candidate : screenMisfittingCoils(case_, fitted, config_)) {
+    std::vector<ScreenedCandidate> further = screenMisfittingCoils(case_, fitted, config_);
+    for (ScreenedCandidate& candidate : screenStrengths(case_, base, config_)) {
+      further.push_back(std::move(candidate));
+    }
+    for (ScreenedCandidate& candidate : further) {
       const bool is_known = std::any_of(all.begin(), all.end(), [&](const ScreenedCandidate& one) {
         return causes(one.parts) == causes(candidate.parts);
       });
@@ -266,11 +272,24 @@ class Diagnostician {
       at += part.start.size();
       std::string message = part.sentence(own);
       message.front() = static_cast<char>(std::toupper(message.front()));
+      if (part.is_strength) {
+        message += strengthInWords(candidate, at - 1);
+      }
       if (!others.empty()) {
         message += " The samples are explained as well by " + others + ".";
       }
       result_.mistakes.push_back({part.cause, message, candidate.gain});
     }
+  }
+
+  /// `value`: its place among the continuous values of the candidate.
+  std::string strengthInWords(const Judged& candidate, Eigen::Index value) const {
+    const PosteriorFit& fit = candidate.fit;
+    const Eigen::Index place = fit.x.size() + value;
+    const Eigen::MatrixXd covariance = posteriorCovariance(
+        case_, candidate.parts, FittedStream::kTorques, config_, ModelAllowance{}, {}, fit);
+    return format(
+        " Strength: %.4g ± %.2g.", fit.values[value], std::sqrt(covariance(place, place)));
   }
 
   const CalibrationConfig& config_;
@@ -311,6 +330,7 @@ const std::vector<std::string>& wiringCauses() {
                                                   "coil_gain",
                                                   "pole_polarity",
                                                   "pole_missing",
+                                                  "pole_gain",
                                                   "rows_shifted"};
   return causes;
 }

@@ -21,6 +21,7 @@ constexpr int kMostIterations = 8;
 constexpr int kMostHalvings = 4;
 constexpr double kEnough = 0.05;         // of the log posterior between two iterations [nats]
 constexpr double kDifference = 1e-5;     // step of numeric derivatives by continuous values
+constexpr double kUnknownEffect = 10.0;  // times the usual size of an effect
 constexpr double kFlatPrecision = 1e-6;  // of continuous values, so that the system stays regular
 
 /// Observations of one stream of one case, linearised.
@@ -44,12 +45,14 @@ class Fit {
       const Candidate& candidate,
       FittedStream stream,
       const CalibrationConfig& config,
-      const ModelAllowance& allowance)
+      const ModelAllowance& allowance,
+      const EffectSelection& effects)
       : described_(described),
         candidate_(candidate),
         stream_(stream),
         config_(config),
-        allowance_(allowance) {}
+        allowance_(allowance),
+        effects_(effects) {}
 
   PosteriorFit run(const std::optional<Eigen::VectorXd>& start) {
     PosteriorFit best;
@@ -68,12 +71,35 @@ class Fit {
     return best;
   }
 
+  Eigen::MatrixXd covarianceAt(PosteriorFit fit) {
+    linearize(std::nullopt, fit);
+    const Eigen::MatrixXd information = informationAt(fit).information();
+    return information.llt().solve(
+        Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  }
+
  private:
+  CalibrationModel modelOf(const WiringCase& mended) const {
+    return CalibrationModel(ParameterSpace(
+        stream_ == FittedStream::kOrientations ? onlyJoints(mended.actuator) : mended.actuator,
+        effects_));
+  }
+
+  /// Of an effect nothing is known beforehand unless it is stated: it is what is asked.
+  CalibrationState nominalOf(const ParameterSpace& space) const {
+    CalibrationState nominal = nominalState(space, config_.tolerance);
+    for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+      if (space.effects().statedVariance(p - space.effect()) == 0.0) {
+        nominal.belief.covariance(p, p) *= kUnknownEffect * kUnknownEffect;
+      }
+    }
+    return nominal;
+  }
+
   void linearize(const std::optional<Eigen::VectorXd>& start, PosteriorFit& fit) {
     const WiringCase mended = corrected(described_, candidate_, fit.values);
-    const CalibrationModel model(ParameterSpace(
-        stream_ == FittedStream::kOrientations ? onlyJoints(mended.actuator) : mended.actuator));
-    const CalibrationState nominal = nominalState(model.space(), config_.tolerance);
+    const CalibrationModel model = modelOf(mended);
+    const CalibrationState nominal = nominalOf(model.space());
     if (fit.x.size() == 0) {
       const bool fits = start && start->size() == model.space().size();
       fit.x = fits ? *start : nominal.belief.x;
@@ -91,15 +117,9 @@ class Fit {
       const double step = kDifference * std::max(1.0, std::abs(shifted[v]));
       shifted[v] += step;
       const WiringCase mended = corrected(described_, candidate_, shifted);
-      const CalibrationModel model(ParameterSpace(
-          stream_ == FittedStream::kOrientations ? onlyJoints(mended.actuator) : mended.actuator));
+      const CalibrationModel model = modelOf(mended);
       Linearization moved;
-      evaluate(model,
-               mended,
-               nominalState(model.space(), config_.tolerance).belief,
-               fit.x,
-               false,
-               moved);
+      evaluate(model, mended, nominalOf(model.space()).belief, fit.x, false, moved);
       for (std::size_t n = 0; n < d_values_.size(); ++n) {
         d_values_[n].col(v) =
             (moved.observations[n].residual - linear_.observations[n].residual) / step;
@@ -159,8 +179,8 @@ class Fit {
 
   /// Log posterior at the linearised point, with its most probable scale.
   void judge(PosteriorFit& fit) const {
-    std::vector<double> misfits;
-    misfits.reserve(linear_.observations.size());
+    std::vector<double>& misfits = fit.squared_misfits;
+    misfits.clear();
     for (std::size_t n = 0; n < linear_.observations.size(); ++n) {
       misfits.push_back(squaredMisfit(n));
     }
@@ -180,6 +200,7 @@ class Fit {
       loss += studentLoss(misfit / variance);
     }
     loss -= 3.0 * count * std::log(std::abs(torqueFactor(candidate_, fit.values)));
+    fit.log_likelihood = -loss;
     fit.log_posterior = -loss - 0.5 * fit.x.dot(precision_.cwiseProduct(fit.x));
   }
 
@@ -210,6 +231,14 @@ class Fit {
   }
 
   Eigen::VectorXd step(const PosteriorFit& fit) const {
+    const InformationSum sum = informationAt(fit);
+    Eigen::VectorXd gradient = sum.gradient();
+    gradient.head(fit.x.size()) += precision_.cwiseProduct(fit.x);
+    return -sum.information().llt().solve(gradient);
+  }
+
+  /// Of the linearised observations, with what is known beforehand.
+  InformationSum informationAt(const PosteriorFit& fit) const {
     const Eigen::Index size = fit.x.size();
     const Eigen::Index total = size + fit.values.size();
     Eigen::VectorXd precision(total);
@@ -224,9 +253,7 @@ class Fit {
       appendValues(n, size, whitened);
       sum.add(whitened, weight(whitened.residual.squaredNorm() / variance) / variance);
     }
-    Eigen::VectorXd gradient = sum.gradient();
-    gradient.head(size) += precision_.cwiseProduct(fit.x);
-    return -sum.information().llt().solve(gradient);
+    return sum;
   }
 
   /// The continuous values stand behind the coordinates.
@@ -243,6 +270,7 @@ class Fit {
   const FittedStream stream_;
   const CalibrationConfig& config_;
   const ModelAllowance& allowance_;
+  const EffectSelection& effects_;
   Eigen::VectorXd precision_;
   Linearization linear_;
   std::vector<Eigen::Matrix3Xd> d_values_;
@@ -269,8 +297,19 @@ PosteriorFit fitPosterior(const WiringCase& described,
                           FittedStream stream,
                           const CalibrationConfig& config,
                           const ModelAllowance& allowance,
-                          const std::optional<Eigen::VectorXd>& start) {
-  return Fit(described, candidate, stream, config, allowance).run(start);
+                          const std::optional<Eigen::VectorXd>& start,
+                          const EffectSelection& effects) {
+  return Fit(described, candidate, stream, config, allowance, effects).run(start);
+}
+
+Eigen::MatrixXd posteriorCovariance(const WiringCase& described,
+                                    const Candidate& candidate,
+                                    FittedStream stream,
+                                    const CalibrationConfig& config,
+                                    const ModelAllowance& allowance,
+                                    const EffectSelection& effects,
+                                    const PosteriorFit& fit) {
+  return Fit(described, candidate, stream, config, allowance, effects).covarianceAt(fit);
 }
 
 }  // namespace sac

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -28,11 +29,15 @@ double gainByChance(Eigen::Index values);
 struct PosteriorFit {
   /// Of noise and parameters, up to a constant that all accounts share [nats].
   double log_posterior = -std::numeric_limits<double>::infinity();
+  /// The part of it that the samples tell: without what is known of the parameters beforehand.
+  double log_likelihood = -std::numeric_limits<double>::infinity();
   /// Factor ≥ 1 on the expected misfit that explains the observations best: 1 where they are as
   /// stated.
   double scale = std::numeric_limits<double>::infinity();
   Eigen::VectorXd x;       ///< coordinates of the ParameterSpace of the corrected actuator
   Eigen::VectorXd values;  ///< continuous values of the candidate
+  /// Of each observation its squared misfit in units of its expected one, without the scale.
+  std::vector<double> squared_misfits;
 };
 
 /// What a misfit of the right wiring may have beside the stated noise: no laboratory keeps all of
@@ -44,12 +49,24 @@ struct ModelAllowance {
 
 /// Most probable coordinates and values of a candidate: errors of the manufacturing tolerance,
 /// Student-distributed misfits of a common scale that is at least 1, by iteratively reweighted
-/// Gauss–Newton steps from the nominal actuator (`start` of coordinates where given).
+/// Gauss–Newton steps from the nominal actuator (`start` of coordinates where given). `effects` of
+/// the laboratory have coordinates beside joints, poles and coils, which may be as large as they
+/// like unless their size is stated.
 PosteriorFit fitPosterior(const WiringCase& described,
                           const Candidate& candidate,
                           FittedStream stream,
                           const CalibrationConfig& config,
                           const ModelAllowance& allowance,
-                          const std::optional<Eigen::VectorXd>& start = std::nullopt);
+                          const std::optional<Eigen::VectorXd>& start = std::nullopt,
+                          const EffectSelection& effects = {});
+
+/// Covariance of coordinates and, behind them, continuous values at a fit of the same arguments.
+Eigen::MatrixXd posteriorCovariance(const WiringCase& described,
+                                    const Candidate& candidate,
+                                    FittedStream stream,
+                                    const CalibrationConfig& config,
+                                    const ModelAllowance& allowance,
+                                    const EffectSelection& effects,
+                                    const PosteriorFit& fit);
 
 }  // namespace sac

@@ -6,6 +6,9 @@
 namespace sac {
 namespace {
 
+/// Somewhat more than torques of one dwell.
+constexpr int kMostRows = 10;
+
 /// Takes a measured quantity of each sample from the one that stands `rows` further down, among
 /// those that have it.
 template <typename Has, typename Move>
@@ -46,7 +49,8 @@ Hypothesis shift(int rows, const std::string& what) {
 
 std::vector<Hypothesis> shiftHypotheses(Quantity stream) {
   std::vector<Hypothesis> all;
-  for (const int rows : {1, -1, 2, -2, 3, -3}) {
+  for (int n = 2; n < 2 * kMostRows + 2; ++n) {
+    const int rows = n % 2 == 0 ? n / 2 : -(n / 2);
     if (stream == Quantity::kOrientation) {
       Hypothesis orientation = shift(rows, "orientations");
       orientation.correct = moving(

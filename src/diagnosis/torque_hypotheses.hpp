@@ -31,6 +31,8 @@ Hypothesis coilDead(std::size_t coil);
 Hypothesis coilGain(std::size_t coil, double gain, double tolerance);
 Hypothesis polePolarity(std::size_t pole);
 Hypothesis poleMissing(std::size_t pole);
+/// A pole that is weaker or stronger by a factor, by its start.
+Hypothesis poleGain(std::size_t pole, double gain, double tolerance);
 
 /// Rotor orientation of a sample as good as it is known: measured, else by the nominal joints.
 Eigen::Matrix3d knownOrientation(const Actuator& actuator, const Sample& sample);

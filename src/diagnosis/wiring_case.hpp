@@ -30,6 +30,8 @@ struct Hypothesis {
   Eigen::VectorXd start = Eigen::VectorXd(0);  ///< of its continuous values, where it has any
   /// Whether values are so far from none that a mistake, not tolerance, is meant.
   std::function<bool(const Eigen::VectorXd& values)> is_material = nullptr;
+  /// Its one value is the strength of a pole or coil, told with its uncertainty.
+  bool is_strength = false;
   /// The same correction in the description alone, where that can hold it.
   std::function<void(Actuator&, const Eigen::VectorXd& values)> redescribe = nullptr;
   /// Factor on measured torques: 1 but for units.

@@ -8,6 +8,18 @@
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
 namespace sac {
+namespace {
+
+/// The effect that models a cause: the strength of one pole or coil is among those of all.
+std::string effectOf(const std::string& cause) {
+  if (cause == "torque_frame") {
+    return "torque_registration";
+  }
+  const std::string family = cause.substr(0, cause.find(':'));
+  return family == "pole_gain" || family == "coil_gain" ? family + "s" : cause;
+}
+
+}  // namespace
 
 std::string diagnosisLines(const std::vector<Diagnosis>& diagnoses) {
   std::string lines;
@@ -49,11 +61,12 @@ void writeCorrection(const CalibrationSession& session,
   }
   const std::vector<std::string>& effects = effectNames();
   for (const Diagnosis& diagnosis : diagnoses) {
-    if (std::find(effects.begin(), effects.end(), diagnosis.cause) != effects.end()) {
+    const std::string effect = effectOf(diagnosis.cause);
+    if (std::find(effects.begin(), effects.end(), effect) != effects.end()) {
       CalibrationConfig config = session.config();
-      config.effects[diagnosis.cause] = true;
+      config.effects[effect] = true;
       writeFileAtomically(path, renderCalibrationConfig(config), policy);
-      std::cout << "Configuration that models " << diagnosis.cause << ": " << path << "\n";
+      std::cout << "Configuration that models " << effect << ": " << path << "\n";
       return;
     }
   }

@@ -1,9 +1,13 @@
 #include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 
 #include <random>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "support/scenarios.hpp"
 
@@ -54,6 +58,108 @@ TEST_F(SessionDiagnosis, NamesTheStrengthThatTheMagnetsLost) {
   ASSERT_FALSE(diagnoses.empty());
   EXPECT_EQ(diagnoses.front().cause, "strength_scale") << diagnoses.front().message;
   EXPECT_NE(diagnoses.front().message.find("-4.0"), std::string::npos) << diagnoses.front().message;
+}
+
+class SingleExplanation : public SessionDiagnosis {
+ protected:
+  /// As named, the message of the first, and whether its value has an uncertainty.
+  static void expectFirst(const CalibrationSession& session,
+                          const std::string& cause,
+                          const std::string& value) {
+    const std::vector<Diagnosis> diagnoses = diagnose(session);
+    ASSERT_FALSE(diagnoses.empty()) << cause;
+    EXPECT_EQ(diagnoses.front().cause, cause) << diagnoses.front().message;
+    EXPECT_EQ(diagnoses.size(), 1U) << cause << " beside " << diagnoses.back().message;
+    EXPECT_NE(diagnoses.front().message.find(value), std::string::npos)
+        << diagnoses.front().message;
+    EXPECT_NE(diagnoses.front().message.find(" ± "), std::string::npos)
+        << diagnoses.front().message;
+  }
+};
+
+// A twentieth of a magnet misfits by fifty standard deviations: an outlier, if it were let be one.
+TEST_F(SingleExplanation, IsAWeakPole) {
+  Actuator truth = scenarios::paperTruth();
+  truth.poles[2].gain = 0.95;
+  expectFirst(session(truth, 11), "pole_gain:3", "pole_3/gain = -5.0");
+}
+
+TEST_F(SingleExplanation, IsACoilThatIsSlightlyTooStrong) {
+  Actuator truth = scenarios::paperTruth();
+  truth.coils[0].gain = 1.07;
+  expectFirst(session(truth, 12), "coil_gain:1", "coil_1/gain = 7.0");
+}
+
+TEST_F(SingleExplanation, IsTheScaleOfAJoint) {
+  CalibrationSession given = session(scenarios::paperTruth(), 13);
+  std::vector<Sample> samples = given.samples();
+  for (Sample& sample : samples) {
+    sample.joint_position[2] /= 1.005;
+  }
+  expectFirst({given.start(), samples, {}}, "joint_scale:3", "joint_3/scale = 0.5");
+}
+
+// No sample tells a marker that is turned from a force/torque sensor that is turned the other way;
+// a turned tracker explains neither.
+TEST_F(SingleExplanation, IsNamedWithAllThatExplainAsWell) {
+  const Eigen::Vector3d turn = Eigen::Vector3d(0.02, -0.025, 0.01);
+  const CalibrationSession given = session(scenarios::paperTruth(), 14);
+  std::vector<Sample> of_marker = given.samples();
+  std::vector<Sample> of_sensor = given.samples();
+  for (std::size_t n = 0; n < of_marker.size(); ++n) {
+    of_marker[n].R_stator_rotor = of_marker[n].R_stator_rotor * rotationExp(turn);
+    of_sensor[n].torque = rotationExp(turn) * of_sensor[n].torque;
+  }
+  for (const std::vector<Sample>& samples : {of_marker, of_sensor}) {
+    std::set<std::string> causes;
+    for (const Diagnosis& diagnosis : diagnose({given.start(), samples, {}})) {
+      causes.insert(diagnosis.cause);
+      EXPECT_NE(diagnosis.message.find("explained as well by"), std::string::npos)
+          << diagnosis.message;
+    }
+    EXPECT_EQ(causes, (std::set<std::string>{"marker_registration", "torque_frame"}));
+  }
+}
+
+TEST_F(SingleExplanation, IsNoneOfASingleWildSample) {
+  const CalibrationSession given = session(scenarios::paperTruth(), 15);
+  std::vector<Sample> samples = given.samples();
+  for (std::size_t n = 20; n < samples.size(); n += 40) {
+    samples[n].torque += Eigen::Vector3d(0.1, -0.2, 0.15);
+  }
+  const std::vector<Diagnosis> diagnoses = diagnose({given.start(), samples, {}});
+  EXPECT_TRUE(diagnoses.empty()) << diagnoses.front().message;
+}
+
+// By hundreds of standard deviations: nothing of it would be left without the outliers.
+TEST_F(SingleExplanation, IsAMagnetThatLostAFifth) {
+  Actuator truth = scenarios::paperTruth();
+  truth.poles[4].gain = 0.8;
+  const std::vector<Diagnosis> diagnoses = diagnose(session(truth, 16));
+  ASSERT_EQ(diagnoses.size(), 1U);
+  EXPECT_EQ(diagnoses.front().cause, "pole_gain:5") << diagnoses.front().message;
+  EXPECT_NE(diagnoses.front().message.find(" ± "), std::string::npos) << diagnoses.front().message;
+}
+
+TEST_F(SessionDiagnosis, TellsByHowManyRowsTorquesAreLate) {
+  constexpr std::size_t kRows = 4;
+  const CalibrationSession given = session(scenarios::paperTruth(), 17);
+  std::vector<Sample> samples = given.samples();
+  std::vector<std::size_t> with_torque;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    if (samples[n].has_torque) {
+      with_torque.push_back(n);
+    }
+  }
+  for (std::size_t n = 0; n < with_torque.size(); ++n) {
+    samples[with_torque[(n + kRows) % with_torque.size()]].torque =
+        given.samples()[with_torque[n]].torque;
+  }
+  const std::vector<Diagnosis> mistakes = diagnoseMistakes({given.start(), samples, {}});
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_EQ(mistakes.front().cause, "rows_shifted") << mistakes.front().message;
+  EXPECT_NE(mistakes.front().message.find("4 rows later"), std::string::npos)
+      << mistakes.front().message;
 }
 
 class Validity : public SessionDiagnosis {

@@ -1,37 +1,49 @@
 // Names the mistakes of sessions in files, for judges that made the files without this package:
-//   diagnose_samples ACTUATOR.yaml SAMPLES.yaml [ACTUATOR.yaml SAMPLES.yaml ...]
+//   diagnose_samples [--effects] ACTUATOR.yaml SAMPLES.yaml [ACTUATOR.yaml SAMPLES.yaml ...]
 // One line for each session: the processor time it took [s], and its causes, separated by blanks,
-// or none.
+// or none. --effects: also effects of the laboratory; the messages follow, indented.
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <exception>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
-#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
+#include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 
+namespace {
+
+void tell(double seconds, const std::vector<sac::Diagnosis>& diagnoses, bool with_messages) {
+  std::printf("%.4f ", seconds);
+  for (const sac::Diagnosis& one : diagnoses) {
+    std::printf("%s ", one.cause.c_str());
+    std::fprintf(stderr, "%s: %.1f: %s\n", one.cause.c_str(), one.evidence, one.message.c_str());
+  }
+  std::printf("%s\n", diagnoses.empty() ? "none" : "");
+  for (std::size_t n = 0; with_messages && n < diagnoses.size(); ++n) {
+    std::printf("    %s\n", diagnoses[n].message.c_str());
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  if (argc < 3 || argc % 2 == 0) {
-    std::fprintf(stderr, "usage: diagnose_samples ACTUATOR.yaml SAMPLES.yaml ...\n");
+  const bool with_effects = argc > 1 && std::strcmp(argv[1], "--effects") == 0;
+  const int first = with_effects ? 2 : 1;
+  if (argc < first + 2 || (argc - first) % 2 != 0) {
+    std::fprintf(stderr, "usage: diagnose_samples [--effects] ACTUATOR.yaml SAMPLES.yaml ...\n");
     return 2;
   }
   try {
-    for (int n = 1; n < argc; n += 2) {
+    for (int n = first; n < argc; n += 2) {
       const sac::Actuator actuator = sac::loadActuator(argv[n]);
       const std::vector<sac::Sample> samples =
           sac::loadSamples(argv[n + 1], sac::modelledCoils(actuator));
+      const sac::CalibrationSession session({actuator}, samples, {});
       const std::clock_t begin = std::clock();
-      const sac::WiringDiagnosis diagnosis = sac::diagnoseWiring(actuator, samples, {});
-      std::printf("%.4f ", static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-      for (const sac::Diagnosis& mistake : diagnosis.mistakes) {
-        std::printf("%s ", mistake.cause.c_str());
-        std::fprintf(stderr,
-                     "%s: %.1f: %s\n",
-                     mistake.cause.c_str(),
-                     mistake.evidence,
-                     mistake.message.c_str());
-      }
-      std::printf("%s\n", diagnosis.mistakes.empty() ? "none" : "");
+      const std::vector<sac::Diagnosis> diagnoses =
+          with_effects ? sac::diagnose(session) : sac::diagnoseMistakes(session);
+      tell(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, diagnoses, with_effects);
     }
     return 0;
   } catch (const std::exception& error) {
