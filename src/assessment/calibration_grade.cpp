@@ -1,8 +1,10 @@
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -88,7 +90,43 @@ class Examiner {
     if (last_success_ != nullptr && !last_success_->doubts.empty()) {
       return ", but " + last_success_->doubts.front();
     }
-    return unstatedRegistration();
+    const std::string confounded = confoundedRegistration();
+    return confounded.empty() ? unstatedRegistration() : confounded;
+  }
+
+  /// A registration that the samples find elsewhere than it is stated. Turning the marker or the
+  /// force/torque sensor by opposite angles looks the same in all samples; which of both it was
+  /// decides where joints and poles are.
+  std::string confoundedRegistration() const {
+    constexpr double kSignificant = 5.0;  // standard deviations
+    for (const auto& [found, other] : {std::pair{"torque_registration", "marker_registration"},
+                                       std::pair{"marker_registration", "torque_registration"}}) {
+      const EffectSelection& effects = session_.config().effects;
+      if (!effects[found] || effects.stddev(found) > 0.0 || effects[other]) {
+        continue;
+      }
+      double square = 0.0;
+      double variance = 0.0;
+      bool is_significant = false;
+      for (const ParameterEstimate& one : parameters_) {
+        if (one.name.rfind(found, 0) == 0 && one.observable) {
+          square += one.value * one.value;
+          variance = std::max(variance, one.stddev * one.stddev);
+          is_significant = is_significant || std::abs(one.value) > kSignificant * one.stddev;
+        }
+      }
+      if (is_significant) {
+        return format(
+            ", but %s came out as %.3g ± %.1g mrad, and %s of as much would explain the samples as "
+            "well, with joints and poles elsewhere by that: find out which of both registrations "
+            "is wrong, and correct it",
+            found,
+            1e3 * std::sqrt(square),
+            1e3 * std::sqrt(variance),
+            other);
+      }
+    }
+    return {};
   }
 
   /// Registrations that count as exact because nothing is stated of them.

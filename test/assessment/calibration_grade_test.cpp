@@ -97,6 +97,23 @@ TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
   EXPECT_EQ(gradeOf(samples, wholeCalibration()).grade, Grade::kContradicted);
 }
 
+// Of a turned marker, too, so that joints and poles would be wrong by as much.
+TEST(CalibrationGrade, UsableWhereARegistrationIsFoundElsewhereThatAnotherWouldExplain) {
+  std::vector<Sample> samples = scenarios::heldOutSession();
+  for (Sample& sample : samples) {
+    sample.R_stator_rotor = sample.R_stator_rotor * rotationExp({0.02, -0.02, 0.02});
+  }
+  CalibrationConfig config = registered();
+  for (const char* effect : {"torque_registration", "marker_registration"}) {
+    config.effects = {};
+    config.effects[effect] = true;
+    const GradedCalibration graded = gradeOf(samples, wholeCalibration(), config);
+    EXPECT_EQ(graded.grade, Grade::kUsable) << graded.reason;
+    EXPECT_TRUE(tells(graded, "which of both registrations")) << graded.reason;
+    EXPECT_EQ(gradeOf(scenarios::heldOutSession(), wholeCalibration(), config).grade, Grade::kGood);
+  }
+}
+
 TEST(CalibrationGrade, ACycleThatFailedSpoilsNothing) {
   std::vector<CycleRequest> requests = wholeCalibration();
   requests.push_back({Cycle::kCoil, 24});
