@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
@@ -14,6 +15,7 @@ namespace {
 /// More than so many orientations tell nothing more to a screening.
 constexpr std::size_t kMostScreened = 30;
 constexpr std::size_t kMostFitted = 10;
+constexpr std::size_t kMostShifts = 3;
 
 /// Evenly chosen orientations, without torques.
 WiringCase orientationsOf(const WiringCase& described) {
@@ -149,6 +151,7 @@ std::vector<ScreenedCandidate> screenOrientations(const WiringCase& described,
   const WiringCase few = orientationsOf(described);
   const double unchanged = lossOf(few, {}, config);
   std::vector<ScreenedCandidate> candidates;
+  std::vector<ScreenedCandidate> shifts;  // by all orientations: they must not crowd others out
   for (const Hypothesis& hypothesis : singles(few, config)) {
     const bool is_shift = hypothesis.cause == "rows_shifted";
     const double gain = is_shift
@@ -156,8 +159,12 @@ std::vector<ScreenedCandidate> screenOrientations(const WiringCase& described,
                                   orientationLoss(corrected(described, {hypothesis}, {}), config)
                             : unchanged - lossOf(few, {hypothesis}, config);
     if (gain > 0.0) {
-      candidates.push_back({{hypothesis}, gain});
+      (is_shift ? shifts : candidates).push_back({{hypothesis}, gain});
     }
+  }
+  keepBest(shifts, kMostShifts);
+  for (ScreenedCandidate& shift : shifts) {
+    candidates.push_back(std::move(shift));
   }
   keepBest(candidates, kMostFitted);
   return candidates;

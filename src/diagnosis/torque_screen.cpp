@@ -16,6 +16,7 @@ namespace sac {
 namespace {
 
 constexpr std::size_t kMostFitted = 8;
+constexpr std::size_t kMostShifts = 3;
 /// Gains below it come by chance and are not worth a fit [nats].
 constexpr double kLeastGain = 3.0;
 /// A strength this near to none counts as none, and a factor this near to 1 as 1.
@@ -185,8 +186,14 @@ class TorqueScreen {
     for (std::size_t steps = 1; steps < described_.actuator.coils.size(); ++steps) {
       addExactly(coilShift(steps));
     }
+    // Neighbours of the right shift explain somewhat, too: they must not crowd others out.
+    std::vector<ScreenedCandidate> others = std::exchange(candidates_, {});
     for (const Hypothesis& hypothesis : shiftHypotheses(Quantity::kTorque)) {
       addExactly(hypothesis);
+    }
+    keepBest(candidates_, kMostShifts);
+    for (ScreenedCandidate& candidate : others) {
+      candidates_.push_back(std::move(candidate));
     }
   }
 
