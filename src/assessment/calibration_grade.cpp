@@ -87,11 +87,27 @@ class Examiner {
     if (!missed.empty()) {
       return missed;
     }
-    if (last_success_ != nullptr && !last_success_->doubts.empty()) {
-      return ", but " + last_success_->doubts.front();
+    const std::vector<std::string> doubts = doubtsInForce();
+    if (!doubts.empty()) {
+      return ", but " + doubts.front();
     }
     const std::string confounded = confoundedRegistration();
     return confounded.empty() ? unstatedRegistration() : confounded;
+  }
+
+  /// Of the last successful cycle, and of those before it that it does not make up for.
+  std::vector<std::string> doubtsInForce() const {
+    std::vector<std::string> doubts;
+    const std::vector<CycleReport>& reports = session_.reports();
+    for (auto report = reports.rbegin(); report != reports.rend(); ++report) {
+      const bool is_mended = std::any_of(reports.rbegin(), report, [&](const CycleReport& later) {
+        return mends(later, *report);
+      });
+      if (report->success && !is_mended) {
+        doubts.insert(doubts.end(), report->doubts.begin(), report->doubts.end());
+      }
+    }
+    return doubts;
   }
 
   /// A registration that the samples find elsewhere than it is stated. Turning the marker or the
@@ -185,12 +201,18 @@ class Examiner {
                expectedErrors();
       case Grade::kUsable:
         return "The calibration can be used as far as it goes: " + identified() + shortcoming() +
-               "; held-out samples agree." + expectedErrors();
+               "; held-out samples agree" + outliers() + "." + expectedErrors();
       case Grade::kGood:
         break;
     }
-    return "The calibration is good to use: " + identified() + ", and held-out samples agree." +
-           expectedErrors();
+    return "The calibration is good to use: " + identified() + ", and held-out samples agree" +
+           outliers() + "." + expectedErrors();
+  }
+
+  std::string outliers() const {
+    return validation_ && validation_->outliers > 0
+               ? " but for " + number(validation_->outliers) + " outliers, as rare as the others'"
+               : std::string();
   }
 
   std::string unjudged() const {

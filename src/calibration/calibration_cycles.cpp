@@ -7,6 +7,8 @@
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
 #include "cycle_words.hpp"
+#include "repeated_observations.hpp"
+#include "single_effects.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
@@ -124,6 +126,10 @@ Eigen::MatrixXd beyond(const std::vector<Eigen::Index>& coordinates,
   return directions(Eigen::all, columns);
 }
 
+ParameterBelief beliefBefore(const CalibrationState& state, const MotionEvidence* motion) {
+  return motion != nullptr ? withoutMotion(state.belief, *motion) : state.belief;
+}
+
 /// Counts what a motion told beside the samples, and tells of it. Where both contradict each other
 /// the report says so.
 std::string join(const ParameterSpace& space,
@@ -148,6 +154,45 @@ std::string join(const ParameterSpace& space,
   coordinates.unexcited = without(coordinates.unexcited, motion.told);
   return format(" Combined with the motion before: both agree (probability %.2g).",
                 all.probability);
+}
+
+/// Solves without the observations that repeat others, and with them where there is no noise that
+/// could tell them apart. Returns what is to say of those that are left out.
+std::string estimateOnce(EstimationProblem& problem,
+                         const EstimationOptions& options,
+                         Estimate& estimate) {
+  const std::vector<RepeatedObservation> repeated =
+      repeatedObservations(*problem.samples, problem.observations, options);
+  if (repeated.empty()) {
+    estimate = sac::estimate(problem, options);
+    return {};
+  }
+  const std::vector<Observation> all = problem.observations;
+  problem.observations = withoutRepeated(all, repeated);
+  estimate = sac::estimate(problem, options);
+  const bool is_converged = estimate.termination == Termination::kConverged;
+  if (is_converged && areWithoutNoise(all, repeated, estimate)) {
+    problem.observations = all;
+    estimate = sac::estimate(problem, options);
+    return {};
+  }
+  return repeatedInWords(*problem.samples, all, repeated);
+}
+
+/// What keeps an estimate from being good. It is widened by what it does not model.
+std::vector<std::string> doubtsOf(const EstimationProblem& problem,
+                                  const CycleRequest& request,
+                                  const EstimationOptions& options,
+                                  Estimate& estimate) {
+  std::vector<std::string> words = doubts(problem, estimate);
+  // Poles and coils by themselves have few samples; the refinement judges them with all others.
+  if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
+    if (const auto effect = findSingleEffect(problem, estimate, options)) {
+      widen(*effect, problem, estimate);
+      words.push_back(effect->sentence);
+    }
+  }
+  return words;
 }
 
 /// Whether an estimate failed for what was measured, rather than for how little.
@@ -180,17 +225,18 @@ CycleOutcome runCycle(const CalibrationModel& model,
   report.cycle = request.cycle;
   report.coil = request.coil;
 
-  EstimationProblem problem;
-  problem.model = &model;
-  problem.samples = &samples;
-  problem.prior = motion != nullptr ? withoutMotion(state.belief, *motion) : state.belief;
+  EstimationProblem problem{&model, &samples, {}, {}, beliefBefore(state, motion)};
   CycleCoordinates coordinates;
   report.message = prepare(state, request, options, problem, coordinates);
   if (!report.message.empty()) {
     return outcome;
   }
-  Estimate estimate = sac::estimate(problem, options);
+  Estimate estimate;
+  const std::string left_out = estimateOnce(problem, options, estimate);
   report.message = failure(problem, estimate, request, options);
+  if (report.message.empty()) {
+    report.doubts = doubtsOf(problem, request, options, estimate);
+  }
   std::string together;
   if (motion != nullptr && report.message.empty()) {
     together = join(model.space(), *motion, estimate, coordinates, report);
@@ -212,10 +258,10 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
     refuse(problem, estimate, advice, report);
+    report.message += left_out;
     return outcome;
   }
   fillReport(samples, problem.observations, estimate, report);
-  report.doubts = doubts(problem, estimate);
   for (const Eigen::Index first : estimate.ambiguous) {
     coordinates.unobservable.insert(coordinates.unobservable.end(), {first, first + 1});
   }
@@ -223,7 +269,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
   conclude(model, estimate, coordinates, outcome.state, report);
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
-      together;
+      left_out + together;
   return outcome;
 }
 

@@ -248,7 +248,11 @@ std::optional<HeldOutValidation> CalibrationSession::validation() const {
   HeldOutValidation result;
   if (!is_motion) {
     result = validateHeldOut(
-        orientationMap().map ? mappedModel() : model_, samples_, state_, config_.estimation);
+        orientationMap().map ? mappedModel() : model_,
+        samples_,
+        state_,
+        config_.estimation,
+        last != reports_.rend() && !last->residuals.empty() ? outlierRate(*last) : 0.0);
   }
   if (is_motion || joins_motion) {
     const auto motion = std::find_if(

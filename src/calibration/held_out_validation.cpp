@@ -6,7 +6,10 @@
 
 #include <Eigen/Cholesky>
 
+#include <boost/math/distributions/binomial.hpp>
+
 #include "cycle_conclusion.hpp"
+#include "repeated_observations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
@@ -16,6 +19,27 @@
 namespace sac {
 namespace {
 
+/// Orientations and torques of samples that are held out, or of those in use.
+std::vector<Observation> observationsOf(const CalibrationModel& model,
+                                        const std::vector<Sample>& samples,
+                                        const EstimationOptions& options,
+                                        bool held_out) {
+  std::vector<Observation> observations;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    if (samples[n].validation != held_out) {
+      continue;
+    }
+    if (model.observesOrientation(samples[n])) {
+      observations.push_back({n, Quantity::kOrientation});
+    }
+    if (samples[n].has_torque && model.hasTorqueModel() &&
+        !excitedCoils(samples[n], options.current_threshold).empty()) {
+      observations.push_back({n, Quantity::kTorque});
+    }
+  }
+  return observations;
+}
+
 EstimationProblem heldOutProblem(const CalibrationModel& model,
                                  const std::vector<Sample>& samples,
                                  const ParameterBelief& belief,
@@ -24,20 +48,37 @@ EstimationProblem heldOutProblem(const CalibrationModel& model,
   problem.model = &model;
   problem.samples = &samples;
   problem.prior = belief;
-  for (std::size_t n = 0; n < samples.size(); ++n) {
-    if (!samples[n].validation) {
-      continue;
-    }
-    validate(samples[n], model.space().coils());
-    if (model.observesOrientation(samples[n])) {
-      problem.observations.push_back({n, Quantity::kOrientation});
-    }
-    if (samples[n].has_torque && model.hasTorqueModel() &&
-        !excitedCoils(samples[n], options.current_threshold).empty()) {
-      problem.observations.push_back({n, Quantity::kTorque});
+  for (const Sample& sample : samples) {
+    if (sample.validation) {
+      validate(sample, model.space().coils());
     }
   }
+  problem.observations = observationsOf(model, samples, options, true);
   return problem;
+}
+
+/// Per held-out observation: it repeats another one, held out or in use.
+std::vector<bool> repeatedOf(const EstimationProblem& problem, const EstimationOptions& options) {
+  std::vector<Observation> all = observationsOf(*problem.model, *problem.samples, options, false);
+  const std::size_t used = all.size();
+  all.insert(all.end(), problem.observations.begin(), problem.observations.end());
+  std::vector<bool> repeated(problem.observations.size(), false);
+  for (const RepeatedObservation& one : repeatedObservations(*problem.samples, all, options)) {
+    if (one.place >= used) {
+      repeated[one.place - used] = true;
+    }
+  }
+  return repeated;
+}
+
+/// Whether so many outliers among `count` are no more than the rate of those elsewhere.
+bool areUsual(std::size_t outliers, std::size_t count, double rate, double most) {
+  if (outliers == 0 || static_cast<double>(outliers) > most * static_cast<double>(count)) {
+    return outliers == 0;
+  }
+  const boost::math::binomial_distribution<double> usual(static_cast<double>(count), rate);
+  return boost::math::cdf(boost::math::complement(usual, static_cast<double>(outliers) - 1.0)) >=
+         kLeastProbability;
 }
 
 SampleResidual residualOf(const Sample& sample,
@@ -94,47 +135,103 @@ class HeldOutJudge {
  public:
   HeldOutJudge(const EstimationProblem& problem,
                const CalibrationState& state,
-               const EstimationOptions& options)
+               const EstimationOptions& options,
+               double outlier_rate)
       : problem_(problem),
         state_(state),
         options_(options),
+        outlier_rate_(outlier_rate),
         evaluator_(problem, options),
         point_(evaluator_.at(state.belief.x)),
         shared_(groupByDwell(problem, options)),
+        repeated_(repeatedOf(problem, options)),
         all_(ChosenCoordinates::all(problem.model->space().size())),
         misfit_(all_.size()) {}
 
   void judge(HeldOutValidation& result) {
     for (std::size_t n = 0; n < problem_.observations.size(); ++n) {
-      take(n, result);
+      look(n, result);
+    }
+    setOutliersAside(result);
+    for (const Judged& one : judged_) {
+      take(one, result);
     }
     addDwells(shared_, sharing_, loading_, misfit_);
     result.orientation_rms = rootMean(orientation_sum_, result.orientations);
     result.torque_rms = rootMean(torque_sum_, result.torques);
-    const std::size_t judged = problem_.observations.size() - result.unjudged_torques;
+    const std::size_t judged = result.residuals.size() - result.unjudged_torques - result.outliers;
     if (judged > 0) {
       conclude(judged, result);
     }
   }
 
  private:
-  void take(std::size_t n, HeldOutValidation& result) {
+  /// One observation and its place among the residuals of the result.
+  struct Judged {
+    std::size_t observation;
+    std::size_t residual;
+    bool counts;  ///< in the test
+  };
+
+  /// Lists an observation with its own misfit.
+  void look(std::size_t n, HeldOutValidation& result) {
+    constexpr double kNoNoise = 1e-3;  // standardised: of a simulation, which honestly repeats
     const auto [index, quantity] = problem_.observations[n];
     const Sample& sample = (*problem_.samples)[index];
     evaluator_.linearize(n, point_, linear_);
-    if (isJudged(problem_.observations[n],
-                 sample,
-                 problem_.model->space(),
-                 state_.identified,
-                 options_.current_threshold)) {
-      whitenJudged(n);
-    } else {
-      ++result.unjudged_torques;
-    }
     const std::vector<bool> all_held(static_cast<std::size_t>(all_.size()), true);
-    result.residuals.push_back(residualOf(
-        sample, quantity, linear_.residual, evaluator_.covariance(n, linear_, all_held)));
-    const bool is_orientation = quantity == Quantity::kOrientation;
+    const SampleResidual residual =
+        residualOf(sample, quantity, linear_.residual, evaluator_.covariance(n, linear_, all_held));
+    if (repeated_[n] && residual.standardized > kNoNoise) {
+      ++result.repeated;
+      return;
+    }
+    const bool counts = isJudged(problem_.observations[n],
+                                 sample,
+                                 problem_.model->space(),
+                                 state_.identified,
+                                 options_.current_threshold);
+    result.unjudged_torques += counts ? 0U : 1U;
+    judged_.push_back({n, result.residuals.size(), counts});
+    result.residuals.push_back(residual);
+  }
+
+  /// Marks what stands out as rejected, where it is no more than elsewhere.
+  void setOutliersAside(HeldOutValidation& result) const {
+    const double limit =
+        chiSquareLimit(3.0,
+                       options_.false_alarm_probability /
+                           static_cast<double>(std::max<std::size_t>(1, judged_.size())));
+    std::vector<std::size_t> outliers;
+    std::size_t count = 0;
+    for (const Judged& one : judged_) {
+      count += one.counts ? 1U : 0U;
+      const double standardized = result.residuals[one.residual].standardized;
+      if (one.counts && 3.0 * standardized * standardized > limit) {
+        outliers.push_back(one.residual);
+      }
+    }
+    if (!areUsual(outliers.size(), count, outlier_rate_, options_.max_rejected_fraction)) {
+      return;
+    }
+    result.outliers = outliers.size();
+    for (const std::size_t n : outliers) {
+      SampleResidual& residual = result.residuals[n];
+      residual.rejected = true;
+      residual.reason = format("misfit is %.1f times its uncertainty", residual.standardized);
+    }
+  }
+
+  void take(const Judged& one, HeldOutValidation& result) {
+    if (result.residuals[one.residual].rejected) {
+      return;
+    }
+    evaluator_.linearize(one.observation, point_, linear_);
+    if (one.counts) {
+      whitenJudged(one.observation);
+    }
+    const bool is_orientation =
+        problem_.observations[one.observation].quantity == Quantity::kOrientation;
     (is_orientation ? result.orientations : result.torques) += 1;
     (is_orientation ? orientation_sum_ : torque_sum_) += linear_.residual.squaredNorm();
   }
@@ -166,9 +263,12 @@ class HeldOutJudge {
   const EstimationProblem& problem_;
   const CalibrationState& state_;
   const EstimationOptions& options_;
+  double outlier_rate_;
   ObservationEvaluator evaluator_;
   ModelPoint point_;  ///< the model at the state
   SharedErrorModel shared_;
+  std::vector<bool> repeated_;  ///< per observation
+  std::vector<Judged> judged_;
   ChosenCoordinates all_;
   InformationSum misfit_;
   std::map<std::size_t, WhitenedObservation> sharing_;  ///< judged ones of dwells
@@ -185,16 +285,26 @@ class HeldOutJudge {
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
-                                  const EstimationOptions& options) {
+                                  const EstimationOptions& options,
+                                  double outlier_rate) {
   HeldOutValidation result;
   for (const Sample& sample : samples) {
     result.samples += sample.validation ? 1U : 0U;
   }
   const EstimationProblem problem = heldOutProblem(model, samples, state.belief, options);
   if (!problem.observations.empty()) {
-    HeldOutJudge(problem, state, options).judge(result);
+    HeldOutJudge(problem, state, options, outlier_rate).judge(result);
   }
   return result;
+}
+
+double outlierRate(const CycleReport& report) {
+  const auto rejected = std::count_if(
+      report.residuals.begin(), report.residuals.end(), [](const SampleResidual& residual) {
+        return residual.rejected;
+      });
+  return (static_cast<double>(rejected) + 1.0) /
+         (static_cast<double>(report.residuals.size()) + 2.0);
 }
 
 HeldOutValidation validationOf(const HeldOutMotion& motion) {
@@ -231,6 +341,14 @@ std::string verdict(const HeldOutValidation& validation) {
   if (validation.unjudged_torques > 0) {
     text += format(" %zu torques of coils that are not calibrated are not judged,",
                    validation.unjudged_torques);
+  }
+  if (validation.repeated > 0) {
+    text += format(" %zu measurements that repeat others bit for bit are not judged,",
+                   validation.repeated);
+  }
+  if (validation.outliers > 0) {
+    text += format(" %zu outliers, no more than among the others, are not judged,",
+                   validation.outliers);
   }
   text += format(" reduced chi-square %.3g (probability %.2g): ",
                  validation.reduced_chi_square,

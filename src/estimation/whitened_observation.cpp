@@ -115,4 +115,14 @@ Eigen::MatrixXd InformationSum::information() const {
   return upper_.selfadjointView<Eigen::Upper>();
 }
 
+Eigen::MatrixXd InformationSum::information(const std::vector<Eigen::Index>& rows) const {
+  Eigen::MatrixXd chosen(static_cast<Eigen::Index>(rows.size()), upper_.cols());
+  for (Eigen::Index n = 0; n < chosen.rows(); ++n) {
+    const Eigen::Index row = rows[static_cast<std::size_t>(n)];
+    chosen.row(n).head(row) = upper_.col(row).head(row).transpose();
+    chosen.row(n).tail(upper_.cols() - row) = upper_.row(row).tail(upper_.cols() - row);
+  }
+  return chosen;
+}
+
 }  // namespace sac

@@ -22,12 +22,18 @@ struct HeldOutValidation {
   double torque_rms = 0.0;  ///< root mean square norm of the torque error [N·m]
   /// Torques of coils that are not identified: too far from linear in tolerances to be judged.
   std::size_t unjudged_torques = 0;
+  /// That repeat another measurement bit for bit, in use or held out: they tell nothing, and have
+  /// no residual.
+  std::size_t repeated = 0;
+  /// That stand out by themselves, where they are no more than among the samples in use: they have
+  /// a residual that is `rejected`, and no part in the test.
+  std::size_t outliers = 0;
   /// Squared Mahalanobis norm of all misfits over their number, with the noise of the samples and
   /// the common uncertainty of the parameters: 1 on average when both are as stated.
   double reduced_chi_square = 0.0;
   /// Probability of misfits at least this large when the stated uncertainties hold.
   double probability = 1.0;
-  /// One per observation; `standardized` with its own covariance, `rejected` never.
+  /// One per observation; `standardized` with its own covariance.
   std::vector<SampleResidual> residuals;
 
   /// Whether any observation took part in the test.
@@ -37,11 +43,16 @@ struct HeldOutValidation {
 /// Judges the held-out samples under a state. Orientations always count, torques where some coil
 /// is excited and the model has torque; those of coils that are not identified have a residual but
 /// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
-/// Throws DataError on malformed samples.
+/// `outlier_rate`: at which single outliers come by accident, as among the samples in use; 0: none
+/// is excused. Throws DataError on malformed samples.
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
-                                  const EstimationOptions& options);
+                                  const EstimationOptions& options,
+                                  double outlier_rate = 0.0);
+
+/// Rate at which a cycle rejected outliers, by Laplace's rule of succession.
+double outlierRate(const CycleReport& report);
 
 /// What windows of motion that were held out tell, in the same words: a window is a sample with a
 /// torque, its mean error.

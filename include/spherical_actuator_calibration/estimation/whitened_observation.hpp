@@ -123,6 +123,8 @@ class InformationSum {
 
   /// Σ JᵀS⁻¹J, F×F.
   Eigen::MatrixXd information() const;
+  /// Some rows of it. `rows`: ascending.
+  Eigen::MatrixXd information(const std::vector<Eigen::Index>& rows) const;
   /// Σ JᵀS⁻¹r, half the derivative of Σ rᵀS⁻¹r.
   const Eigen::VectorXd& gradient() const { return gradient_; }
   /// Σ rᵀS⁻¹r.

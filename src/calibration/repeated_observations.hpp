@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/estimation/estimate.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+
+namespace sac {
+
+/// An observation whose measured vector is that of an earlier one: nothing was measured twice, for
+/// noise never repeats.
+struct RepeatedObservation {
+  std::size_t place = 0;  ///< among the observations
+  std::size_t first = 0;  ///< the earliest one that it repeats
+};
+
+/// All of them, ascending. Vectors count as equal within a thousandth of their noise, which is
+/// finer than chance comes and coarser than what a file rounds. Torques that hardly stand out of
+/// their noise are never told: a coarse sensor honestly repeats them.
+std::vector<RepeatedObservation> repeatedObservations(const std::vector<Sample>& samples,
+                                                      const std::vector<Observation>& observations,
+                                                      const EstimationOptions& options);
+
+/// The observations without those that repeat others.
+std::vector<Observation> withoutRepeated(const std::vector<Observation>& observations,
+                                         const std::vector<RepeatedObservation>& repeated);
+
+/// Whether the residuals of the streams that repeat have no noise, as in a simulation: there equal
+/// measurements are honest.
+bool areWithoutNoise(const std::vector<Observation>& observations,
+                     const std::vector<RepeatedObservation>& repeated,
+                     const Estimate& estimate);
+
+/// "12 of 160 torques repeat …" in a sentence or two that an operator can act on; empty where
+/// nothing repeats.
+std::string repeatedInWords(const std::vector<Sample>& samples,
+                            const std::vector<Observation>& observations,
+                            const std::vector<RepeatedObservation>& repeated);
+
+}  // namespace sac
