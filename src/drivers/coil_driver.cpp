@@ -11,6 +11,7 @@ namespace {
 
 /// A loop that was held up must not make up for it with one large step [s].
 constexpr double kLongestStep = 0.05;
+constexpr double kForgivenBeatTime = 0.05;  // [s] in a second
 
 std::string lostReason(const std::string& error) {
   return "the link is lost: " + error;
@@ -57,7 +58,7 @@ CoilDriver::Beat CoilDriver::beat(double now) {
       connect();
     }
     Beat result = exchange(clock);
-    beat_time_ = clock.now() - clock.begin();
+    rememberBeatTime(clock);
     link_.success();
     return result;
   } catch (const TransportError& error) {
@@ -126,6 +127,14 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
       amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
   observe(reading, clock, result);
   return reading.tripped;
+}
+
+// One slow answer is seldom the last one.
+void CoilDriver::rememberBeatTime(const BeatClock& clock) {
+  const double forgotten = kForgivenBeatTime * (clock.begin() - answered_at_);
+  const double taken = clock.now() - clock.begin();
+  beat_time_ = std::max(taken, beat_time_ - std::max(forgotten, 0.0));
+  answered_at_ = clock.begin();
 }
 
 Heartbeat CoilDriver::heartbeat(double now) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sac {
 namespace {
@@ -60,15 +59,17 @@ std::optional<std::size_t> StrayCurrents::observe(const Eigen::VectorXd& measure
 
 /// |current| [A] of a coil that something explains.
 double StrayCurrents::allowed(Coil& coil, double steady) const {
+  // Both spans reach back to all that can still be on its way.
+  const double recent = tolerance_ + kOvershoot * std::max(coil.lately, coil.before);
   if (std::abs(coil.setpoint) > tolerance_) {
-    return tolerance_ + kOvershoot * std::max(coil.lately, coil.before);
+    return recent;
   }
   coil.since = coil.since.value_or(steady);
   if (coil.setpoint == 0.0) {
     coil.zero_since = coil.zero_since.value_or(steady);
   }
   if (steady - *coil.since <= kLongestFlow) {
-    return std::numeric_limits<double>::infinity();
+    return recent;
   }
   const bool is_zero = coil.zero_since && steady - *coil.zero_since > kLongestFlow;
   return tolerance_ + (is_zero ? 0.0 : coil.highest);

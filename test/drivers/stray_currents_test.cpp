@@ -49,6 +49,13 @@ TEST(StrayCurrents, PulsesBeyondWhatIsSetAddUp) {
   EXPECT_LT(*told, 3.5);
 }
 
+// A little is set again and again, and covers what flows beside it.
+TEST(StrayCurrents, PulsesBesideSmallPulsesThatAreSetAddUp) {
+  const auto told = toldAt(pulses(0.16, 0.0, 0.03, 0.22), pulses(2.5, 0.0, 0.01, 0.09), 10.0);
+  ASSERT_TRUE(told);
+  EXPECT_LT(*told, 3.5);
+}
+
 TEST(StrayCurrents, AnOvershootIsNone) {
   const Course steps = [](double time) { return std::fmod(time, 0.2) < 0.1 ? 2.0 : -2.0; };
   const Course beyond = [&](double time) {

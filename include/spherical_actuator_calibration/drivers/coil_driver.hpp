@@ -64,6 +64,7 @@ class CoilDriver {
   Beat exchange(const BeatClock& clock);
   /// Sets what is to be set, and measures. Returns whether the amplifier says that it has tripped.
   bool follow(const BeatClock& clock, Beat& result);
+  void rememberBeatTime(const BeatClock& clock);
   Heartbeat heartbeat(double now);
   void observe(const AmplifierReading& reading, const BeatClock& clock, Beat& result);
   void forget();
@@ -86,7 +87,8 @@ class CoilDriver {
   CurrentSupervisor supervisor_;
   LinkSupervisor link_;
   std::optional<double> last_beat_;
-  double beat_time_ = 0.0;               ///< of the last beat that was answered [s]
+  double beat_time_ = 0.0;               ///< of the slowest beat lately [s]
+  double answered_at_ = 0.0;             ///< begin of the last beat that was answered [s]
   std::optional<double> last_given_at_;  ///< the last command that was set, by the steady clock [s]
   bool is_measured_ = false;             ///< currents were, by the last beat
   bool was_tripped_ = false;             ///< the amplifier, likewise
