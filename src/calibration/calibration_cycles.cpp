@@ -179,16 +179,15 @@ std::string estimateOnce(EstimationProblem& problem,
   return repeatedInWords(*problem.samples, all, repeated);
 }
 
-/// What keeps an estimate from being good. It is widened by what it does not model.
+/// What keeps an estimate from being good.
 std::vector<std::string> doubtsOf(const EstimationProblem& problem,
                                   const CycleRequest& request,
                                   const EstimationOptions& options,
-                                  Estimate& estimate) {
+                                  const Estimate& estimate) {
   std::vector<std::string> words = doubts(problem, estimate);
   // Poles and coils by themselves have few samples; the refinement judges them with all others.
   if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
     if (const auto effect = findSingleEffect(problem, estimate, options)) {
-      widen(*effect, problem, estimate);
       words.push_back(effect->sentence);
     }
   }

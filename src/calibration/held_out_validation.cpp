@@ -303,8 +303,8 @@ double outlierRate(const CycleReport& report) {
       report.residuals.begin(), report.residuals.end(), [](const SampleResidual& residual) {
         return residual.rejected;
       });
-  return (static_cast<double>(rejected) + 1.0) /
-         (static_cast<double>(report.residuals.size()) + 2.0);
+  const std::size_t count = std::max<std::size_t>(1, report.residuals.size());
+  return static_cast<double>(rejected) / static_cast<double>(count);
 }
 
 HeldOutValidation validationOf(const HeldOutMotion& motion) {

@@ -229,7 +229,7 @@ class Tests {
     if (probability > kChance) {
       return std::nullopt;
     }
-    return SingleEffect{best.name, sentence(best, probability), probability, best.shift};
+    return SingleEffect{best.name, sentence(best, probability), probability};
   }
 
  private:
@@ -340,8 +340,7 @@ class Tests {
     }
     return format(
         "The residuals show %s = %s, which is not modelled (by chance: %.1g): it shifts "
-        "parameters by up to %.1f standard deviations, and their uncertainty is widened by that. "
-        "Mend it: %s.%s%s",
+        "parameters by up to %.1f standard deviations. Mend it: %s.%s%s",
         best.name.c_str(),
         valueInWords(best, std::sqrt(noiseWithout(best.score.square))).c_str(),
         std::max(probability, std::numeric_limits<double>::min()),
@@ -381,20 +380,6 @@ std::optional<SingleEffect> findSingleEffect(const EstimationProblem& problem,
                                              const Estimate& estimate,
                                              const EstimationOptions& options) {
   return Tests(problem, estimate, options).strongest();
-}
-
-void widen(const SingleEffect& effect, const EstimationProblem& problem, Estimate& estimate) {
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(effect.shift.size());
-  for (const Eigen::Index p : problem.free) {
-    if (!std::binary_search(estimate.unobservable.begin(), estimate.unobservable.end(), p)) {
-      shift[p] = effect.shift[p];
-    }
-  }
-  const Eigen::MatrixXd& held = estimate.open_directions;
-  if (held.cols() > 0) {
-    shift -= held * (held.transpose() * shift).eval();
-  }
-  estimate.belief.covariance += shift * shift.transpose();
 }
 
 }  // namespace sac

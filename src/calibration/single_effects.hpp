@@ -3,8 +3,6 @@
 #include <optional>
 #include <string>
 
-#include <Eigen/Core>
-
 #include "spherical_actuator_calibration/estimation/estimate.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 
@@ -17,7 +15,6 @@ struct SingleEffect {
   std::string name;          ///< torque_registration, coil_7/gain, joint_2/offset after sample 83
   std::string sentence;      ///< what it is, with value ± standard deviation, and what to do
   double probability = 1.0;  ///< that chance alone shows anything as strong, whatever it is
-  Eigen::VectorXd shift;     ///< of all coordinates, were it modelled
 };
 
 /// The most significant one, by score tests: no fit is repeated. Nothing where all that is found
@@ -26,8 +23,5 @@ struct SingleEffect {
 std::optional<SingleEffect> findSingleEffect(const EstimationProblem& problem,
                                              const Estimate& estimate,
                                              const EstimationOptions& options);
-
-/// Counts in the uncertainty that the estimate is shifted by an effect that it does not model.
-void widen(const SingleEffect& effect, const EstimationProblem& problem, Estimate& estimate);
 
 }  // namespace sac

@@ -51,7 +51,7 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const EstimationOptions& options,
                                   double outlier_rate = 0.0);
 
-/// Rate at which a cycle rejected outliers, by Laplace's rule of succession.
+/// Rate at which a cycle rejected outliers; 0: none, so that none is excused elsewhere.
 double outlierRate(const CycleReport& report);
 
 /// What windows of motion that were held out tell, in the same words: a window is a sample with a
