@@ -67,6 +67,7 @@ std::vector<std::pair<std::size_t, double>> outstandingStrengths(
     return significance(a) > significance(b);
   });
   std::vector<std::pair<std::size_t, double>> strengths;
+  strengths.reserve(order.size());
   for (const Eigen::Index n : order) {
     strengths.emplace_back(first_index + static_cast<std::size_t>(n), 1.0 + x[first + n]);
   }

@@ -9,9 +9,13 @@
 namespace sac {
 namespace {
 
-constexpr double kFull = 2.0;                        // [A]
-constexpr double kCurrentStddev = 5e-4;              // [A] of a measured current
-const Eigen::Vector3d kPerShare(0.31, -0.22, 0.12);  // [N·m] at full current, in proportion
+constexpr double kFull = 2.0;            // [A]
+constexpr double kCurrentStddev = 5e-4;  // [A] of a measured current
+
+/// [N·m] at full current, in proportion.
+Eigen::Vector3d perShare() {
+  return {0.31, -0.22, 0.12};
+}
 
 /// A coil whose torque bends, in one rest.
 struct Bench {
@@ -24,7 +28,7 @@ struct Bench {
 
   Eigen::Vector3d torqueAt(double current) const {
     const double share = current / kFull;
-    return kPerShare * share * (1.0 + deviation * std::abs(share) + asymmetry * share) +
+    return perShare() * share * (1.0 + deviation * std::abs(share) + asymmetry * share) +
            not_taken_off;
   }
 
