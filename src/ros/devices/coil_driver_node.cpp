@@ -25,6 +25,8 @@ namespace {
 constexpr double kWarningPeriod = 2.0;  // [s]
 /// For currents to fade, and for an amplifier that does not answer at once, when the node ends [s].
 constexpr double kStopTime = 0.8;
+/// The main thread, which takes leave, may be stuck: then the loop ends the program [s].
+constexpr unsigned kLastResort = 5;
 /// Between two looks whether the currents have faded.
 constexpr std::chrono::milliseconds kStopPause{5};
 /// The commands of all callers that come while one is judged: none may push out another's.
@@ -179,7 +181,11 @@ void CoilDriverNode::receive(const msg::CoilCurrents& message, const MessageSend
 void CoilDriverNode::beat() {
   try {
     if (terminationRequested()) {
-      // At once, whatever the main thread is busy with.
+      // At once, whatever the main thread is busy with, and for however long.
+      if (!is_leaving_) {
+        is_leaving_ = true;
+        endWithin(kLastResort, 1);
+      }
       driver_.stop(steadySeconds());
       return;
     }

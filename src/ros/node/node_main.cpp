@@ -8,6 +8,7 @@
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
+#include <ros/param.h>
 #include <ros/service_manager.h>
 
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
@@ -43,6 +44,16 @@ bool waitForMaster() {
   return true;
 }
 
+// Each message that is logged, and each diagnosis, asks for one of these. roscpp remembers the
+// answer, which the master tells again when it changes; the first time it waits for the master, for
+// ever where that hangs, with a lock on all parameters: no control loop may be the first to ask.
+void askForParametersOnce() {
+  bool is_disabled = false;
+  double period = 0.0;  // [s]
+  static_cast<void>(ros::param::getCached("/rosout_disable_topics_generation", is_disabled));
+  static_cast<void>(ros::param::getCached(ros::names::resolve("~diagnostic_period"), period));
+}
+
 }  // namespace
 
 int runNode(int argc,
@@ -70,6 +81,7 @@ int runNode(int argc,
   const ros::NodeHandle node;
   const ros::NodeHandle private_node("~");
   withdrawLoggerServices();
+  askForParametersOnce();
   try {
     body(node, private_node);
   } catch (const std::exception& error) {

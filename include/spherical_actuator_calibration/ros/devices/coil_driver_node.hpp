@@ -64,6 +64,7 @@ class CoilDriverNode {
   std::unique_ptr<ModbusTransport> transport_;
   CoilDriver driver_;
   bool stopped_ = false;
+  bool is_leaving_ = false;          ///< of the control loop alone
   std::atomic<bool> failed_{false};  ///< the control loop, by an exception
   std::mutex mutex_;                 ///< of what follows, down to clamped_
   std::string zero_reason_;
