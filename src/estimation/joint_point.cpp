@@ -1,4 +1,4 @@
-#include "joint_point.hpp"
+#include "spherical_actuator_calibration/estimation/joint_point.hpp"
 
 #include <cmath>
 

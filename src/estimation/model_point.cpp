@@ -6,10 +6,10 @@
 
 #include "axis_point.hpp"
 #include "effects_at.hpp"
-#include "joint_point.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/estimation/joint_point.hpp"
 
 namespace sac {
 namespace {

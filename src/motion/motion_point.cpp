@@ -1,7 +1,6 @@
 #include "motion_point.hpp"
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
-#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -28,22 +27,27 @@ MotionPlaces::MotionPlaces(const ParameterSpace& space) {
 MotionPoint::MotionPoint(const CalibrationModel& model,
                          const MotionPlaces& places,
                          const Eigen::VectorXd& x)
-    : space_(&model.space()), places_(places), x_(x), curve_(&model.curve()) {
+    : space_(&model.space()),
+      places_(places),
+      x_(x),
+      curve_(&model.curve()),
+      joints_(model.space(), x) {
+  setScales();
   setAxes();
   setStrengths();
+  setLoads();
   setTurning();
   setInertia();
 }
 
-void MotionPoint::setAxes() {
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const Eigen::Index at = space_->joint(k);
-    const auto column = static_cast<Eigen::Index>(k);
-    Eigen::Vector3d axis;
-    space_->jointChart(k).evaluate(x_[at + 1], x_[at + 2], axis, d_joint_[k]);
-    joints_.axes.col(column) = axis;
-    joints_.offsets[column] = space_->nominal().joints[k].offset + x_[at];
+void MotionPoint::setScales() {
+  scales_.setOnes(space_->size());
+  for (Eigen::Index e = 0; e < space_->effects().size(); ++e) {
+    scales_[space_->effect() + e] = space_->effects().scale(e);
   }
+}
+
+void MotionPoint::setAxes() {
   poles_.resize(3, static_cast<Eigen::Index>(space_->poles()));
   coils_.resize(3, static_cast<Eigen::Index>(space_->coils()));
   d_pole_.resize(space_->poles());
@@ -91,6 +95,15 @@ void MotionPoint::setStrengths() {
   }
 }
 
+void MotionPoint::setLoads() {
+  for (const PlacedEffect& placed : space_->effects().effects()) {
+    // A bias of the force/torque sensor is no torque on the rotor.
+    if (placed.belongs_to == LaboratoryEffect::BelongsTo::kLoad) {
+      loads_.push_back({&placed, EffectLayout::values(placed, x_.data() + space_->effect())});
+    }
+  }
+}
+
 void MotionPoint::setTurning() {
   for (Eigen::Index p = 0; p < space_->pole(0); ++p) {
     turning_.push_back(p);
@@ -125,58 +138,46 @@ double MotionPoint::valueAt(Eigen::Index place) const {
 }
 
 void MotionPoint::turn(const Eigen::Vector3d& reading, TurnedRotor& out) const {
-  const Eigen::Index joints = space_->pole(0);
+  constexpr auto kGeometry = static_cast<std::size_t>(JointPoint::kCoordinates);
   Eigen::Vector3d q = reading;
   Eigen::Matrix3Xd d_sensors;
-  if (static_cast<Eigen::Index>(turning_.size()) > joints) {
-    d_sensors.setZero(3, static_cast<Eigen::Index>(turning_.size()) - joints);
-    for (std::size_t c = 9; c < turning_.size();) {
+  if (turning_.size() > kGeometry) {
+    d_sensors.setZero(3, static_cast<Eigen::Index>(turning_.size() - kGeometry));
+    for (std::size_t c = kGeometry; c < turning_.size();) {
       const PlacedEffect& placed = space_->effects().at(turning_[c] - space_->effect());
-      auto columns = d_sensors.middleCols(static_cast<Eigen::Index>(c) - joints, placed.size());
+      auto columns = d_sensors.middleCols(static_cast<Eigen::Index>(c - kGeometry), placed.size());
       placed.effect->addReadingColumns(reading, columns);
       columns *= placed.effect->scale();
       q += columns * x_.segment(turning_[c], placed.size());
       c += static_cast<std::size_t>(placed.size());
     }
   }
-  const JointLinearization linear = linearizeRotorOrientation(joints_, q);
+  const JointPoint::Linearized linear = joints_.linearized(q);
   out.R_stator_rotor = linear.R_stator_rotor;
-  out.d_reading = linear.d_offset;
   out.d_x.resize(3, static_cast<Eigen::Index>(turning_.size()));
+  out.d_x.leftCols<JointPoint::kCoordinates>() = linear.d_coordinates;
   for (std::size_t k = 0; k < kJoints; ++k) {
-    const Eigen::Index at = space_->joint(k);
-    out.d_x.col(at) = linear.d_offset.col(static_cast<Eigen::Index>(k));
-    out.d_x.middleCols<2>(at + 1).noalias() = linear.d_axis[k] * d_joint_[k];
+    out.d_reading.col(static_cast<Eigen::Index>(k)) = out.d_x.col(space_->joint(k));
   }
   if (d_sensors.cols() > 0) {
-    out.d_x.rightCols(d_sensors.cols()).noalias() = linear.d_offset * d_sensors;
+    out.d_x.rightCols(d_sensors.cols()).noalias() = out.d_reading * d_sensors;
   }
 }
 
-void MotionPoint::addPair(std::size_t pole,
-                          std::size_t coil,
-                          double current,
-                          const Eigen::Vector3d& pole_stator,
-                          const Eigen::Matrix3d& R,
-                          StatorTorque& out) const {
-  const auto i = static_cast<Eigen::Index>(pole);
-  const auto j = static_cast<Eigen::Index>(coil);
-  const Eigen::Vector3d coil_stator = coils_.col(j);
-  const PairTorque pair = linearizePairTorque(*curve_, pole_stator, coil_stator);
-  const double weight = current * weight_(i, j);
-  out.d_coil.col(j) += weight_(i, j) * pair.torque;
-  out.torque += weight * pair.torque;
-  const Eigen::Matrix3d d_pole = weight * pair.d_pole;
-  // Only the pole turns with the rotor: r → r + ξ × r.
-  out.d_turn.noalias() -= d_pole * skew(pole_stator);
-  out.d_x.middleCols<2>(space_->pole(pole)).noalias() += d_pole * (R * d_pole_[pole]);
-  out.d_x.middleCols<2>(space_->coil(coil)).noalias() += weight * (pair.d_coil * d_coil_[coil]);
+/// Strengths and torque curve, where they are modelled. `torque`: of the pair [N·m/A].
+void MotionPoint::addEffects(std::size_t pole,
+                             std::size_t coil,
+                             double weight,
+                             const Eigen::Vector3d& pole_stator,
+                             const Eigen::Vector3d& torque,
+                             StatorTorque& out) const {
   for (const Strength& strength : strengths_[pole * space_->coils() + coil]) {
-    out.d_x.col(strength.coordinate) += (weight * strength.relative) * pair.torque;
+    out.d_x.col(strength.coordinate) += (weight * strength.relative) * torque;
   }
   if (!changed_curve_) {
     return;
   }
+  const Eigen::Vector3d coil_stator = coils_.col(static_cast<Eigen::Index>(coil));
   for (const PlacedEffect& placed : space_->effects().effects()) {
     if (placed.effect->changesCurve()) {
       Eigen::Matrix3Xd columns = Eigen::Matrix3Xd::Zero(3, placed.size());
@@ -187,45 +188,68 @@ void MotionPoint::addPair(std::size_t pole,
   }
 }
 
-void MotionPoint::addLoads(const Eigen::Matrix3d& R, StatorTorque& out) const {
-  const Eigen::Matrix3d R_rotor_stator = R.transpose();
-  for (const PlacedEffect& placed : space_->effects().effects()) {
-    // A bias of the force/torque sensor is no torque on the rotor.
-    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kLoad) {
+/// With all coils, pair by pair as linearizePairTorque(); axes are turned back into coordinates
+/// once for all pairs.
+void MotionPoint::addPole(std::size_t pole,
+                          const Eigen::Matrix3d& R,
+                          const Eigen::VectorXd& current,
+                          StatorTorque& out) const {
+  const auto i = static_cast<Eigen::Index>(pole);
+  const Eigen::Vector3d r = R * poles_.col(i);
+  AxisSlope slope{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
+  for (Eigen::Index j = 0; j < coils_.cols(); ++j) {
+    const Eigen::Vector3d s = coils_.col(j);
+    const double cosine = r.dot(s);
+    if (cosine <= curve_->cosSupportEnd()) {
       continue;
     }
-    Eigen::Matrix3Xd columns = Eigen::Matrix3Xd::Zero(3, placed.size());
-    placed.effect->addLoadColumns(R_rotor_stator, columns);
-    const Eigen::VectorXd values = EffectLayout::values(placed, x_.data() + space_->effect());
-    const Eigen::Matrix3Xd turned = R * columns;
+    const Eigen::Vector3d cross = r.cross(s);
+    const TorqueCurve::Safe safe = curve_->safe(cosine, cross.norm());
+    const Eigen::Vector3d torque = safe.h * cross;
+    out.d_coil.col(j) += weight_(i, j) * torque;
+    const double weight = current[j] * weight_(i, j);
+    const Eigen::Vector3d steep = (weight * safe.dh) * cross;
+    slope.outer += steep * s.transpose();
+    slope.along += (weight * safe.h) * s;
+    AxisSlope& coil = out.coil_slopes[static_cast<std::size_t>(j)];
+    coil.outer += steep * r.transpose();
+    coil.along += (weight * safe.h) * r;
+    addEffects(pole, static_cast<std::size_t>(j), weight, r, torque, out);
+  }
+  const Eigen::Matrix3d d_pole = slope.outer - skew(slope.along);
+  // Only the pole turns with the rotor: r → r + ξ × r.
+  out.d_turn -= d_pole * skew(r);
+  out.d_x.middleCols<2>(space_->pole(pole)) = d_pole * (R * d_pole_[pole]);
+}
+
+void MotionPoint::addLoads(const Eigen::Matrix3d& R, StatorTorque& out) const {
+  const Eigen::Matrix3d R_rotor_stator = R.transpose();
+  for (const auto& [placed, values] : loads_) {
+    Eigen::Matrix3Xd columns = Eigen::Matrix3Xd::Zero(3, placed->size());
+    placed->effect->addLoadColumns(R_rotor_stator, columns);
+    const Eigen::Matrix3Xd turned = R.lazyProduct(columns);
     const Eigen::Vector3d load = turned * values;
     out.torque += load;
-    out.d_turn += R * placed.effect->loadRotation(values, R_rotor_stator) - skew(load);
-    out.d_x.middleCols(space_->effect() + placed.first, placed.size()) +=
-        placed.effect->scale() * turned;
+    out.d_turn += R * placed->effect->loadRotation(values, R_rotor_stator) - skew(load);
+    out.d_x.middleCols(space_->effect() + placed->first, placed->size()) +=
+        placed->effect->scale() * turned;
   }
 }
 
 void MotionPoint::torque(const Eigen::Matrix3d& R_stator_rotor,
                          const Eigen::VectorXd& current,
                          StatorTorque& out) const {
-  out.torque.setZero();
   out.d_turn.setZero();
   out.d_x.setZero(3, space_->size());
   out.d_coil.setZero(3, coils_.cols());
-  const Eigen::Matrix3Xd poles_stator = R_stator_rotor * poles_;
-  const Eigen::MatrixXd cosines = poles_stator.transpose() * coils_;
-  for (Eigen::Index j = 0; j < coils_.cols(); ++j) {
-    for (Eigen::Index i = 0; i < poles_.cols(); ++i) {
-      if (cosines(i, j) > curve_->cosSupportEnd()) {
-        addPair(static_cast<std::size_t>(i),
-                static_cast<std::size_t>(j),
-                current[j],
-                poles_stator.col(i),
-                R_stator_rotor,
-                out);
-      }
-    }
+  out.coil_slopes.assign(space_->coils(), {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()});
+  for (std::size_t i = 0; i < space_->poles(); ++i) {
+    addPole(i, R_stator_rotor, current, out);
+  }
+  out.torque = out.d_coil * current;
+  for (std::size_t j = 0; j < space_->coils(); ++j) {
+    const AxisSlope& slope = out.coil_slopes[j];
+    out.d_x.middleCols<2>(space_->coil(j)) = (slope.outer + skew(slope.along)) * d_coil_[j];
   }
   addLoads(R_stator_rotor, out);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/joint_point.hpp"
 
 namespace sac {
 
@@ -31,12 +31,20 @@ struct TurnedRotor {
   Eigen::Matrix3Xd d_x;       ///< ∂ξ/∂x of MotionPoint::turning()
 };
 
+/// ∂T/∂a of the axis a of one pole or coil over all its pairs: the sum of slopes (r×s)aᵀ, and of h
+/// a, which stands for its cross product.
+struct AxisSlope {
+  Eigen::Matrix3d outer;
+  Eigen::Vector3d along;
+};
+
 /// Torque on the rotor, stator frame, and its derivatives.
 struct StatorTorque {
-  Eigen::Vector3d torque;   ///< R T [N·m]
-  Eigen::Matrix3d d_turn;   ///< ∂(RT)/∂ξ
-  Eigen::Matrix3Xd d_x;     ///< 3×P, without what turns the rotor
-  Eigen::Matrix3Xd d_coil;  ///< per ampere of each coil
+  Eigen::Vector3d torque;              ///< R T [N·m]
+  Eigen::Matrix3d d_turn;              ///< ∂(RT)/∂ξ
+  Eigen::Matrix3Xd d_x;                ///< 3×P, without what turns the rotor
+  Eigen::Matrix3Xd d_coil;             ///< per ampere of each coil
+  std::vector<AxisSlope> coil_slopes;  ///< while it is summed up
 };
 
 /// All that a model of motion needs at coordinates x.
@@ -65,9 +73,7 @@ class MotionPoint {
   double currentDelay() const { return valueAt(places_.current_delay); }
   double currentDispersion() const { return valueAt(places_.current_dispersion); }
   /// Value of an effect per coordinate, at its place.
-  double scaleAt(Eigen::Index place) const {
-    return space_->effects().scale(place - space_->effect());
-  }
+  double scaleAt(Eigen::Index place) const { return scales_[place]; }
 
  private:
   /// What multiplies the torque of a pair as 1 + v.
@@ -75,18 +81,29 @@ class MotionPoint {
     Eigen::Index coordinate;  ///< of x
     double relative;          ///< ∂ ln(torque)/∂x
   };
+  /// What acts without current.
+  struct Load {
+    const PlacedEffect* placed;
+    Eigen::VectorXd values;
+  };
 
+  void setScales();
   void setAxes();
   void setStrengths();
+  void setLoads();
   void setTurning();
   void setInertia();
   double valueAt(Eigen::Index place) const;
-  void addPair(std::size_t pole,
-               std::size_t coil,
-               double current,
-               const Eigen::Vector3d& pole_stator,
+  void addPole(std::size_t pole,
                const Eigen::Matrix3d& R,
+               const Eigen::VectorXd& current,
                StatorTorque& out) const;
+  void addEffects(std::size_t pole,
+                  std::size_t coil,
+                  double weight,
+                  const Eigen::Vector3d& pole_stator,
+                  const Eigen::Vector3d& torque,
+                  StatorTorque& out) const;
   void addLoads(const Eigen::Matrix3d& R, StatorTorque& out) const;
 
   const ParameterSpace* space_;
@@ -94,14 +111,15 @@ class MotionPoint {
   Eigen::VectorXd x_;
   const TorqueCurve* curve_;
   std::optional<TorqueCurve> changed_curve_;
-  JointGeometry joints_;
-  std::array<Eigen::Matrix<double, 3, 2>, kJoints> d_joint_;
-  Eigen::Matrix3Xd poles_;  ///< rotor frame
-  Eigen::Matrix3Xd coils_;  ///< stator frame
+  Eigen::VectorXd scales_;  ///< of each coordinate; 1 of the geometry's
+  JointPoint joints_;
+  Eigen::Matrix3Xd poles_;        ///< rotor frame
+  Eigen::Matrix3Xd coils_;        ///< stator frame
   std::vector<Eigen::Matrix<double, 3, 2>> d_pole_;
   std::vector<Eigen::Matrix<double, 3, 2>> d_coil_;
   Eigen::MatrixXd weight_;                        ///< poles × coils
   std::vector<std::vector<Strength>> strengths_;  ///< per pole and coil
+  std::vector<Load> loads_;
   std::vector<Eigen::Index> turning_;
   Eigen::Matrix3d inertia_;
 };

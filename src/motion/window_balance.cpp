@@ -8,7 +8,12 @@
 namespace sac {
 namespace {
 
-constexpr Eigen::Index kBatch = 16;
+// Rows of the sum over intervals, behind those of what turns the rotor.
+constexpr Eigen::Index kInertia = 0;
+constexpr Eigen::Index kViscous = 18;
+constexpr Eigen::Index kCoulomb = 21;
+constexpr Eigen::Index kResidual = 24;
+constexpr Eigen::Index kBehind = 27;
 
 /// ∂(J u)/∂(xx, yy, zz, xy, xz, yz) of a symmetric J.
 Eigen::Matrix<double, 3, 6> inertiaColumns(const Eigen::Vector3d& u) {
@@ -54,17 +59,37 @@ IntervalMomentum::IntervalMomentum(const Eigen::Matrix3d& before,
 
 }  // namespace
 
+void BalanceEvaluator::ColumnSum::start(Eigen::Index rows, Eigen::Index functions) {
+  sum_.setZero(rows, functions);
+  batch_.setZero(rows, kBatch);
+  factors_.resize(kBatch, functions);
+  batched_ = 0;
+}
+
+void BalanceEvaluator::ColumnSum::next() {
+  if (++batched_ == kBatch) {
+    flush();
+  }
+}
+
+void BalanceEvaluator::ColumnSum::flush() {
+  sum_.noalias() += batch_.leftCols(batched_) * factors_.topRows(batched_);
+  batched_ = 0;
+}
+
+Eigen::MatrixXd& BalanceEvaluator::ColumnSum::result() {
+  flush();
+  return sum_;
+}
+
 void BalanceEvaluator::start(const MotionSpan& span,
                              const MotionWindow& window,
                              const MotionPoint& point) {
   window_ = window;
   count_ = options_.test_functions;
+  turning_ = 3 * static_cast<Eigen::Index>(point.turning().size());
   const std::size_t readings = window.last - window.first + 3;
   turned_.resize(readings);
-  noise_.resize(readings + 2);
-  for (std::size_t n = 0; wants_noise_ && n < noise_.size(); ++n) {
-    noise_[n].setZero(3 * count_, 3);
-  }
   const TestFunctions functions(
       span.track.time(window.first), span.track.time(window.last), options_.test_functions);
   middle_.resize(readings - 1);
@@ -83,31 +108,25 @@ void BalanceEvaluator::start(const MotionSpan& span,
     outside->second.setZero(count_);
     outside->third.setZero(count_);
   }
-  sum_.setZero(3 * point.space().size(), count_);
-  batch_.resize(3 * point.space().size(), kBatch);
-  factors_.resize(kBatch, count_);
-  batched_ = 0;
-}
-
-void BalanceEvaluator::addMomentum(const MotionSpan& span,
-                                   const MotionPoint& point,
-                                   WindowBalance& out) {
-  for (std::size_t n = 0; n + 1 < turned_.size(); ++n) {
-    addInterval(span, point, n, out);
+  momentum_.start(turning_ + kBehind, count_);
+  impulse_.start(3 * point.space().size() + 3, count_);
+  delay_.setZero(3, count_);
+  if (wants_noise_) {
+    noise_.setZero(3 * count_, 3 * static_cast<Eigen::Index>(readings + 2));
+    current_noise_.setZero(3 * count_, 3 * count_);
   }
 }
 
 /// Of M = −Σ factor A Δ: −∫φ̇ L dt is −Σ (mean of φ̇) A Δ − Σ φ̈ A ω̇ h³/12, with ω̇ from the turns of
 /// both neighbours.
-Eigen::VectorXd BalanceEvaluator::momentumFactors(std::size_t place, double h) const {
-  Eigen::VectorXd factor = middle_[place].first + (h * h / 24.0) * middle_[place].third;
+void BalanceEvaluator::setMomentumFactors(std::size_t place, double h) {
+  factor_ = middle_[place].first + (h * h / 24.0) * middle_[place].third;
   if (place > 0) {
-    factor += (h / 24.0) * middle_[place - 1].second;
+    factor_ += (h / 24.0) * middle_[place - 1].second;
   }
   if (place + 1 < middle_.size()) {
-    factor -= (h / 24.0) * middle_[place + 1].second;
+    factor_ -= (h / 24.0) * middle_[place + 1].second;
   }
-  return factor;
 }
 
 /// Of dry friction, by the rate over a few readings around an interval: less noisy than that of the
@@ -116,86 +135,87 @@ BalanceEvaluator::Fading BalanceEvaluator::fadingAt(const JointTrack& track,
                                                     std::size_t place) const {
   constexpr double kSpan = 0.01;  // [s]
   const auto reach = static_cast<std::size_t>(kSpan / (2.0 * track.step()));
-  const std::size_t first = place - std::min(place, reach);
-  const std::size_t last = std::min(turned_.size() - 1, place + 1 + reach);
-  const std::size_t origin = window_.first - 1;
-  const double per_time = 1.0 / (track.time(origin + last) - track.time(origin + first));
-  const TurnedRotor& before = turned_[first];
-  const TurnedRotor& after = turned_[last];
-  const Eigen::Vector3d rate =
-      per_time * rotationLog(after.R_stator_rotor * before.R_stator_rotor.transpose());
   Fading fading;
+  fading.first = place - std::min(place, reach);
+  fading.last = std::min(turned_.size() - 1, place + 1 + reach);
+  const std::size_t origin = window_.first - 1;
+  const double per_time =
+      1.0 / (track.time(origin + fading.last) - track.time(origin + fading.first));
+  const Eigen::Matrix3d& before = turned_[fading.first].R_stator_rotor;
+  const Eigen::Matrix3d& after = turned_[fading.last].R_stator_rotor;
+  const Eigen::Vector3d rate = per_time * rotationLog(after * before.transpose());
   fading.value = 1.0 / std::hypot(rate.norm(), options_.friction_speed);
   // What turns about the axis of the turn adds to its angle.
-  fading.d_x =
-      -std::pow(fading.value, 3) * per_time * rate.transpose().lazyProduct(after.d_x - before.d_x);
+  const double cube = fading.value * fading.value * fading.value;
+  fading.d_turn = (-cube * per_time) * rate.transpose();
   return fading;
 }
 
 void BalanceEvaluator::addInterval(const MotionSpan& span,
                                    const MotionPoint& point,
-                                   std::size_t place,
-                                   WindowBalance& out) {
+                                   std::size_t place) {
   const TurnedRotor& before = turned_[place];
   const TurnedRotor& after = turned_[place + 1];
   const std::size_t reading = window_.first - 1 + place;
-  const Eigen::VectorXd factor =
-      momentumFactors(place, span.track.time(reading + 1) - span.track.time(reading));
+  setMomentumFactors(place, span.track.time(reading + 1) - span.track.time(reading));
   const IntervalMomentum interval(before.R_stator_rotor, after.R_stator_rotor, point.inertia());
   const Fading fading = fadingAt(span.track, place);
   const double friction = point.viscous() + point.coulomb() * fading.value;
-  // Products of three by three and three by some: too small for the general way.
-  const Eigen::Matrix3Xd d_turn =
-      interval.turn_after.lazyProduct(after.d_x) + interval.turn_before.lazyProduct(before.d_x);
-  const Eigen::Matrix3Xd d_momentum = interval.momentum_after.lazyProduct(after.d_x) +
-                                      interval.momentum_before.lazyProduct(before.d_x);
-  const Eigen::Matrix3Xd d_braking =
-      friction * d_turn + (point.coulomb() * interval.turn).lazyProduct(fading.d_x);
   const MotionPlaces& places = point.places();
-  const auto add = [](Eigen::Index coordinate, const auto& derivative, auto column) {
-    column.template segment<3>(3 * coordinate) += derivative;
+  // Products of three by three and three by some: too small for the general way.
+  const auto turning_of = [this](auto column) {
+    return Eigen::Map<Eigen::Matrix3Xd>(column.data(), 3, turning_ / 3);
   };
-  for (Eigen::Index k = 0; k < count_; ++k) {
-    const double c = -factor[k];
-    const double f = middle_[place].value[k];
-    out.residual.segment<3>(3 * k) += c * interval.momentum + (f * friction) * interval.turn;
-    auto column = sum_.col(k);
-    for (Eigen::Index t = 0; t < d_turn.cols(); ++t) {
-      add(point.turning()[static_cast<std::size_t>(t)],
-          c * d_momentum.col(t) + f * d_braking.col(t),
-          column);
-    }
-    for (Eigen::Index n = 0; places.inertia >= 0 && n < 6; ++n) {
-      add(places.inertia + n,
-          c * point.scaleAt(places.inertia) * interval.d_inertia.col(n),
-          column);
-    }
-    if (places.viscous >= 0) {
-      add(places.viscous, f * point.scaleAt(places.viscous) * interval.turn, column);
-    }
-    if (places.coulomb >= 0) {
-      add(places.coulomb, f * point.scaleAt(places.coulomb) * fading.value * interval.turn, column);
-    }
-    if (!wants_noise_) {
-      continue;
-    }
-    noise_[place + 2].middleRows<3>(3 * k).noalias() +=
-        (c * interval.momentum_after + f * friction * interval.turn_after) * after.d_reading;
-    noise_[place + 1].middleRows<3>(3 * k).noalias() +=
-        (c * interval.momentum_before + f * friction * interval.turn_before) * before.d_reading;
+  auto momentum = momentum_.column();
+  turning_of(momentum) = interval.momentum_after.lazyProduct(after.d_x) +
+                         interval.momentum_before.lazyProduct(before.d_x);
+  if (places.inertia >= 0) {
+    Eigen::Map<Eigen::Matrix<double, 3, 6>>(momentum.data() + turning_ + kInertia) =
+        point.scaleAt(places.inertia) * interval.d_inertia;
   }
-}
+  momentum.segment<6>(turning_ + kViscous).setZero();
+  momentum.segment<3>(turning_ + kResidual) = interval.momentum;
+  momentum_.factors() = -factor_.transpose();
+  momentum_.next();
 
-void BalanceEvaluator::flush() {
-  sum_.noalias() += batch_.leftCols(batched_) * factors_.topRows(batched_);
-  batched_ = 0;
+  const Eigen::Matrix3d by_after = friction * interval.turn_after;
+  const Eigen::Matrix3d by_before = friction * interval.turn_before;
+  const Eigen::Matrix3d by_fading = point.coulomb() * interval.turn * fading.d_turn;
+  auto braking = momentum_.column();
+  turning_of(braking) = by_after.lazyProduct(after.d_x) + by_before.lazyProduct(before.d_x) +
+                        by_fading.lazyProduct(turned_[fading.last].d_x) -
+                        by_fading.lazyProduct(turned_[fading.first].d_x);
+  braking.segment<18>(turning_ + kInertia).setZero();
+  if (places.viscous >= 0) {
+    braking.segment<3>(turning_ + kViscous) = point.scaleAt(places.viscous) * interval.turn;
+  }
+  if (places.coulomb >= 0) {
+    braking.segment<3>(turning_ + kCoulomb) =
+        (point.scaleAt(places.coulomb) * fading.value) * interval.turn;
+  }
+  braking.segment<3>(turning_ + kResidual) = friction * interval.turn;
+  momentum_.factors() = middle_[place].value.transpose();
+  momentum_.next();
+  if (!wants_noise_) {
+    return;
+  }
+  const auto n = 3 * static_cast<Eigen::Index>(place);
+  const Eigen::Matrix3d momentum_after = interval.momentum_after * after.d_reading;
+  const Eigen::Matrix3d momentum_before = interval.momentum_before * before.d_reading;
+  const Eigen::Matrix3d braking_after = by_after * after.d_reading;
+  const Eigen::Matrix3d braking_before = by_before * before.d_reading;
+  for (Eigen::Index k = 0; k < count_; ++k) {
+    const double c = -factor_[k];
+    const double f = middle_[place].value[k];
+    noise_.block<3, 3>(3 * k, n + 6) += c * momentum_after + f * braking_after;
+    noise_.block<3, 3>(3 * k, n + 3) += c * momentum_before + f * braking_before;
+  }
 }
 
 /// P: the integrand and its slope vanish at both ends, so that the plain sum is of fourth order.
 void BalanceEvaluator::addImpulse(const MotionSpan& span,
                                   const MotionPoint& point,
-                                  const BalanceOrder& order,
-                                  WindowBalance& out) {
+                                  const BalanceOrder& order) {
   const double begin = span.track.time(window_.first);
   const double end = span.track.time(window_.last);
   const double delay = point.currentDelay();
@@ -226,20 +246,18 @@ void BalanceEvaluator::addImpulse(const MotionSpan& span,
             ((at(row + step) - at(row)) / after - (at(row) - at(row - step)) / before);
     current_ = at(row) + point.currentDispersion() * bend_;
     functions.evaluate(time, test_);
-    addCurrents(*track, point, 0.5 * (before + after), order, out);
+    addCurrents(*track, point, 0.5 * (before + after), order);
   }
-  flush();
 }
 
 void BalanceEvaluator::addCurrents(const TrackPoint& track,
                                    const MotionPoint& point,
                                    double step,
-                                   const BalanceOrder& order,
-                                   WindowBalance& out) {
+                                   const BalanceOrder& order) {
   point.turn(track.position, between_);
   point.torque(between_.R_stator_rotor, current_, torque_);
   for (std::size_t t = 0; t < point.turning().size(); ++t) {
-    torque_.d_x.col(point.turning()[t]).noalias() +=
+    torque_.d_x.col(point.turning()[t]) +=
         torque_.d_turn * between_.d_x.col(static_cast<Eigen::Index>(t));
   }
   const MotionPlaces& places = point.places();
@@ -247,63 +265,88 @@ void BalanceEvaluator::addCurrents(const TrackPoint& track,
     torque_.d_x.col(places.current_dispersion) =
         point.scaleAt(places.current_dispersion) * (torque_.d_coil * bend_);
   }
-  const Eigen::Vector3d rate = torque_.d_turn * (between_.d_reading * track.velocity);
-  for (Eigen::Index k = 0; k < count_; ++k) {
-    out.residual.segment<3>(3 * k) -= (step * test_.value[k]) * torque_.torque;
-    if (places.current_delay >= 0) {
-      sum_.col(k).segment<3>(3 * places.current_delay) +=
-          (step * point.scaleAt(places.current_delay)) *
-          (test_.first[k] * torque_.torque + test_.value[k] * rate);
-    }
+  if (places.current_delay >= 0) {
+    const double scale = step * point.scaleAt(places.current_delay);
+    const Eigen::Vector3d torque = scale * torque_.torque;
+    const Eigen::Vector3d rate = scale * (torque_.d_turn * (between_.d_reading * track.velocity));
+    delay_ +=
+        torque.lazyProduct(test_.first.transpose()) + rate.lazyProduct(test_.value.transpose());
   }
-  batch_.col(batched_) = Eigen::Map<const Eigen::VectorXd>(torque_.d_x.data(), batch_.rows());
-  factors_.row(batched_) = -step * test_.value.transpose();
-  if (++batched_ == kBatch) {
-    flush();
-  }
+  const Eigen::Index rows = torque_.d_x.size();
+  auto column = impulse_.column();
+  column.head(rows) = Eigen::Map<const Eigen::VectorXd>(torque_.d_x.data(), rows);
+  column.tail<3>() = torque_.torque;
+  impulse_.factors() = -step * test_.value.transpose();
+  impulse_.next();
   if (order.covariance) {
-    addNoise(track, step, order, out);
+    addNoise(track, step, order);
   }
 }
 
-void BalanceEvaluator::addNoise(const TrackPoint& track,
-                                double step,
-                                const BalanceOrder& order,
-                                WindowBalance& out) {
+void BalanceEvaluator::addNoise(const TrackPoint& track, double step, const BalanceOrder& order) {
   const Eigen::Matrix3d by_reading = torque_.d_turn * between_.d_reading;
-  const Eigen::Matrix3d squares = torque_.d_coil * torque_.d_coil.transpose();
-  for (Eigen::Index k = 0; k < count_; ++k) {
-    for (std::size_t m = 0; m < track.share.size(); ++m) {
-      const std::size_t reading = track.first + m;
-      if (reading + 2 >= window_.first && reading <= window_.last + 2) {
-        noise_[reading + 2 - window_.first].middleRows<3>(3 * k) -=
-            (step * test_.value[k] * track.share[m]) * by_reading;
-      }
+  for (std::size_t m = 0; m < track.share.size(); ++m) {
+    const std::size_t reading = track.first + m;
+    if (reading + 2 < window_.first || reading > window_.last + 2) {
+      continue;
     }
-    for (Eigen::Index l = 0; l < count_; ++l) {
-      out.by_currents.block<3, 3>(3 * k, 3 * l) +=
-          (step * step / static_cast<double>(order.stride) * test_.value[k] * test_.value[l]) *
-          squares;
+    const auto n = 3 * static_cast<Eigen::Index>(reading + 2 - window_.first);
+    const Eigen::Matrix3d share = (step * track.share[m]) * by_reading;
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      noise_.block<3, 3>(3 * k, n) -= test_.value[k] * share;
+    }
+  }
+  const Eigen::Matrix3d squares = (step * step / static_cast<double>(order.stride)) *
+                                  torque_.d_coil.lazyProduct(torque_.d_coil.transpose());
+  for (Eigen::Index l = 0; l < count_; ++l) {
+    const Eigen::Matrix3d of_one = test_.value[l] * squares;
+    for (Eigen::Index k = l; k < count_; ++k) {
+      current_noise_.block<3, 3>(3 * k, 3 * l) += test_.value[k] * of_one;
     }
   }
 }
 
-void BalanceEvaluator::finish(const MotionPoint& point,
-                              const BalanceOrder& order,
-                              WindowBalance& out) {
+void BalanceEvaluator::finish(const MotionPoint& point, WindowBalance& out) {
   const Eigen::Index size = point.space().size();
+  const MotionPlaces& places = point.places();
+  const Eigen::MatrixXd& momentum = momentum_.result();
+  Eigen::MatrixXd& sum = impulse_.result();
+  const auto add = [&](Eigen::Index coordinate, Eigen::Index row) {
+    sum.middleRows<3>(3 * coordinate) += momentum.middleRows<3>(row);
+  };
+  for (Eigen::Index t = 0; t < turning_ / 3; ++t) {
+    add(point.turning()[static_cast<std::size_t>(t)], 3 * t);
+  }
+  for (Eigen::Index n = 0; places.inertia >= 0 && n < 6; ++n) {
+    add(places.inertia + n, turning_ + kInertia + 3 * n);
+  }
+  if (places.viscous >= 0) {
+    add(places.viscous, turning_ + kViscous);
+  }
+  if (places.coulomb >= 0) {
+    add(places.coulomb, turning_ + kCoulomb);
+  }
+  if (places.current_delay >= 0) {
+    sum.middleRows<3>(3 * places.current_delay) += delay_;
+  }
+  add(size, turning_ + kResidual);
+  out.residual.resize(3 * count_);
   out.jacobian.resize(3 * count_, size);
   for (Eigen::Index k = 0; k < count_; ++k) {
     out.jacobian.middleRows<3>(3 * k) =
-        Eigen::Map<const Eigen::Matrix3Xd>(sum_.col(k).data(), 3, size);
+        Eigen::Map<const Eigen::Matrix3Xd>(sum.col(k).data(), 3, size);
+    out.residual.segment<3>(3 * k) = sum.col(k).tail<3>();
   }
-  if (!order.covariance) {
-    return;
+}
+
+void BalanceEvaluator::finishNoise(WindowBalance& out) {
+  for (Eigen::Index n = 0; n < noise_.cols(); ++n) {
+    noise_.col(n) *= joint_stddev_[n % 3];
   }
-  for (const Eigen::MatrixXd& one : noise_) {
-    const Eigen::MatrixXd scaled = one * joint_stddev_.asDiagonal();
-    out.by_joints.noalias() += scaled * scaled.transpose();
-  }
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(3 * count_, 3 * count_);
+  lower.selfadjointView<Eigen::Lower>().rankUpdate(noise_);
+  out.by_joints = lower.selfadjointView<Eigen::Lower>();
+  out.by_currents = current_noise_.selfadjointView<Eigen::Lower>();
 }
 
 void BalanceEvaluator::evaluate(const MotionSpan& span,
@@ -313,14 +356,14 @@ void BalanceEvaluator::evaluate(const MotionSpan& span,
                                 WindowBalance& out) {
   wants_noise_ = order.covariance;
   start(span, window, point);
-  out.residual.setZero(3 * count_);
-  if (order.covariance) {
-    out.by_joints.setZero(3 * count_, 3 * count_);
-    out.by_currents.setZero(3 * count_, 3 * count_);
+  for (std::size_t n = 0; n + 1 < turned_.size(); ++n) {
+    addInterval(span, point, n);
   }
-  addMomentum(span, point, out);
-  addImpulse(span, point, order, out);
-  finish(point, order, out);
+  addImpulse(span, point, order);
+  finish(point, out);
+  if (wants_noise_) {
+    finishNoise(out);
+  }
 }
 
 }  // namespace sac

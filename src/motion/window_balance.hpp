@@ -38,35 +38,46 @@ class BalanceEvaluator {
                 WindowBalance& out);
 
  private:
-  /// 1/√(ω² + v²) of dry friction.
+  /// 1/√(ω² + v²) of dry friction, by the turn between two of the readings.
   struct Fading {
-    double value = 0.0;      ///< [s/rad]
-    Eigen::RowVectorXd d_x;  ///< by MotionPoint::turning()
+    double value = 0.0;         ///< [s/rad]
+    Eigen::RowVector3d d_turn;  ///< by the turn of the rotor at `last`, less that at `first`
+    std::size_t first = 0;
+    std::size_t last = 0;
+  };
+  /// Sums over columns times factors, one of each test function: many at once.
+  class ColumnSum {
+   public:
+    void start(Eigen::Index rows, Eigen::Index functions);
+    /// The next column, zero where nobody writes, and its factors.
+    auto column() { return batch_.col(batched_); }
+    auto factors() { return factors_.row(batched_); }
+    void next();
+    /// A column for each test function.
+    Eigen::MatrixXd& result();
+
+   private:
+    static constexpr Eigen::Index kBatch = 32;
+    void flush();
+
+    Eigen::MatrixXd sum_;
+    Eigen::MatrixXd batch_;
+    Eigen::MatrixXd factors_;
+    Eigen::Index batched_ = 0;
   };
 
   void start(const MotionSpan& span, const MotionWindow& window, const MotionPoint& point);
-  void addMomentum(const MotionSpan& span, const MotionPoint& point, WindowBalance& out);
-  void addInterval(const MotionSpan& span,
-                   const MotionPoint& point,
-                   std::size_t place,
-                   WindowBalance& out);
-  void addImpulse(const MotionSpan& span,
-                  const MotionPoint& point,
-                  const BalanceOrder& order,
-                  WindowBalance& out);
+  void addInterval(const MotionSpan& span, const MotionPoint& point, std::size_t place);
+  void addImpulse(const MotionSpan& span, const MotionPoint& point, const BalanceOrder& order);
   void addCurrents(const TrackPoint& track,
                    const MotionPoint& point,
                    double step,
-                   const BalanceOrder& order,
-                   WindowBalance& out);
+                   const BalanceOrder& order);
   Fading fadingAt(const JointTrack& track, std::size_t place) const;
-  Eigen::VectorXd momentumFactors(std::size_t place, double h) const;
-  void addNoise(const TrackPoint& track,
-                double step,
-                const BalanceOrder& order,
-                WindowBalance& out);
-  void flush();
-  void finish(const MotionPoint& point, const BalanceOrder& order, WindowBalance& out);
+  void setMomentumFactors(std::size_t place, double h);
+  void addNoise(const TrackPoint& track, double step, const BalanceOrder& order);
+  void finish(const MotionPoint& point, WindowBalance& out);
+  void finishNoise(WindowBalance& out);
 
   const MotionOptions& options_;
   Eigen::Vector3d joint_stddev_;
@@ -74,18 +85,20 @@ class BalanceEvaluator {
   MotionWindow window_;
   bool wants_noise_ = false;
   Eigen::Index count_ = 0;                  ///< of test functions
+  Eigen::Index turning_ = 0;                ///< rows of what turns the rotor
   std::vector<TurnedRotor> turned_;         ///< at the readings, one more on either side
   std::vector<TestFunctionValues> middle_;  ///< between them
   TurnedRotor between_;
   TestFunctionValues test_;
+  Eigen::VectorXd factor_;
   StatorTorque torque_;
   Eigen::VectorXd current_;
-  Eigen::VectorXd bend_;     ///< second derivative of the currents [A/s²]
-  Eigen::MatrixXd sum_;      ///< 3P × K: the Jacobian, a column for each test function
-  Eigen::MatrixXd batch_;    ///< 3P × B: of single currents, not yet in the sum
-  Eigen::MatrixXd factors_;  ///< B × K
-  Eigen::Index batched_ = 0;
-  std::vector<Eigen::MatrixXd> noise_;  ///< per reading: ∂residual/∂reading, 3K × 3
+  Eigen::VectorXd bend_;   ///< second derivative of the currents [A/s²]
+  ColumnSum momentum_;     ///< by what turns the rotor, inertia, friction; last the residual
+  ColumnSum impulse_;      ///< by all coordinates; last the residual
+  Eigen::MatrixXd delay_;  ///< 3 × K: by the delay of the currents
+  Eigen::MatrixXd noise_;  ///< 3K × 3 per reading: ∂residual/∂reading
+  Eigen::MatrixXd current_noise_;  ///< 3K × 3K, lower blocks
 };
 
 }  // namespace sac
