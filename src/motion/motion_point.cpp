@@ -31,7 +31,8 @@ MotionPoint::MotionPoint(const CalibrationModel& model,
       places_(places),
       x_(x),
       curve_(&model.curve()),
-      joints_(model.space(), x) {
+      joints_(model.space(), x),
+      nominal_joints_(jointGeometry(model.space().nominal())) {
   setScales();
   setAxes();
   setStrengths();
@@ -139,7 +140,7 @@ double MotionPoint::valueAt(Eigen::Index place) const {
 
 void MotionPoint::turn(const Eigen::Vector3d& reading, TurnedRotor& out) const {
   constexpr auto kGeometry = static_cast<std::size_t>(JointPoint::kCoordinates);
-  Eigen::Vector3d q = reading;
+  Eigen::Vector3d q = correctedReading(nominal_joints_, reading);
   Eigen::Matrix3Xd d_sensors;
   if (turning_.size() > kGeometry) {
     d_sensors.setZero(3, static_cast<Eigen::Index>(turning_.size() - kGeometry));
@@ -156,6 +157,11 @@ void MotionPoint::turn(const Eigen::Vector3d& reading, TurnedRotor& out) const {
   out.R_stator_rotor = linear.R_stator_rotor;
   out.d_x.resize(3, static_cast<Eigen::Index>(turning_.size()));
   out.d_x.leftCols<JointPoint::kCoordinates>() = linear.d_coordinates;
+  if (nominal_joints_.map) {
+    const Eigen::Matrix3d beside = rotationExp(nominal_joints_.map->mean(reading));
+    out.R_stator_rotor = beside * linear.R_stator_rotor;
+    out.d_x.leftCols<JointPoint::kCoordinates>() = beside * linear.d_coordinates;
+  }
   for (std::size_t k = 0; k < kJoints; ++k) {
     out.d_reading.col(static_cast<Eigen::Index>(k)) = out.d_x.col(space_->joint(k));
   }

@@ -113,6 +113,7 @@ class MotionPoint {
   std::optional<TorqueCurve> changed_curve_;
   Eigen::VectorXd scales_;  ///< of each coordinate; 1 of the geometry's
   JointPoint joints_;
+  JointGeometry nominal_joints_;  ///< what the description corrects already
   Eigen::Matrix3Xd poles_;        ///< rotor frame
   Eigen::Matrix3Xd coils_;        ///< stator frame
   std::vector<Eigen::Matrix<double, 3, 2>> d_pole_;
