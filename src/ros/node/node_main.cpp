@@ -74,6 +74,7 @@ int runNode(int argc,
   }
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
   handleTerminationSignals();
+  endStartAfterSignal();
   if (!waitForMaster()) {
     return 0;
   }

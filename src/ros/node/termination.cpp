@@ -16,14 +16,37 @@ namespace {
 
 volatile std::sig_atomic_t g_termination_requested = 0;
 volatile std::sig_atomic_t g_failed_fatally = 0;
-volatile std::sig_atomic_t g_late_status = 0;
+volatile std::sig_atomic_t g_late_status = 1;
+/// Nobody looks for signals yet, and what starts may wait for a master that never answers.
+volatile std::sig_atomic_t g_is_starting = 0;
+
+/// What still starts so long after a signal is ended [s].
+constexpr unsigned kStartPatience = 2;
 
 void requestTermination(int /*signal*/) {
+  if (g_is_starting != 0 && g_termination_requested == 0) {
+    ::alarm(kStartPatience);
+  }
   g_termination_requested = 1;
 }
 
 [[noreturn]] void endLate(int /*signal*/) {
   ::_exit(static_cast<int>(g_late_status));
+}
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+// The time of a signal that came before ends; the time that endWithin() gives goes on.
+void endStart() {
+  if (g_is_starting != 0) {
+    g_is_starting = 0;
+    ::alarm(0);
+  }
 }
 
 // Memory may be what is wanting: nothing here asks for any.
@@ -43,18 +66,20 @@ constexpr double kPatience = 0.02;
 }  // namespace
 
 void handleTerminationSignals() {
-  struct sigaction action = {};
-  action.sa_handler = requestTermination;
-  sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) {
-    sigaction(signal, &action, nullptr);
+    handle(signal, requestTermination);
   }
   // A terminal that is closed, such as that of ssh, sends this one; nohup lets a node outlive it.
   struct sigaction inherited = {};
   sigaction(SIGHUP, nullptr, &inherited);
   if (inherited.sa_handler != SIG_IGN) {
-    sigaction(SIGHUP, &action, nullptr);
+    handle(SIGHUP, requestTermination);
   }
+}
+
+void endStartAfterSignal() {
+  handle(SIGALRM, endLate);
+  g_is_starting = 1;
 }
 
 bool terminationRequested() {
@@ -70,21 +95,21 @@ bool failedFatally() {
 }
 
 void endWithin(unsigned seconds, int status) {
+  g_is_starting = 0;
   g_late_status = status;
-  struct sigaction action = {};
-  action.sa_handler = endLate;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGALRM, &action, nullptr);
+  handle(SIGALRM, endLate);
   ::alarm(seconds);
 }
 
 void spinUntilTermination() {
+  endStart();
   while (ros::ok() && !terminationRequested()) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kPatience));
   }
 }
 
 void waitForTermination() {
+  endStart();
   while (ros::ok() && !terminationRequested()) {
     ros::WallDuration(kPatience).sleep();
   }

@@ -8,6 +8,10 @@ namespace sac {
 /// ros::init_options::NoSigintHandler.
 void handleTerminationSignals();
 
+/// Until the loops below begin, two seconds after such a signal end the program with status 1: it
+/// may be asking a master that never answers.
+void endStartAfterSignal();
+
 /// True once one of these signals came.
 bool terminationRequested();
 
