@@ -145,6 +145,13 @@ Heartbeat CoilDriver::heartbeat(double now) {
   return Heartbeat::kGiven;
 }
 
+void CoilDriver::goOnBeating(double now) {
+  if (!was_tripped_ && is_measured_ && supervisor_.mayGoOnBeating(now)) {
+    supervisor_.beating(now);
+    amplifier_.feed();
+  }
+}
+
 void CoilDriver::observe(const AmplifierReading& reading, const BeatClock& clock, Beat& result) {
   const double end = clock.now();
   supervisor_.observe(reading.currents, end - reading.duration, end);
@@ -210,8 +217,13 @@ std::string CoilDriver::stop(double now) {
   try {
     allowOneBeat();
     transport_.open();
+    if (disabling.failure.empty()) {
+      goOnBeating(clock.now());
+    }
+    const AmplifierReading reading = amplifier_.read();
+    was_tripped_ = was_tripped_ || reading.tripped;
     Beat last;
-    observe(amplifier_.read(), clock, last);
+    observe(reading, clock, last);
   } catch (const Error& error) {
     transport_.close();
     return error.what();

@@ -232,7 +232,7 @@ void CurrentAmplifier::write(const Eigen::VectorXd& currents,
   }
   writeSetpoints(words);
   if (is_given && !is_next) {
-    transport_.write(options_.setpoints.unit, *options_.heartbeat_address, {++heartbeat_});
+    feed();
   }
   switchStages(stages);
 }
@@ -335,6 +335,12 @@ void CurrentAmplifier::switchOff() {
 
 void CurrentAmplifier::zero() {
   writeSetpoints(setpointWords(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils_))));
+}
+
+void CurrentAmplifier::feed() {
+  if (options_.heartbeat_address) {
+    transport_.write(options_.setpoints.unit, *options_.heartbeat_address, {++heartbeat_});
+  }
 }
 
 void CurrentAmplifier::writeSetpoints(const Words& words) {

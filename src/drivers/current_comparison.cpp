@@ -31,7 +31,8 @@ constexpr double kShareOfChange = 0.03;
 /// What a beat that agrees takes back, of one that deviates.
 constexpr double kForgiven = 0.125;
 
-/// Of a beat, as beats are a little early or late: so many whole ones are as many all the same.
+/// Of a beat, as beats are a little early or late: so many whole ones are as many all the same. And
+/// between a measurement that agrees and a long beat that does not, half of that beat did not.
 constexpr double kRounding = 0.5;
 
 /// However long a beat took: a single measurement must not decide, nor two.
@@ -44,6 +45,15 @@ constexpr double kForesight = 0.1;
 
 /// Counts go on above their limit, so that all lags can be above it at the same time.
 constexpr double kHighestCount = 1.5;
+
+/// What is left of a current after so long [s].
+double shareLeft(Eigen::Index filter, double elapsed) {
+  const double time_constant = kTimeConstants[static_cast<std::size_t>(filter)];
+  if (elapsed <= 0.0) {
+    return 1.0;
+  }
+  return time_constant > 0.0 ? std::exp(-elapsed / time_constant) : 0.0;
+}
 
 }  // namespace
 
@@ -72,6 +82,8 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
   const double weight = weightOf(end);
   if (!last_) {
     beginWith(measured.array());
+  } else {
+    widenBeginning(measured.array());
   }
   off_at_ = was_off_ ? end : off_at_;
   was_off_ = is_off_;
@@ -85,7 +97,7 @@ std::optional<std::size_t> CurrentComparison::observe(const Eigen::VectorXd& mea
   count(measured.array(), begin, end, weight);
   Eigen::Index coil = 0;
   most_ = deviating_.rowwise().minCoeff().maxCoeff(&coil);
-  if (most_ < beats_ - kRounding) {
+  if (most_ < beats_ - kRounding * std::max(weight, 1.0)) {
     return std::nullopt;
   }
   return static_cast<std::size_t>(coil);
@@ -115,6 +127,28 @@ void CurrentComparison::beginWith(const Eigen::ArrayXd& measured) {
   highest_ = highest_.max(measured);
   lower_.colwise() = lowest_;
   upper_.colwise() = highest_;
+}
+
+// Orders from before the driver began may still be on their way: an amplifier whose output stages
+// were off, or whose watchdog had acted, follows them when it is switched on.
+void CurrentComparison::widenBeginning(const Eigen::ArrayXd& measured) {
+  const Span before = spans_.front();
+  const bool is_first = std::isinf(before.begin);
+  if (!is_first || *last_ - before.end > kLongestDelay) {
+    return;
+  }
+  const Eigen::ArrayXd below = (measured - before.lowest.col(0)).min(0.0);
+  const Eigen::ArrayXd above = (measured - before.highest.col(0)).max(0.0);
+  for (Eigen::Index filter = 0; filter < kFilters; ++filter) {
+    for (Span& span : spans_) {
+      const double share = shareLeft(filter, span.begin - before.end);
+      span.lowest.col(filter) += share * below;
+      span.highest.col(filter) += share * above;
+    }
+    const double share = shareLeft(filter, *last_ - before.end);
+    lower_.col(filter) += share * below;
+    upper_.col(filter) += share * above;
+  }
 }
 
 // Anything between the lowest and the highest setpoint may be in force all the time: no amplifier

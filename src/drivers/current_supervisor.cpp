@@ -27,6 +27,9 @@ constexpr double kLostAgain = 3.0;
 constexpr int kConfirmingZeros = 5;
 constexpr double kConfirmingTime = 0.3;
 
+/// Current of an honest amplifier flows no longer after zero was set [s].
+constexpr double kLongestFade = 0.28;
+
 /// Whoever goes on commanding what another one owns gets it only after so long a silence: a flood
 /// may be the reason why the owner is not heard [s].
 constexpr double kContestedSilence = 5.0;
@@ -195,6 +198,7 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, d
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
   flowed_ = flows();
+  noticeFlow(begin);
   countZeros(begin);
   const std::optional<std::size_t> stray = strays_.observe(measured, begin);
   std::optional<std::size_t> deviating = comparison_.observe(measured, begin, end);
@@ -248,6 +252,15 @@ bool CurrentSupervisor::flows() const {
   return measured_ && measured_->cwiseAbs().maxCoeff() > limits_.deviation;
 }
 
+void CurrentSupervisor::noticeFlow(double steady) {
+  if (!comparison_.setpoints().isZero(0.0)) {
+    zero_set_at_.reset();
+    return;
+  }
+  zero_set_at_ = zero_set_at_.value_or(steady);
+  outlasted_ = outlasted_ || (closed_ && flows() && steady - *zero_set_at_ > kLongestFade);
+}
+
 void CurrentSupervisor::countZeros(double steady) {
   zeros_ = flows() || !comparison_.setpoints().isZero(0.0) ? 0 : zeros_ + 1;
   if (zeros_ == 1) {
@@ -255,7 +268,8 @@ void CurrentSupervisor::countZeros(double steady) {
   }
   // Current that flows though zero is set is no longer confirmed to be zero; nor is one that only
   // passes it.
-  zero_confirmed_ = zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime;
+  zero_confirmed_ =
+      zeros_ >= kConfirmingZeros && steady - zero_since_ >= kConfirmingTime && !outlasted_;
 }
 
 bool CurrentSupervisor::mayBeat() const {
@@ -263,6 +277,14 @@ bool CurrentSupervisor::mayBeat() const {
   const bool is_quiet = was_set_ || (measured_ && !flows());
   const bool is_right = fault_.empty() || (is_loss_ && isZeroNow());
   return is_right && is_quiet && !comparison_.isSuspicious();
+}
+
+bool CurrentSupervisor::mayGoOnBeating(double steady) const {
+  if (!mayBeat()) {
+    return false;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return steady - fed_at_ <= kOwnZero;
 }
 
 void CurrentSupervisor::fail(const std::string& reason) {
@@ -334,6 +356,10 @@ std::string CurrentSupervisor::unconfirmedReason() const {
   }
   if (!measured_) {
     return "no current was ever measured";
+  }
+  if (outlasted_) {
+    return "current flowed on for more than " + withTwoDigits(kLongestFade) +
+           " s after zero was set, until the amplifier's own watchdog may have ended it";
   }
   const double largest = measured_->cwiseAbs().maxCoeff();
   return "the last measurement has a current of up to " + withTwoDigits(largest) +

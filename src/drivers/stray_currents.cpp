@@ -38,16 +38,19 @@ void StrayCurrents::setting(const Eigen::VectorXd& setpoints) {
 }
 
 std::optional<std::size_t> StrayCurrents::observe(const Eigen::VectorXd& measured, double steady) {
+  began_at_ = last_ ? began_at_ : steady;
+  const bool is_beginning = steady - began_at_ <= kLongestFlow;
   const double elapsed = std::min(steady - last_.value_or(steady), kLongestBeat);
   const bool is_span_over = steady - span_since_ > kLongestFlow;
   std::optional<std::size_t> stray;
   for (std::size_t k = 0; k < coils_.size(); ++k) {
     const double current = std::abs(measured[static_cast<Eigen::Index>(k)]);
-    if (current > allowed(coils_[k], steady)) {
+    const bool is_more = current > allowed(coils_[k], steady);
+    if (is_more && !is_beginning) {
       stray = k;
     }
     if (is_span_over) {
-      coils_[k].before = last_ ? coils_[k].lately : current;
+      coils_[k].before = coils_[k].lately;
       coils_[k].lately = std::abs(coils_[k].setpoint);
     }
   }

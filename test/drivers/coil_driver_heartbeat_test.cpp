@@ -84,5 +84,84 @@ TEST(CoilDriverHeartbeat, AZeroByTheWatchdogIsNoConfirmationForADriverThatEnds) 
   }
 }
 
+/// An amplifier that has a current while its heartbeat is younger than its watchdog, from which on
+/// it has none, whatever is set.
+class DeafAmplifier {
+ public:
+  DeafAmplifier(ScriptedTransport& bus, double watchdog) : bus_(bus), watchdog_(watchdog) {}
+
+  /// Measures a moment later, and tells whether there is current.
+  bool flowsAt(double time) {
+    const std::uint16_t beat = bus_.at(kUnit, RegisterTable::kHolding, kHeartbeat);
+    fed_at_ = beat != beat_ ? time : fed_at_;
+    beat_ = beat;
+    is_on_ = is_on_ && time - fed_at_ < watchdog_;
+    bus_.set(kUnit, RegisterTable::kInput, 0, {static_cast<std::uint16_t>(is_on_ ? 1500 : 0)});
+    return is_on_;
+  }
+
+ private:
+  ScriptedTransport& bus_;
+  double watchdog_;
+  double fed_at_ = 100.0;
+  std::uint16_t beat_ = 0;
+  bool is_on_ = true;
+};
+
+// Its current ends by its watchdog, soon after the driver has set zero: that looks like an
+// amplifier with a lag, unless it is fed until it is told.
+TEST(CoilDriverHeartbeat, GoesOnAtTheEndUntilAnAmplifierThatKeepsItsCurrentIsTold) {
+  for (const double watchdog : {0.25, 0.3, 0.5}) {
+    ScriptedTransport bus;
+    CoilDriver driver(
+        readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")),
+        kCoils,
+        bus);
+    DeafAmplifier amplifier(bus, watchdog);
+    Eigen::VectorXd command = Eigen::VectorXd::Zero(kCoils);
+    command[0] = 1.5;
+    double now = 100.0;
+    for (; now < 100.5; now += kBeat) {
+      driver.offer({"/operator", now, command}, {now, now});
+      driver.beat(now);
+      amplifier.flowsAt(now);
+    }
+    const double begin = now;
+    double flowed = 0.0;
+    for (; now < begin + 1.0; now += kBeat) {
+      driver.stop(now);
+      flowed = amplifier.flowsAt(now) ? now - begin : flowed;
+    }
+    EXPECT_NE(driver.supervisor().fault(), "") << watchdog;
+    EXPECT_FALSE(driver.supervisor().isZeroConfirmed()) << watchdog;
+    EXPECT_GT(flowed, watchdog);
+    EXPECT_LT(flowed, 0.35 + watchdog);
+  }
+}
+
+// A watchdog may have ended the current since the heartbeat was given last, which gives it again.
+TEST(CoilDriverHeartbeat, DoesNotComeBackAtTheEnd) {
+  ScriptedTransport bus;
+  CoilDriver driver(
+      readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")),
+      kCoils,
+      bus);
+  double now = 100.0;
+  for (; now < 100.5; now += kBeat) {
+    driver.offer({"/operator", now, Eigen::VectorXd::Constant(kCoils, 0.1)}, {now, now});
+    driver.beat(now);
+  }
+  bus.setReachable(false);
+  driver.beat(now);
+  bus.setReachable(true);
+  now += 0.3;
+  const std::uint16_t last = bus.at(kUnit, RegisterTable::kHolding, kHeartbeat);
+  for (const double end = now + 1.0; now < end; now += kBeat) {
+    driver.stop(now);
+  }
+  EXPECT_EQ(driver.stop(now), "");
+  EXPECT_EQ(bus.at(kUnit, RegisterTable::kHolding, kHeartbeat), last);
+}
+
 }  // namespace
 }  // namespace sac

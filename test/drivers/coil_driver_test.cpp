@@ -177,8 +177,10 @@ TEST_F(CoilDriverTest, StopsForGood) {
 TEST_F(CoilDriverTest, HasNotStoppedBeforeZeroIsMeasured) {
   follow(pattern(3, 1.5));
   measures(3, 1.2);
-  const std::string reason = stop();
-  EXPECT_NE(reason.find("1.20 A"), std::string::npos) << reason;
+  for (int n = 0; n < 20; ++n, now_ += 0.005) {
+    const std::string reason = driver_.stop(now_);
+    EXPECT_NE(reason.find("1.20 A"), std::string::npos) << reason;
+  }
   EXPECT_FALSE(driver_.supervisor().isZeroConfirmed());
   measures(3, 0.0);
   EXPECT_EQ(stop(), "");
@@ -222,6 +224,7 @@ TEST_F(CoilDriverTest, AllRequestsOfABeatHaveOneSpanOfTime) {
 }
 
 TEST_F(CoilDriverTest, AnAmplifierThatDoesNotApplyIsToldAndItsHeartbeatWithheld) {
+  follow(pattern(3, 1.5));
   follow(pattern(3, 1.5));
   measures(3, 2.0);
   int beats = 0;

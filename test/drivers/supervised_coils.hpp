@@ -24,6 +24,14 @@ inline Instant at(double steady) {
   return {steady, kWall + steady};
 }
 
+/// Zero is measured for the last time of the past [s], and once long before: nothing that was set
+/// before the supervisor began is on its way any more.
+inline void beginAtZero(CurrentSupervisor& supervisor, double steady) {
+  for (const double time : {steady - 1.0, steady}) {
+    supervisor.observe(amperes(0.0), time, time);
+  }
+}
+
 /// Given by `caller` at a time of the steady clock.
 inline CoilCommand given(const std::string& caller, double steady, double current = 1.0) {
   return {caller, kWall + steady, amperes(current)};

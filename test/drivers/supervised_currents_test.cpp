@@ -21,7 +21,7 @@ struct Flow {
 std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& with = limits()) {
   CurrentSupervisor supervisor(with, 2);
   double now = 10.0;
-  supervisor.observe(amperes(0.0), now, now);
+  beginAtZero(supervisor, now);
   for (const Flow& flow : flows) {
     for (int n = 0; n < flow.beats; ++n) {
       now += 0.005;
@@ -147,7 +147,7 @@ TEST(SupervisedCurrents, WhatWasSetBeforeMayStillFlowWhenItIsMeasured) {
 class FaultOfCurrents : public ::testing::Test {
  protected:
   FaultOfCurrents() {
-    observe(1, 0.0);
+    beginAtZero(supervisor_, beat_);
     deviate();
   }
 
@@ -240,7 +240,7 @@ TEST_F(FaultOfCurrents, StaysWhereTheAmplifierDidNotObeyByItself) {
 TEST_F(FaultOfCurrents, AZeroOfBeforeDoesNotCount) {
   CurrentSupervisor supervisor(limits(), 2);
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.0), at(10.0)), "");
-  supervisor.observe(amperes(0.0), 9.995, 9.995);
+  beginAtZero(supervisor, 9.995);
   for (const double now : {10.0, 10.1}) {
     for (int n = 0; n < 4; ++n) {
       supervisor.observe(amperes(now < 10.1 ? 2.0 : 0.0), now + 0.005 * n, now + 0.005 * n);
@@ -339,58 +339,13 @@ TEST(SupervisedCurrents, CurrentDuringAnErrorOfTheLinkIsTheGraverOne) {
 
 TEST(SupervisedCurrents, DuringSuchAnErrorNoCommandIsFollowed) {
   CurrentSupervisor supervisor(limits(), 2);
-  for (int n = 0; n < 5; ++n) {
-    supervisor.observe(amperes(0.0, n == 0 ? 0.0 : 2.0), 0.005 * n, 0.005 * n);
+  beginAtZero(supervisor, 0.0);
+  for (int n = 1; n < 5; ++n) {
+    supervisor.observe(amperes(0.0, 2.0), 0.005 * n, 0.005 * n);
   }
   ASSERT_EQ(supervisor.offer(given("/owner", 10.0), at(10.0)), "");
   EXPECT_FALSE(supervisor.command(10.0));
   EXPECT_NE(supervisor.zeroReason(10.0).find("coil 2"), std::string::npos);
-}
-
-/// What is set and measured for some beats, of so many seconds each, and whether it confirms zero.
-struct Ending {
-  const char* what;
-  std::vector<Flow> flows;
-  bool confirms;
-  double beat = 0.005;
-};
-
-TEST(SupervisedCurrents, ZeroIsConfirmedOnlyByMeasurementsInARowAfterwards) {
-  const std::vector<Ending> endings{
-      {"nothing was measured", {}, false},
-      {"one zero", {{0.0, 0.0}}, false},
-      {"zeros for 0.29 s", {{0.0, 0.0, 59}}, false},
-      {"zeros for 0.31 s", {{0.0, 0.01, 63}}, true},
-      {"two zeros far from each other", {{0.0, 0.0, 2}}, false, 0.4},
-      {"five of a fast loop", {{0.0, 0.0, 5}}, false, 0.001},
-      {"many of a fast loop", {{0.0, 0.0, 302}}, true, 0.001},
-      {"another current is set", {{0.0, 0.0, 70}, {1.0, 0.0, 70}}, false},
-      {"and zero again", {{1.0, 0.0, 70}, {0.0, 0.0, 40}}, false},
-      {"a pulse still under way", {{2.0, 0.0, 30}, {0.0, 0.0, 30}, {0.0, 2.0, 30}}, false},
-      {"a current shows once", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 40}}, false},
-      {"and then no more", {{0.0, 0.0, 70}, {0.0, -0.2}, {0.0, 0.0, 63}}, true},
-      {"each second one is zero", {{0.0, 2.0}, {0.0, 0.0}, {0.0, 2.0}, {0.0, 0.0}}, false},
-  };
-  for (const Ending& ending : endings) {
-    CurrentSupervisor supervisor(limits(), 2);
-    double now = 10.0;
-    for (const Flow& flow : ending.flows) {
-      for (int n = 0; n < flow.beats; ++n) {
-        now += ending.beat;
-        supervisor.setting(amperes(flow.set));
-        supervisor.observe(amperes(0.0, flow.measured), now, now);
-      }
-    }
-    EXPECT_EQ(supervisor.isZeroConfirmed(), ending.confirms) << ending.what;
-    EXPECT_EQ(supervisor.unconfirmedReason().empty(), ending.confirms) << ending.what;
-  }
-}
-
-TEST(SupervisedCurrents, TellsTheCurrentThatKeepsZeroFromBeingConfirmed) {
-  CurrentSupervisor supervisor(limits(), 2);
-  EXPECT_NE(supervisor.unconfirmedReason(), "");
-  supervisor.observe(amperes(0.0, -0.2), 10.0, 10.0);
-  EXPECT_NE(supervisor.unconfirmedReason().find("0.20 A"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/drivers/current_comparison.hpp"
+#include "spherical_actuator_calibration/drivers/stray_currents.hpp"
 
 namespace sac {
 namespace {
@@ -115,6 +116,47 @@ TEST(UnknownCurrents, WhatFlowsWhenTheDriverBeginsMayGoByItsLag) {
         }
       }
     }
+  }
+}
+
+// Its stages are off when the driver begins, for another coil they are soon on again: what was set
+// before, for so long before, is still on its way.
+TEST(UnknownCurrents, WhatWasSetBeforeTheDriverBeganMayComeWhenTheStagesAreOn) {
+  for (const double delay : {0.05, 0.14, 0.165}) {
+    for (const double time_constant : {0.0, 0.015, 0.03}) {
+      for (const int beats_off : {1, 4, 20}) {
+        Amplifier amplifier(delay, time_constant, 2.0);
+        CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
+        StrayCurrents strays(1, kTolerance);
+        for (int beat = 0; beat < 200; ++beat) {
+          const double time = kBeat * beat;
+          const bool is_on = beat >= beats_off;
+          comparison.setting(Eigen::VectorXd::Zero(1), is_on);
+          strays.setting(Eigen::VectorXd::Zero(1));
+          const Eigen::VectorXd measured =
+              Eigen::VectorXd::Constant(1, amplifier.beat(time, 0.0, is_on));
+          EXPECT_FALSE(comparison.observe(measured, time, time) || comparison.isSuspicious())
+              << "delay " << delay << ", time constant " << time_constant << ", off for "
+              << beats_off;
+          EXPECT_FALSE(strays.observe(measured, time));
+        }
+      }
+    }
+  }
+}
+
+// It may have been set before the driver began, but flows on.
+TEST(UnknownCurrents, WhatComesWhenTheDriverHasBegunAndStaysIsTold) {
+  for (const double comes : {0.0, 0.05, 0.165}) {
+    CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
+    double time = 0.0;
+    bool is_told = false;
+    for (; !is_told && time < 2.0; time += kBeat) {
+      comparison.setting(Eigen::VectorXd::Zero(1), true);
+      const double current = time < comes ? 0.0 : 2.0;
+      is_told = comparison.observe(Eigen::VectorXd::Constant(1, current), time, time).has_value();
+    }
+    EXPECT_LT(time, 0.55) << comes;
   }
 }
 

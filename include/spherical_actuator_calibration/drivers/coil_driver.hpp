@@ -48,7 +48,9 @@ class CoilDriver {
   /// and links do wrong ends in zero currents and `zero_reason`, never in an exception.
   Beat beat(double now);
 
-  /// Zero at once and for good. Returns nothing when the amplifier took it and zero is confirmed
+  /// Zero at once and for good. The heartbeat goes on after that, so that an amplifier which has
+  /// not taken the zero shows its current, until it is told, rather than that its watchdog ends it
+  /// as if it had obeyed. Returns nothing when the amplifier took it and zero is confirmed
   /// (CurrentSupervisor::isZeroConfirmed()), otherwise why not: then it is worth another call, as
   /// currents need a moment to fade, and a confirmation needs several.
   std::string stop(double now);
@@ -66,6 +68,7 @@ class CoilDriver {
   bool follow(const BeatClock& clock, Beat& result);
   void rememberBeatTime(const BeatClock& clock);
   Heartbeat heartbeat(double now);
+  void goOnBeating(double now);
   void observe(const AmplifierReading& reading, const BeatClock& clock, Beat& result);
   void forget();
   void fail(double now);

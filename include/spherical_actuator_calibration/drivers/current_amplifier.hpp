@@ -89,6 +89,8 @@ class CurrentAmplifier {
   void switchOff();
   /// Zero currents. Throws TransportError.
   void zero();
+  /// Its heartbeat alone, where it has one. Throws TransportError.
+  void feed();
 
  private:
   using Words = std::vector<std::uint16_t>;

@@ -23,7 +23,8 @@ namespace sac {
 ///
 /// Output stages may cut the current at once, whatever the setpoints' delay is: while they are off,
 /// and for the longest lag afterwards, less than what is set is right, down to zero. What was set
-/// before the first measurement is not known: what that one has, or anything from there to zero.
+/// before the first measurement is not known: what that one has, or anything from there to zero;
+/// and what flows within the longest delay after it may have been on its way.
 ///
 /// Times are seconds of a steady clock. Not thread-safe.
 class CurrentComparison {
@@ -56,6 +57,7 @@ class CurrentComparison {
   };
 
   void beginWith(const Eigen::ArrayXd& measured);
+  void widenBeginning(const Eigen::ArrayXd& measured);
   void advance(double until);
   Span settled(double from, double to, double elapsed);
   void remember(const Span& span);

@@ -104,11 +104,16 @@ class CurrentSupervisor {
   /// anything was commanded nothing flows, so that a driver that starts revives no current which
   /// the amplifier's watchdog has ended.
   bool mayBeat() const;
+  /// The same at the end, when zero is set for good: and the last heartbeat is so young that no
+  /// watchdog can have acted since. Current that one has ended must not be revived.
+  bool mayGoOnBeating(double steady) const;
   /// How often there was one.
   int faults() const;
   /// Whether zero was measured in all coils, five times in a row and for 0.3 s at least, since
   /// anything else was set or measured: a current that alternates passes zero, too, and what was
-  /// set last may be on its way for as long as an honest amplifier takes.
+  /// set last may be on its way for as long as an honest amplifier takes. Where current flowed for
+  /// longer than that after zero was set, and after close(), it never is: only a watchdog may have
+  /// ended it.
   bool isZeroConfirmed() const;
   /// In words, why it is not; empty when it is.
   std::string unconfirmedReason() const;
@@ -119,6 +124,7 @@ class CurrentSupervisor {
   void noticeClockJump(const Instant& now);
   bool isOwnedByAnother(const CoilCommand& command, double steady) const;
   void countZeros(double steady);
+  void noticeFlow(double steady);
   bool flows() const;
   bool isZeroNow() const { return zeros_ > 0; }
   bool isOwner(const CoilCommand& command) const {
@@ -147,7 +153,9 @@ class CurrentSupervisor {
   int zeros_ = 0;            ///< measurements in a row of nothing but zero, while zero is set
   double zero_since_ = 0.0;  ///< the first of them, by the steady clock [s]
   bool zero_confirmed_ = false;
-  bool was_set_ = false;  ///< anything but zero
+  std::optional<double> zero_set_at_;  ///< first measurement since nothing but zero is set [s]
+  bool outlasted_ = false;             ///< current did what was set, after close()
+  bool was_set_ = false;               ///< anything but zero
   StrayCurrents strays_;
   std::string fault_;
   bool is_loss_ = false;  ///< it is one of the link, or of trips

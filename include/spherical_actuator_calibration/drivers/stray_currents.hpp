@@ -22,7 +22,7 @@ class StrayCurrents {
   void setting(const Eigen::VectorXd& setpoints);
   /// These currents [A] were measured after that. Returns a coil, from 0, that has a stray current
   /// now, when there was too much of them: 0.2 s in all, of which a second without takes back
-  /// 0.005 s.
+  /// 0.005 s. What flows in the first 0.3 s may have been set before.
   std::optional<std::size_t> observe(const Eigen::VectorXd& measured, double steady);
   /// Counts anew.
   void forgive() { strays_ = 0.0; }
@@ -42,6 +42,7 @@ class StrayCurrents {
   const double tolerance_;
   std::vector<Coil> coils_;
   std::optional<double> last_;  ///< measurement [s]
+  double began_at_ = 0.0;       ///< first measurement [s]
   double span_since_ = 0.0;     ///< [s]
   double strays_ = 0.0;         ///< less what was forgiven [s]
 };

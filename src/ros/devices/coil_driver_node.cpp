@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kWarningPeriod = 2.0;  // [s]
 /// For currents to fade, and for an amplifier that does not answer at once, when the node ends [s].
-constexpr double kStopTime = 0.8;
+constexpr double kStopTime = 1.0;
 /// The main thread, which takes leave, may be stuck: then the loop ends the program [s].
 constexpr unsigned kLastResort = 5;
 /// Between two looks whether the currents have faded.
