@@ -141,12 +141,16 @@ def ended(number):
     return run
 
 
-def ended_while_stuck(laboratory):
-    """Current flows on for ever, and whoever ended the driver must know."""
-    laboratory.amplifier.watchdog = math.inf
-    laboratory.amplifier.stick()
-    laboratory.driver.process.send_signal(signal.SIGTERM)
-    return Outcome(defect="exit status 0" if status_of(laboratory) == 0 else "")
+def ended_while_stuck(watchdog):
+    """Current flows on until the amplifier's watchdog [s] acts, and whoever ended the driver must know."""
+
+    def run(laboratory):
+        laboratory.amplifier.watchdog = watchdog
+        laboratory.amplifier.stick()
+        laboratory.driver.process.send_signal(signal.SIGTERM)
+        return Outcome(defect="exit status 0" if status_of(laboratory) == 0 else "")
+
+    return run
 
 
 def thrown(laboratory):
@@ -247,7 +251,8 @@ def faults_of(master):
         Fault("driver: SIGINT", ended(signal.SIGINT), end),
         Fault("driver: SIGHUP", ended(signal.SIGHUP), end, is_short=True),
         Fault("driver: SIGQUIT", ended(signal.SIGQUIT), end),
-        Fault("driver: SIGTERM, never applied", ended_while_stuck, (None, None, None), is_short=True),
+        Fault("driver: SIGTERM, never applied", ended_while_stuck(math.inf), (None, None, None)),
+        Fault("the same, watchdog of 0.3 s", ended_while_stuck(0.3), (None, None, None), is_short=True),
         Fault("driver: exception", thrown, end, is_short=True, preload=True),
         Fault("driver: no memory", without_memory, end),
         Fault("driver's clock +1 h", clock_jump(JUMP), stop, preload=True),
