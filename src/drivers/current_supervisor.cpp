@@ -197,8 +197,8 @@ void CurrentSupervisor::beating(double steady) {
 void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, double end) {
   const std::lock_guard<std::mutex> lock(mutex_);
   measured_ = measured;
-  flowed_ = flows();
   noticeFlow(begin);
+  flowed_ = flows();
   countZeros(begin);
   const std::optional<std::size_t> stray = strays_.observe(measured, begin);
   std::optional<std::size_t> deviating = comparison_.observe(measured, begin, end);
@@ -252,13 +252,15 @@ bool CurrentSupervisor::flows() const {
   return measured_ && measured_->cwiseAbs().maxCoeff() > limits_.deviation;
 }
 
+// Two measurements in a row: one that strays is noise.
 void CurrentSupervisor::noticeFlow(double steady) {
   if (!comparison_.setpoints().isZero(0.0)) {
     zero_set_at_.reset();
     return;
   }
   zero_set_at_ = zero_set_at_.value_or(steady);
-  outlasted_ = outlasted_ || (closed_ && flows() && steady - *zero_set_at_ > kLongestFade);
+  const bool flows_on = flowed_ && flows();
+  outlasted_ = outlasted_ || (closed_ && flows_on && steady - *zero_set_at_ > kLongestFade);
 }
 
 void CurrentSupervisor::countZeros(double steady) {

@@ -80,6 +80,17 @@ TEST(ConfirmedZero, IsNoLateOneForADriverThatEnds) {
   }
 }
 
+TEST(ConfirmedZero, OneMeasurementThatStraysAtTheEndIsNoise) {
+  CurrentSupervisor supervisor(limits(), 2);
+  beginAtZero(supervisor, 10.0);
+  supervisor.close();
+  for (int beat = 0; beat < 200; ++beat) {
+    const double time = 11.0 + 0.005 * beat;
+    supervisor.observe(amperes(beat == 20 ? 0.2 : 0.0), time, time);
+  }
+  EXPECT_TRUE(supervisor.isZeroConfirmed()) << supervisor.unconfirmedReason();
+}
+
 TEST(ConfirmedZero, TellsTheCurrentThatKeepsItFromBeingConfirmed) {
   CurrentSupervisor supervisor(limits(), 2);
   EXPECT_NE(supervisor.unconfirmedReason(), "");
