@@ -61,7 +61,11 @@ DesignBound::DesignBound(const DesignTask& task,
                          const std::vector<PoseCandidate>& candidates,
                          std::size_t visits,
                          Eigen::MatrixXd information)
-    : task_(task), candidates_(candidates), visits_(visits), information_(std::move(information)) {}
+    : task_(task),
+      candidates_(candidates),
+      visits_(visits),
+      information_(std::move(information)),
+      eliminations_(candidates.size()) {}
 
 double DesignBound::Certificate::bound(double visits) const {
   return variance * variance / (of_known + visits * of_visit);
@@ -104,19 +108,16 @@ DesignBound::Certificate DesignBound::certificateHere() const {
 
 std::vector<DesignBound::RankedVisit> DesignBound::bestVisits(const Eigen::MatrixXd& sensitivity,
                                                               const std::vector<std::size_t>& among,
-                                                              std::size_t most) const {
+                                                              std::size_t most) {
   std::vector<RankedVisit> best;
   for (const std::size_t c : among) {
     const double enough = best.size() < most ? 0.0 : best.back().first;
-    PatternMaximum maximum = visitSensitivity(task_, candidates_[c], sensitivity, enough);
+    VisitMaximum maximum =
+        visitSensitivity(task_, candidates_[c], sensitivity, enough, eliminations_[c]);
     if (maximum.value <= enough && best.size() == most) {
       continue;
     }
-    std::vector<TermPattern> patterns;
-    if (!maximum.pattern.empty()) {
-      patterns.assign(task_.patterns_per_pose, maximum.pattern);
-    }
-    RankedVisit visit(maximum.value, DesignedPose{c, std::move(patterns)});
+    RankedVisit visit(maximum.value, DesignedPose{c, std::move(maximum.patterns)});
     const auto place = std::upper_bound(
         best.begin(), best.end(), visit, [](const RankedVisit& a, const RankedVisit& b) {
           return a.first > b.first;
@@ -149,8 +150,10 @@ double DesignBound::stddev() const {
 double DesignBound::stddevOver(const std::vector<PoseCandidate>& further) const {
   Certificate certificate = best_;
   for (const PoseCandidate& candidate : further) {
+    Eigen::MatrixXd elimination;
     certificate.of_visit =
-        visitSensitivity(task_, candidate, best_.sensitivity, certificate.of_visit).value;
+        visitSensitivity(task_, candidate, best_.sensitivity, certificate.of_visit, elimination)
+            .value;
   }
   return std::sqrt(certificate.bound(static_cast<double>(visits_)));
 }

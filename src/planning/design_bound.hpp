@@ -58,7 +58,7 @@ class DesignBound {
   /// Visits to those of the candidates that have the largest sensitivities, at most `most`.
   std::vector<RankedVisit> bestVisits(const Eigen::MatrixXd& sensitivity,
                                       const std::vector<std::size_t>& among,
-                                      std::size_t most) const;
+                                      std::size_t most);
   /// Mixes visits into the design, by the share that makes its norm of variances least.
   void mixIn(const std::vector<RankedVisit>& visits);
 
@@ -67,6 +67,7 @@ class DesignBound {
   std::size_t visits_;
   Eigen::MatrixXd information_;
   Certificate best_;
+  std::vector<Eigen::MatrixXd> eliminations_;  ///< per candidate, of the errors of its readings
   std::vector<std::size_t> active_;  ///< candidates that steps between looks at all of them see
 };
 

@@ -69,13 +69,12 @@ Eigen::SparseMatrix<double> reportedDerivative(const ParameterSpace& space,
 }
 
 Eigen::VectorXd reportedVariances(const DesignTask& task, const Eigen::MatrixXd& covariance) {
-  const Eigen::MatrixXd mapped = task.reported * covariance;
+  const Eigen::Index count = task.reported.cols();
+  const Eigen::MatrixXd mapped = task.reported * covariance.topLeftCorner(count, count);
   return (mapped * task.reported.transpose()).diagonal();
 }
 
-WhitenedObservation patternObservation(const DesignTask& task,
-                                       const PoseCandidate& candidate,
-                                       const TermPattern& pattern) {
+WhitenedObservation patternObservation(const PoseCandidate& candidate, const TermPattern& pattern) {
   WhitenedObservation sum;
   const auto terms = termsOf(candidate, pattern);
   for (const auto& [term, sign] : terms) {
@@ -87,35 +86,58 @@ WhitenedObservation patternObservation(const DesignTask& task,
   for (const auto& [term, sign] : terms) {
     addTerm(*term, sign, sum);
   }
-  if (!task.joint_variance.isZero(0.0)) {
-    Eigen::Matrix3d noise = Eigen::Matrix3d::Identity();
-    for (std::size_t k = 0; k < sum.columns.size(); ++k) {
-      // A joint sensor's error acts as an offset of that joint does.
-      const Eigen::Index joint = sum.columns[k] / ParameterSpace::kPerJoint;
-      if (joint < 3 && sum.columns[k] % ParameterSpace::kPerJoint == 0) {
-        const Eigen::Vector3d effect = sum.jacobian.col(static_cast<Eigen::Index>(k));
-        noise += task.joint_variance[joint] * effect * effect.transpose();
-      }
-    }
-    sum.jacobian = whiteningOf(noise) * sum.jacobian;
-  }
   return sum;
+}
+
+Eigen::MatrixXd poseInformation(const DesignTask& task,
+                                const PoseCandidate& candidate,
+                                const std::vector<TermPattern>& patterns) {
+  InformationSum sum(task.known.rows() + kPoseErrors);
+  if (candidate.tracked) {
+    sum.add(*candidate.tracked);
+  }
+  for (const TermPattern& pattern : patterns) {
+    sum.add(patternObservation(candidate, pattern));
+  }
+  Eigen::MatrixXd information = sum.information();
+  information.bottomRightCorner<kPoseErrors, kPoseErrors>().diagonal().array() += 1.0;
+  return information;
 }
 
 Eigen::MatrixXd designInformation(const DesignTask& task,
                                   const std::vector<PoseCandidate>& candidates,
                                   const std::vector<DesignedPose>& poses) {
-  InformationSum sum(task.known);
+  const Eigen::Index count = task.known.rows();
+  Eigen::MatrixXd information = task.known;
   for (const DesignedPose& pose : poses) {
-    const PoseCandidate& candidate = candidates[pose.candidate];
-    if (candidate.orientation) {
-      sum.add(*candidate.orientation);
-    }
-    for (const TermPattern& pattern : pose.patterns) {
-      sum.add(patternObservation(task, candidate, pattern));
-    }
+    const Eigen::MatrixXd all = poseInformation(task, candidates[pose.candidate], pose.patterns);
+    const Eigen::Matrix<double, Eigen::Dynamic, kPoseErrors> shared =
+        all.topRightCorner(count, kPoseErrors);
+    const Eigen::Matrix3d own = all.bottomRightCorner<kPoseErrors, kPoseErrors>();
+    information += all.topLeftCorner(count, count);
+    information.noalias() -= shared * own.inverse() * shared.transpose();
   }
-  return sum.information();
+  return information;
+}
+
+Eigen::MatrixXd covarianceAtPose(const DesignTask& task,
+                                 const std::vector<PoseCandidate>& candidates,
+                                 const std::vector<DesignedPose>& poses,
+                                 std::size_t place) {
+  std::vector<DesignedPose> others = poses;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
+  const DesignedPose& pose = poses[place];
+  Eigen::MatrixXd information = poseInformation(task, candidates[pose.candidate], pose.patterns);
+  const Eigen::Index count = task.known.rows();
+  information.topLeftCorner(count, count) += designInformation(task, candidates, others);
+  return covarianceOf(information);
+}
+
+Eigen::MatrixXd covarianceAtNewPose(const Eigen::MatrixXd& covariance) {
+  const Eigen::Index count = covariance.rows();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(count + kPoseErrors, count + kPoseErrors);
+  result.topLeftCorner(count, count) = covariance;
+  return result;
 }
 
 double steepNorm(const Eigen::VectorXd& variances, double exponent) {

@@ -25,11 +25,12 @@ struct DesignedPose {
   std::vector<TermPattern> patterns;
 };
 
-/// What designs are judged by, and what they may be like. F coordinates are to be estimated.
+/// What designs are judged by, and what they may be like. F coordinates are to be estimated. Where
+/// one pose alone is looked at, its kPoseErrors come behind them, each of unit variance before
+/// anything is measured; elsewhere they are eliminated.
 struct DesignTask {
   Eigen::MatrixXd known;  ///< information before the first pose, F×F, positive definite
   Eigen::SparseMatrix<double> reported;  ///< ∂(values for people)/∂(coordinates), F×F
-  Eigen::Vector3d joint_variance = Eigen::Vector3d::Zero();  ///< of the joints' readings [rad²]
   std::size_t patterns_per_pose = 6;
   std::size_t coils_per_pattern = 4;
   double minimum_spacing = 0.1;  ///< rotation angle between two poses [rad]
@@ -41,19 +42,31 @@ Eigen::SparseMatrix<double> reportedDerivative(const ParameterSpace& space,
                                                const Eigen::VectorXd& x,
                                                const std::vector<Eigen::Index>& coordinates);
 
-/// Variances of the values for people [rad²].
+/// Variances of the values for people [rad²]. `covariance`: of the coordinates, with those of a
+/// pose or without.
 Eigen::VectorXd reportedVariances(const DesignTask& task, const Eigen::MatrixXd& covariance);
 
-/// The torque of a pattern, in units of its noise: of the torque sensor, and of the joints'
-/// readings by what they change of the torque.
-WhitenedObservation patternObservation(const DesignTask& task,
-                                       const PoseCandidate& candidate,
-                                       const TermPattern& pattern);
+/// The torque of a pattern, in standard deviations of the torque sensor.
+WhitenedObservation patternObservation(const PoseCandidate& candidate, const TermPattern& pattern);
+
+/// Information of one pose and of what its errors are before, (F + kPoseErrors) square.
+Eigen::MatrixXd poseInformation(const DesignTask& task,
+                                const PoseCandidate& candidate,
+                                const std::vector<TermPattern>& patterns);
 
 /// Information of all poses and what is known before, F×F.
 Eigen::MatrixXd designInformation(const DesignTask& task,
                                   const std::vector<PoseCandidate>& candidates,
                                   const std::vector<DesignedPose>& poses);
+
+/// Covariance of the coordinates and the errors of pose `place`, in a design of these poses.
+Eigen::MatrixXd covarianceAtPose(const DesignTask& task,
+                                 const std::vector<PoseCandidate>& candidates,
+                                 const std::vector<DesignedPose>& poses,
+                                 std::size_t place);
+
+/// The same at a pose where nothing is measured yet. `covariance`: F×F.
+Eigen::MatrixXd covarianceAtNewPose(const Eigen::MatrixXd& covariance);
 
 /// Norm of variances that stands for the largest one, of exponent p, and its weights: of sum 1, and
 /// along its gradient.

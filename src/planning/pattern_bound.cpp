@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace sac {
@@ -139,6 +140,93 @@ class FormMaximum {
   std::size_t branches_ = 0;
 };
 
+/// L of a pose's errors for a mixture of the patterns that were found there.
+class ErrorElimination {
+ public:
+  ErrorElimination(const DesignTask& task, const PoseCandidate& candidate, Eigen::MatrixXd L)
+      : task_(task), candidate_(candidate), count_(task.known.rows()), L_(std::move(L)) {
+    for (const WhitenedObservation& term : candidate.terms) {
+      is_needed_ = is_needed_ || (!term.columns.empty() && term.columns.back() >= count_);
+    }
+    if (L_.size() == 0) {
+      L_.setZero(kPoseErrors, count_);
+    }
+    torques_.setZero(kPoseErrors, count_ + kPoseErrors);
+  }
+
+  /// Whether the pose has errors that its measurements share.
+  bool isNeeded() const { return is_needed_; }
+
+  const Eigen::MatrixXd& elimination() const { return L_; }
+
+  /// (1, −L)ᵀ G (1, −L), so that J G Jᵀ of all columns is (J − D L) G (J − D L)ᵀ.
+  Eigen::MatrixXd augmented(const Eigen::MatrixXd& G) const {
+    Eigen::MatrixXd result(count_ + kPoseErrors, count_ + kPoseErrors);
+    const Eigen::MatrixXd L_G = L_ * G;
+    result.topLeftCorner(count_, count_) = G;
+    result.bottomLeftCorner(kPoseErrors, count_) = -L_G;
+    result.topRightCorner(count_, kPoseErrors) = -L_G.transpose();
+    result.bottomRightCorner(kPoseErrors, kPoseErrors) = L_G * L_.transpose();
+    return result;
+  }
+
+  /// One more pattern of the mixture, of which all have the same share of the torques.
+  void take(const TermPattern& pattern) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kPoseErrors, count_ + kPoseErrors);
+    addErrorRows(patternObservation(candidate_, pattern), rows);
+    ++taken_;
+    torques_ += (rows - torques_) / static_cast<double>(taken_);
+    rows = static_cast<double>(task_.patterns_per_pose) * torques_;
+    if (candidate_.tracked) {
+      addErrorRows(*candidate_.tracked, rows);
+    }
+    const Eigen::Matrix3d own = Eigen::Matrix3d::Identity() + rows.rightCols<kPoseErrors>();
+    L_ = own.inverse() * rows.leftCols(count_);
+  }
+
+ private:
+  /// Adds DᵀJ of all columns.
+  void addErrorRows(const WhitenedObservation& observation, Eigen::MatrixXd& rows) const {
+    for (std::size_t a = 0; a < observation.columns.size(); ++a) {
+      const Eigen::Index row = observation.columns[a] - count_;
+      for (std::size_t b = 0; row >= 0 && b < observation.columns.size(); ++b) {
+        rows(row, observation.columns[b]) +=
+            observation.jacobian.col(static_cast<Eigen::Index>(a))
+                .dot(observation.jacobian.col(static_cast<Eigen::Index>(b)));
+      }
+    }
+  }
+
+  const DesignTask& task_;
+  const PoseCandidate& candidate_;
+  Eigen::Index count_;
+  bool is_needed_ = false;
+  Eigen::MatrixXd L_;
+  Eigen::MatrixXd torques_;  ///< DᵀJ of one, mean
+  std::size_t taken_ = 0;
+};
+
+/// The largest sensitivity of a visit with one elimination, by as many of one pattern.
+PatternMaximum atElimination(const DesignTask& task,
+                             const PoseCandidate& candidate,
+                             const Eigen::MatrixXd& augmented,
+                             double enough) {
+  double beside = augmented.bottomRightCorner<kPoseErrors, kPoseErrors>().trace();
+  if (candidate.tracked) {
+    beside += traceOf(*candidate.tracked, candidate.tracked->timesTransposed(augmented));
+  }
+  const std::size_t coils = candidate.terms.size();
+  if (coils == 0) {
+    return {std::max(enough, beside), {}};
+  }
+  const auto torques = static_cast<double>(task.patterns_per_pose);
+  const double enough_of_one = std::max(0.0, (enough - beside) / torques);
+  PatternMaximum maximum =
+      largestForm(coilForm(candidate, augmented), coils, task.coils_per_pattern, enough_of_one);
+  maximum.value = std::max(enough, beside + torques * maximum.value);
+  return maximum;
+}
+
 }  // namespace
 
 Eigen::MatrixXd sensitivityOf(const DesignTask& task,
@@ -155,25 +243,36 @@ PatternMaximum largestForm(const Eigen::MatrixXd& Q,
   return FormMaximum(Q, coils, most, enough).largest();
 }
 
-PatternMaximum visitSensitivity(const DesignTask& task,
-                                const PoseCandidate& candidate,
-                                const Eigen::MatrixXd& sensitivity,
-                                double enough) {
-  double of_orientation = 0.0;
-  if (candidate.orientation) {
-    of_orientation =
-        traceOf(*candidate.orientation, candidate.orientation->timesTransposed(sensitivity));
+VisitMaximum visitSensitivity(const DesignTask& task,
+                              const PoseCandidate& candidate,
+                              const Eigen::MatrixXd& sensitivity,
+                              double enough,
+                              Eigen::MatrixXd& elimination) {
+  constexpr int kRounds = 4;
+  VisitMaximum best;
+  ErrorElimination errors(task, candidate, elimination);
+  std::vector<TermPattern> tried;
+  const int rounds = errors.isNeeded() ? kRounds : 1;
+  for (int round = 0; round < rounds; ++round) {
+    const PatternMaximum one =
+        atElimination(task, candidate, errors.augmented(sensitivity), enough);
+    if (round == 0 || one.value < best.value) {
+      best.value = one.value;
+      elimination = errors.elimination();
+    }
+    if (one.value <= enough) {
+      return {enough, {}};
+    }
+    if (one.pattern.empty()) {
+      break;
+    }
+    tried.push_back(one.pattern);
+    errors.take(one.pattern);
   }
-  const std::size_t coils = candidate.terms.size();
-  if (coils == 0) {
-    return {std::max(enough, of_orientation), {}};
+  for (std::size_t n = 0; !tried.empty() && n < task.patterns_per_pose; ++n) {
+    best.patterns.push_back(tried[tried.size() - 1 - n % tried.size()]);
   }
-  const auto torques = static_cast<double>(task.patterns_per_pose);
-  const double enough_of_one = std::max(0.0, (enough - of_orientation) / torques);
-  PatternMaximum maximum =
-      largestForm(coilForm(candidate, sensitivity), coils, task.coils_per_pattern, enough_of_one);
-  maximum.value = std::max(enough, of_orientation + torques * maximum.value);
-  return maximum;
+  return best;
 }
 
 }  // namespace sac

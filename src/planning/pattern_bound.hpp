@@ -29,12 +29,24 @@ PatternMaximum largestForm(const Eigen::MatrixXd& Q,
                            std::size_t most,
                            double enough);
 
+/// A maximum over visits to one pose.
+struct VisitMaximum {
+  double value = 0.0;
+  /// That come near to it, task.patterns_per_pose; none where the value is a bound only.
+  std::vector<TermPattern> patterns;
+};
+
 /// tr(G A) at most, for the information A of one visit: of the orientation, and of
 /// task.patterns_per_pose torques of any patterns. Not above `enough`, it comes out as `enough`.
-/// The joints' readings count as exact for the torques, so that a torque tells no less than that.
-PatternMaximum visitSensitivity(const DesignTask& task,
-                                const PoseCandidate& candidate,
-                                const Eigen::MatrixXd& sensitivity,
-                                double enough);
+///
+/// The errors u of the pose's readings are eliminated: A = min over L of Σ (J − D L)ᵀ(J − D L) +
+/// LᵀL, D the derivatives by u. So any L gives a bound, which is a sum over the patterns again.
+/// Here L is that of the patterns found so far, a few times over, from `elimination` on (empty:
+/// none), which comes out as the best one.
+VisitMaximum visitSensitivity(const DesignTask& task,
+                              const PoseCandidate& candidate,
+                              const Eigen::MatrixXd& sensitivity,
+                              double enough,
+                              Eigen::MatrixXd& elimination);
 
 }  // namespace sac

@@ -41,13 +41,7 @@ PatternSearch::PatternSearch(const DesignTask& task,
     effect.middleCols<3>(row) = term.timesTransposed(covariance);
   }
   innovation_.noalias() = stack * effect;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    if (task.joint_variance[k] > 0.0) {
-      const Eigen::VectorXd reading = stack.col(ParameterSpace::kPerJoint * k);
-      innovation_.noalias() += task.joint_variance[k] * reading * reading.transpose();
-    }
-  }
-  const Eigen::MatrixXd mapped = task.reported * effect;
+  const Eigen::MatrixXd mapped = task.reported * effect.topRows(task.reported.cols());
   weighted_.noalias() = mapped.transpose() * (weights.asDiagonal() * mapped);
 }
 

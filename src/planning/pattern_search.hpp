@@ -8,7 +8,8 @@
 
 namespace sac {
 
-/// What patterns at one pose would tell, for a covariance C of the coordinates. To measure a torque
+/// What patterns at one pose would tell, for a covariance C of the coordinates and of the pose's
+/// errors. To measure a torque
 /// with the derivative J shrinks the weighted sum of variances by tr((1 + J C Jᵀ)⁻¹ J C W C Jᵀ); J
 /// is the sum of the terms of the pattern's coils with their signs, so both products are sums of
 /// blocks over pairs of terms.
@@ -53,7 +54,7 @@ class PatternSearch {
   std::size_t coils_;  ///< terms; what is unexcited comes behind them
   bool has_unexcited_;
   std::size_t most_;            ///< coils of a pattern
-  Eigen::MatrixXd innovation_;  ///< J C Jᵀ and the joints' part of the noise, by pairs of terms
+  Eigen::MatrixXd innovation_;  ///< J C Jᵀ, by pairs of terms
   Eigen::MatrixXd weighted_;    ///< J C W C Jᵀ, likewise
 };
 

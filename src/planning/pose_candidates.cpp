@@ -28,7 +28,8 @@ class Linearizer {
   Linearizer(const PlanningProblem& problem,
              const std::vector<Sample>& samples,
              const std::vector<Eigen::Index>& coordinates)
-      : chosen_(problem.model->space().size(), coordinates),
+      : samples_(samples),
+        chosen_(problem.model->space().size(), coordinates),
         held_(chosen_.others()),
         estimation_(estimationProblem(problem, samples)),
         evaluator_(estimation_, problem.estimation),
@@ -37,15 +38,30 @@ class Linearizer {
   const std::vector<Observation>& observations() const { return estimation_.observations; }
 
   WhitenedObservation linearize(std::size_t observation) {
+    last_ = observation;
     evaluator_.linearize(observation, point_, linear_);
     const Eigen::Matrix3d whitening =
         whiteningOf(evaluator_.covariance(observation, linear_, held_));
     return inUnits(whitening);
   }
 
-  /// The observation linearised last, in units of `stddev` whatever else its noise holds.
+  /// The observation linearised last, in units of `stddev` whatever else its noise holds, with the
+  /// errors of its readings (kPoseErrors) behind the coordinates.
   WhitenedObservation inUnitsOf(double stddev) const {
-    return inUnits(Eigen::Matrix3d::Identity() / stddev);
+    WhitenedObservation result = inUnits(Eigen::Matrix3d::Identity() / stddev);
+    const Sample& sample = samples_[observations()[last_].sample];
+    const Eigen::Matrix3d of_readings =
+        linear_.d_reading * sample.joint_stddev.asDiagonal() / stddev;
+    if (of_readings.isZero(0.0)) {
+      return result;
+    }
+    const auto count = static_cast<Eigen::Index>(result.columns.size());
+    result.jacobian.conservativeResize(3, count + kPoseErrors);
+    result.jacobian.rightCols<kPoseErrors>() = of_readings;
+    for (Eigen::Index k = 0; k < kPoseErrors; ++k) {
+      result.columns.push_back(chosen_.size() + k);
+    }
+    return result;
   }
 
  private:
@@ -66,12 +82,14 @@ class Linearizer {
     return result;
   }
 
+  const std::vector<Sample>& samples_;
   ChosenCoordinates chosen_;
   std::vector<bool> held_;  ///< per coordinate: not estimated
   EstimationProblem estimation_;
   ObservationEvaluator evaluator_;
   ModelPoint point_;
   LinearizedObservation linear_;
+  std::size_t last_ = 0;  ///< observation of linear_
 };
 
 /// Coils that may serve the cycle at all.
@@ -272,6 +290,9 @@ std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
     PoseCandidate& candidate = candidates[candidate_of_sample[observation.sample]];
     if (observation.quantity == Quantity::kOrientation) {
       candidate.orientation = linearizer.linearize(n);
+      if (plans_patterns) {
+        candidate.tracked = linearizer.inUnitsOf(options.orientation_stddev);
+      }
       continue;
     }
     candidate.torques.push_back(linearizer.linearize(n));

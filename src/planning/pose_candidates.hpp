@@ -15,6 +15,10 @@ struct PosePlanOptions;
 struct Sample;
 struct SignedCoil;
 
+/// Errors of a pose's readings that all of its measurements share, in standard deviations: of the
+/// joints' sensors, or without joints of the tracker about x, y and z.
+inline constexpr Eigen::Index kPoseErrors = 3;
+
 /// One pose that could be visited, and what could be observed there.
 struct PoseCandidate {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();      ///< [rad]
@@ -23,8 +27,10 @@ struct PoseCandidate {
   std::vector<std::size_t> coils;            ///< that may be excited here, counted from 0
   std::vector<WhitenedObservation> torques;  ///< along with `coils`, each alone at +current
 
-  /// For patterns only: derivatives of the torque by the coordinates to estimate, in standard
-  /// deviations of the torque sensor. Those of `coils` add up, with the signs of the pattern.
+  /// For patterns only: derivatives by the coordinates to estimate, and by kPoseErrors behind them,
+  /// in standard deviations of the tracker and of the torque sensor. Those of `coils` add up, with
+  /// the signs of the pattern.
+  std::optional<WhitenedObservation> tracked;    ///< the orientation
   std::vector<WhitenedObservation> terms;        ///< along with `coils`
   std::optional<WhitenedObservation> unexcited;  ///< what effects add whatever the currents are
 };

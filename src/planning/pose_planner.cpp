@@ -167,9 +167,6 @@ class Planner {
       }
     }
     task.reported = reportedDerivative(space, problem_.state.belief.x, coordinates_);
-    if (space.joints() > 0) {
-      task.joint_variance = options_.joint_stddev.cwiseAbs2();
-    }
     task.patterns_per_pose = options_.coils_per_pose;
     task.coils_per_pattern = coilsPerPattern(options_);
     task.minimum_spacing = options_.minimum_spacing;
@@ -342,9 +339,8 @@ class Planner {
         1e3 * plan.worst_stddev);
     if (plan.stddev_bound) {
       text += format(
-          " That is within %.1f %% of what any plan of as many poses and torques could reach%s.",
-          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)),
-          hasJoints() ? "" : " with a tracker that makes no error");
+          " That is within %.1f %% of what any plan of as many poses and torques could reach.",
+          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)));
     }
     if (options_.wanted_stddev > 0.0 && !plan.reached_wanted) {
       text += format(" About %zu poses are needed for %.3g mrad.",

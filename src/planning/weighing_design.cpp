@@ -41,29 +41,25 @@ WeighingDesign::WeighingDesign(const DesignTask& task,
     : task_(task),
       candidates_(candidates),
       is_time_up_(std::move(is_time_up)),
-      exponent_(kExponents[0]) {
+      exponent_(kExponents[0]),
+      eliminations_(candidates.size()) {
   for (const std::size_t candidate : poses) {
     poses_.push_back({candidate, {}});
   }
 }
 
 void WeighingDesign::choosePatterns() {
-  Eigen::MatrixXd covariance = this->covariance();
-  for (DesignedPose& pose : poses_) {
-    if (candidates_[pose.candidate].orientation) {
-      observe(*candidates_[pose.candidate].orientation, 1.0, covariance);
-    }
-  }
   // Each pattern is chosen with all poses' orientations known, and those chosen before it.
   for (std::size_t n = 0; n < task_.patterns_per_pose; ++n) {
-    for (DesignedPose& pose : poses_) {
+    for (std::size_t place = 0; place < poses_.size(); ++place) {
+      DesignedPose& pose = poses_[place];
       const PoseCandidate& candidate = candidates_[pose.candidate];
       if (candidate.terms.empty()) {
         continue;
       }
+      const Eigen::MatrixXd covariance = covarianceAtPose(task_, candidates_, poses_, place);
       pose.patterns.push_back(
           PatternSearch(task_, candidate, covariance, weightsAt(covariance)).best());
-      observe(patternObservation(task_, candidate, pose.patterns.back()), 1.0, covariance);
     }
   }
   exchangePatterns();
@@ -89,23 +85,23 @@ void WeighingDesign::exchange() {
 
 bool WeighingDesign::exchangePatterns() {
   bool has_changed = false;
-  for (DesignedPose& pose : poses_) {
+  for (std::size_t place = 0; place < poses_.size(); ++place) {
+    DesignedPose& pose = poses_[place];
     const PoseCandidate& at = candidates_[pose.candidate];
-    // Anew for each pose, so that rounding does not add up.
-    Eigen::MatrixXd covariance = this->covariance();
+    Eigen::MatrixXd covariance = covarianceAtPose(task_, candidates_, poses_, place);
     for (TermPattern& pattern : pose.patterns) {
       if (isTimeUp()) {
         return has_changed;
       }
       Eigen::MatrixXd without = covariance;
-      observe(patternObservation(task_, at, pattern), -1.0, without);
+      observe(patternObservation(at, pattern), -1.0, without);
       const PatternSearch search(task_, at, without, weightsAt(without));
       TermPattern changed = search.improved(pattern);
       TermPattern anew = search.best();
       if (search.reduction(anew) > search.reduction(changed)) {
         changed = std::move(anew);
       }
-      observe(patternObservation(task_, at, changed), 1.0, without);
+      observe(patternObservation(at, changed), 1.0, without);
       if (meritOf(without) < meritOf(covariance) - kLeastGain) {
         pattern = std::move(changed);
         covariance = std::move(without);
@@ -125,7 +121,7 @@ bool WeighingDesign::exchangePoses() {
     poses_.erase(poses_.begin());
     const Eigen::MatrixXd without = covariance();
     for (const std::size_t candidate : promising(without)) {
-      Eigen::MatrixXd with = without;
+      Eigen::MatrixXd with = covarianceAtNewPose(without);
       DesignedPose pose = designedAt(candidate, with);
       const double merit = meritOf(with);
       if (merit < reached - kLeastGain) {
@@ -142,22 +138,24 @@ bool WeighingDesign::exchangePoses() {
 DesignedPose WeighingDesign::designedAt(std::size_t candidate, Eigen::MatrixXd& covariance) const {
   const PoseCandidate& at = candidates_[candidate];
   DesignedPose pose{candidate, {}};
-  if (at.orientation) {
-    observe(*at.orientation, 1.0, covariance);
+  if (at.tracked) {
+    observe(*at.tracked, 1.0, covariance);
   }
   while (!at.terms.empty() && pose.patterns.size() < task_.patterns_per_pose) {
     pose.patterns.push_back(PatternSearch(task_, at, covariance, weightsAt(covariance)).best());
-    observe(patternObservation(task_, at, pose.patterns.back()), 1.0, covariance);
+    observe(patternObservation(at, pose.patterns.back()), 1.0, covariance);
   }
   return pose;
 }
 
-std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) const {
+std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) {
   const Eigen::MatrixXd sensitivity = sensitivityOf(task_, covariance, weightsAt(covariance));
   std::vector<std::pair<double, std::size_t>> ranks;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     if (keepsDistance(c)) {
-      ranks.emplace_back(-visitSensitivity(task_, candidates_[c], sensitivity, 0.0).value, c);
+      const double value =
+          visitSensitivity(task_, candidates_[c], sensitivity, 0.0, eliminations_[c]).value;
+      ranks.emplace_back(-value, c);
     }
   }
   std::sort(ranks.begin(), ranks.end());

@@ -40,7 +40,7 @@ class WeighingDesign {
   /// The best patterns at a candidate, one after the other, for a covariance, which they shrink.
   DesignedPose designedAt(std::size_t candidate, Eigen::MatrixXd& covariance) const;
   /// Candidates that may join the poses and promise most to first order.
-  std::vector<std::size_t> promising(const Eigen::MatrixXd& covariance) const;
+  std::vector<std::size_t> promising(const Eigen::MatrixXd& covariance);
   bool keepsDistance(std::size_t candidate) const;
   Eigen::MatrixXd covariance() const;
   Eigen::VectorXd weightsAt(const Eigen::MatrixXd& covariance) const;
@@ -53,6 +53,7 @@ class WeighingDesign {
   std::function<bool()> is_time_up_;
   double exponent_;
   std::vector<DesignedPose> poses_;
+  std::vector<Eigen::MatrixXd> eliminations_;  ///< per candidate, of the errors of its readings
 };
 
 }  // namespace sac

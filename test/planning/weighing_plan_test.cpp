@@ -16,6 +16,8 @@
 #include "pose_candidates.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_problem.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
 #include "weighing_design.hpp"
 
@@ -176,36 +178,76 @@ TEST_F(WeighingPlan, RefusesATotalBelowOneCoil) {
   EXPECT_THROW(planPoses(problem_, options_), ConfigError);
 }
 
-TEST_F(WeighingPlan, LinearisesPatternsAsTheEstimationDoes) {
-  // With an effect that no current turns, and joints' readings that are not exact.
+/// Information of samples of one visit each, with their dense covariance: errors of the readings
+/// are common to all samples of a visit.
+Eigen::MatrixXd denseInformation(const CalibrationModel& model,
+                                 const std::vector<std::vector<Sample>>& visits,
+                                 const Eigen::VectorXd& x) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(x.size(), x.size());
+  for (const std::vector<Sample>& samples : visits) {
+    const EstimationOptions options;
+    EstimationProblem problem;
+    problem.model = &model;
+    problem.samples = &samples;
+    problem.observations = selectObservations(model.space(), samples, {Cycle::kRefine}, options);
+    problem.prior.x = x;
+    problem.prior.covariance = Eigen::MatrixXd::Zero(x.size(), x.size());
+    const ObservationEvaluator evaluator(problem, options);
+    const auto rows = static_cast<Eigen::Index>(3 * problem.observations.size());
+    Eigen::MatrixXd J(rows, x.size());
+    Eigen::MatrixXd of_readings(rows, 3);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
+    LinearizedObservation linear;
+    for (Eigen::Index n = 0; n < rows / 3; ++n) {
+      evaluator.linearize(static_cast<std::size_t>(n), evaluator.at(x), linear);
+      J.middleRows<3>(3 * n) = linear.jacobian;
+      of_readings.middleRows<3>(3 * n) =
+          linear.d_reading * samples.front().joint_stddev.asDiagonal();
+      covariance.diagonal().segment<3>(3 * n).setConstant(
+          evaluator.ownVariance(static_cast<std::size_t>(n)));
+    }
+    covariance += of_readings * of_readings.transpose();
+    information += J.transpose() * covariance.llt().solve(J);
+  }
+  return information;
+}
+
+// With an effect that no current turns, and readings of joints that are not exact.
+TEST_F(WeighingPlan, CountsWhatAVisitTellsWithTheErrorsOfItsReadings) {
   EffectSelection effects;
   effects["torque_bias"] = true;
   const CalibrationModel with_bias{ParameterSpace(nominal_, effects)};
   problem_.model = &with_bias;
   problem_.state = nominalState(with_bias.space(), {});
   options_.joint_stddev = {3e-4, 5e-4, 1e-3};
-  const DesignTask biased = [&] {
-    const std::vector<Eigen::Index> coordinates = plannedCoordinates(problem_);
-    DesignTask result;
-    result.known.setZero(with_bias.space().size(), with_bias.space().size());
-    result.reported = reportedDerivative(with_bias.space(), problem_.state.belief.x, coordinates);
-    result.joint_variance = options_.joint_stddev.cwiseAbs2();
-    return result;
-  }();
-  const PoseCandidate candidate = candidates(1, 3).front();
-  ASSERT_GE(candidate.coils.size(), 2U);
-  const Eigen::MatrixXd ours = designInformation(biased, {candidate}, {{0, {{{0, 1}, {1, -1}}}}});
-  // The same by the estimation itself.
-  std::vector<Sample> samples = visitSamples(problem_,
-                                             options_,
-                                             candidate.joint_position,
-                                             {{{candidate.coils[0], 1}, {candidate.coils[1], -1}}});
-  for (Sample& sample : samples) {
-    predictMeasurements({with_bias, problem_.state.belief.x}, sample);
+  const std::vector<PoseCandidate> chosen = candidates(50, 3);
+  const Eigen::Index count = with_bias.space().size();
+  DesignTask biased;
+  biased.known = 1e3 * Eigen::MatrixXd::Identity(count, count);
+  const std::vector<DesignedPose> design = randomDesign(chosen, biased, 12, 1);
+  std::vector<std::vector<Sample>> visits;
+  for (const DesignedPose& pose : design) {
+    const PoseCandidate& at = chosen[pose.candidate];
+    std::vector<CoilPattern> patterns;
+    for (const TermPattern& terms : pose.patterns) {
+      CoilPattern& pattern = patterns.emplace_back();
+      for (const SignedTerm& term : terms) {
+        pattern.push_back({at.coils[term.term], term.sign});
+      }
+    }
+    visits.push_back(visitSamples(problem_, options_, at.joint_position, patterns));
+    for (Sample& sample : visits.back()) {
+      predictMeasurements({with_bias, problem_.state.belief.x}, sample);
+    }
   }
-  problem_.held = &samples;
-  const Eigen::MatrixXd theirs = heldInformation(problem_, plannedCoordinates(problem_));
+  const Eigen::MatrixXd theirs =
+      biased.known + denseInformation(with_bias, visits, problem_.state.belief.x);
+  const Eigen::MatrixXd ours = designInformation(biased, chosen, design);
   EXPECT_LT((ours - theirs).norm(), 1e-9 * theirs.norm());
+  // The same with the errors of one pose beside the coordinates.
+  const Eigen::MatrixXd expected = covarianceOf(theirs);
+  const Eigen::MatrixXd at_pose = covarianceAtPose(biased, chosen, design, 4);
+  EXPECT_LT((at_pose.topLeftCorner(count, count) - expected).norm(), 1e-9 * expected.norm());
 }
 
 TEST(PatternBound, IsTheLargestOfAllPatterns) {
