@@ -50,7 +50,9 @@ double mapKernel(const std::array<double, 3>& length,
     const double chord = 2.0 * std::sin(0.5 * (a[joint] - b[joint])) / length[k];
     square += chord * chord;
   }
-  return std::exp(-0.5 * square);
+  // Matérn's of order 5/2.
+  const double root = std::sqrt(5.0 * square);
+  return (1.0 + root + root * root / 3.0) * std::exp(-root);
 }
 
 OrientationMap::OrientationMap(OrientationMapDescription description)

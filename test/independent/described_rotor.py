@@ -35,7 +35,8 @@ class DescribedRotor:
 
     def kernel(self, q):
         chords = 2.0 * np.sin(0.5 * (self.points - q)) / np.array(self.map["length"])
-        return np.exp(-0.5 * np.sum(chords**2, axis=1))
+        root = np.sqrt(5.0 * np.sum(chords**2, axis=1))
+        return (1.0 + root + root**2 / 3.0) * np.exp(-root)
 
     def unexplained(self, q):
         """Mean, variance of the smooth part and noise of the map's rotation vector."""
