@@ -1,25 +1,20 @@
 #include "revision_table.hpp"
 
-#include <QHeaderView>
 #include <QShowEvent>
 #include <QVBoxLayout>
 #include <utility>
 
+#include "choice_table.hpp"
 #include "spherical_actuator_calibration/ListRevisions.h"
 
 namespace sac {
 
 RevisionTable::RevisionTable(const ros::NodeHandle& node,
                              std::function<void(std::uint32_t)> restore)
-    : node_(node), restore_(new QPushButton), trouble_(new QLabel), table_(new QTableWidget(0, 5)) {
-  table_->setHorizontalHeaderLabels({"revision", "date (UTC)", "made by", "error", "drift"});
-  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  table_->horizontalHeader()->setStretchLastSection(true);
-  table_->verticalHeader()->hide();
-  table_->verticalHeader()->setDefaultSectionSize(20);
-  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
-  table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-  table_->setSelectionMode(QAbstractItemView::SingleSelection);
+    : node_(node),
+      restore_(new QPushButton),
+      trouble_(new QLabel),
+      table_(choiceTable({"revision", "date (UTC)", "made by", "error", "drift"})) {
   restore_->setToolTip("Put the chosen revision of the parameters back in force, as a new one");
   trouble_->setWordWrap(true);
   trouble_->setStyleSheet("color: #c62828;");

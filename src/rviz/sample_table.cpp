@@ -1,22 +1,16 @@
 #include "sample_table.hpp"
 
-#include <QHeaderView>
 #include <QVBoxLayout>
 #include <string>
 #include <utility>
 
+#include "choice_table.hpp"
+
 namespace sac {
 
 SampleTable::SampleTable(std::function<void(std::uint32_t)> remove)
-    : table_(new QTableWidget(0, 5)), remove_(new QPushButton) {
-  table_->setHorizontalHeaderLabels({"sample", "quantity", "residual", "of expected", "left out"});
-  table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  table_->horizontalHeader()->setStretchLastSection(true);
-  table_->verticalHeader()->hide();
-  table_->verticalHeader()->setDefaultSectionSize(20);
-  table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
-  table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-  table_->setSelectionMode(QAbstractItemView::SingleSelection);
+    : table_(choiceTable({"sample", "quantity", "residual", "of expected", "left out"})),
+      remove_(new QPushButton) {
   remove_->setToolTip("Take the chosen sample out of use; it stays in the session database");
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
