@@ -2,39 +2,50 @@
 
 #include <optional>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "estimated_part.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
 
-/// One used observation.
-struct Used {
-  std::size_t observation = 0;
-  WhitenedObservation whitened;
-};
+/// The observations that were used, at the solution. They are linearised whenever they are asked
+/// for: all of them at once would take a kilobyte each.
+class UsedObservations {
+ public:
+  UsedObservations(const EstimationProblem& problem,
+                   const CycleReport& report,
+                   const ChosenCoordinates& chosen,
+                   const EstimationOptions& options)
+      : evaluator_(problem, options),
+        point_(evaluator_.at(problem.prior.x)),
+        chosen_(chosen),
+        held_(chosen.others()),
+        used_(keptObservations(problem, report)) {}
 
-std::vector<Used> usedObservations(const EstimationProblem& problem,
-                                   const CycleReport& report,
-                                   const ChosenCoordinates& chosen,
-                                   const Eigen::VectorXd& x,
-                                   const EstimationOptions& options) {
-  const ObservationEvaluator evaluator(problem, options);
-  const std::vector<bool> held = chosen.others();
-  std::vector<Used> used;
-  const ModelPoint point = evaluator.at(x);
-  LinearizedObservation linear;
-  for (const std::size_t n : keptObservations(problem, report)) {
-    evaluator.linearize(n, point, linear);
-    used.push_back({n, {}});
-    whiten(
-        linear, whiteningOf(evaluator.covariance(n, linear, held)), chosen, used.back().whitened);
+  std::size_t size() const { return used_.size(); }
+
+  /// visit(observation, whitened) for each of them.
+  template <typename Visit>
+  void forEach(const Visit& visit) const {
+    LinearizedObservation linear;
+    WhitenedObservation whitened;
+    for (const std::size_t n : used_) {
+      evaluator_.linearize(n, point_, linear);
+      whiten(linear, whiteningOf(evaluator_.covariance(n, linear, held_)), chosen_, whitened);
+      visit(n, whitened);
+    }
   }
-  return used;
-}
+
+ private:
+  ObservationEvaluator evaluator_;
+  ModelPoint point_;
+  const ChosenCoordinates& chosen_;
+  std::vector<bool> held_;
+  std::vector<std::size_t> used_;
+};
 
 /// An observation as the fit without it sees it.
 struct LeftOut {
@@ -80,28 +91,24 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
       selectObservations(model.space(), samples, {report.cycle, report.coil}, options);
   problem.prior = after.belief;
   const ChosenCoordinates chosen(model.space().size(), coordinates);
-  const std::vector<Used> used = usedObservations(problem, report, chosen, after.belief.x, options);
+  const UsedObservations used(problem, report, chosen, options);
 
   InformationSum sum(priorInformation(report.open_directions, after.belief, coordinates));
-  for (const Used& item : used) {
-    sum.add(item.whitened);
-  }
-  const Eigen::LDLT<Eigen::MatrixXd> factor(sum.information());
-  const Eigen::MatrixXd covariance =
-      factor.solve(Eigen::MatrixXd::Identity(chosen.size(), chosen.size()));
+  used.forEach([&](std::size_t /*n*/, const WhitenedObservation& whitened) { sum.add(whitened); });
+  const Eigen::MatrixXd covariance = InformationFactor(sum.information()).inverse();
   const Eigen::VectorXd stddevs = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 
   std::vector<SampleInfluence> influences;
   influences.reserve(used.size());
-  for (const Used& item : used) {
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = item.whitened.timesTransposed(covariance);
-    const LeftOut left_out = leaveOut(item.whitened.times(gain), item.whitened.residual);
+  used.forEach([&](std::size_t observation, const WhitenedObservation& whitened) {
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = whitened.timesTransposed(covariance);
+    const LeftOut left_out = leaveOut(whitened.times(gain), whitened.residual);
     const auto largest = [&stddevs](const Eigen::VectorXd& change, Eigen::Index& place) {
       return change.cwiseAbs().cwiseQuotient(stddevs).maxCoeff(&place);
     };
     SampleInfluence influence;
-    influence.id = samples[problem.observations[item.observation].sample].id;
-    influence.quantity = problem.observations[item.observation].quantity;
+    influence.id = samples[problem.observations[observation].sample].id;
+    influence.quantity = problem.observations[observation].quantity;
     influence.leverage = left_out.leverage;
     Eigen::Index worst = 0;
     influence.largest_shift = largest(gain * left_out.predicted_residual, worst);
@@ -111,7 +118,7 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
     }
     influence.parameter = model.space().name(coordinates[static_cast<std::size_t>(worst)]);
     influences.push_back(influence);
-  }
+  });
   return influences;
 }
 

@@ -9,6 +9,7 @@
 
 #include "estimated_part.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
@@ -191,12 +192,10 @@ void Budget::sumKnowledge() {
 }
 
 std::vector<BudgetEntry> Budget::propagated() {
-  const auto size = static_cast<Eigen::Index>(chosen_.size());
   const Eigen::MatrixXd information = observed_.information() + known_;
   const Eigen::MatrixXd all = reportedJacobian(space_, belief_.x);
   const Eigen::MatrixXd chosen = all(Eigen::all, chosen_);
-  const Eigen::MatrixXd reported =
-      chosen * information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd reported = chosen * InformationFactor(information).inverse();
   std::vector<BudgetEntry> entries;
   for (const std::string& source : sources_) {
     const Eigen::VectorXd variance =

@@ -32,8 +32,8 @@ EffectCandidate candidateOf(const EffectLayout& layout,
   }
   candidate.unit = placed.unit;
   candidate.advice = adviceFor(placed.name);
+  candidate.first = first + begin;
   for (Eigen::Index n = begin; n < end; ++n) {
-    candidate.columns.push_back({{first + n, 1.0}});
     candidate.scales.push_back(layout.scale(n));
   }
   return candidate;
@@ -54,47 +54,32 @@ std::vector<EffectCandidate> candidatesOf(const EffectLayout& layout, Eigen::Ind
   return candidates;
 }
 
-/// Beside the common strength the first coil has no gain of its own: it is the strength that the
-/// other coils do not share.
-EffectCandidate firstCoil(const FurtherColumns& columns) {
-  ColumnSum own{{columns.first("strength_scale"), 1.0}};
-  const EffectLayout& layout = columns.model().space().effects();
-  for (Eigen::Index n = 0; n < layout.size(); ++n) {
-    if (layout.at(n).name == "coil_gains") {
-      own.emplace_back(columns.effect(n), -1.0);
-    }
-  }
-  return {"coil_1/gain", "1", adviceFor("coil_gains"), {own}, {1.0}};
-}
-
 }  // namespace
 
 std::vector<EffectCandidate> effectCandidates(const FurtherColumns& columns) {
   const ParameterSpace& own = columns.space();
   std::vector<EffectCandidate> candidates;
   for (EffectCandidate& one : candidatesOf(own.effects(), own.effect())) {
-    const Eigen::Index column = one.columns.front().front().first;
-    if (own.effects().statedVariance(column - own.effect()) > 0.0) {
+    if (own.effects().statedVariance(one.first - own.effect()) > 0.0) {
       one.advice = "it is more than is stated of it: measure it anew";
       candidates.push_back(std::move(one));
     }
   }
   const EffectLayout& further = columns.model().space().effects();
   for (EffectCandidate& one : candidatesOf(further, own.size())) {
-    const Eigen::Index column = one.columns.front().front().first;
     // What the description states is modelled in either.
-    if (columns.first(further.at(column - own.size()).name) >= own.size()) {
+    if (columns.first(further.at(one.first - own.size()).name) >= own.size()) {
       candidates.push_back(std::move(one));
     }
   }
-  if (columns.first("strength_scale") >= own.size() && columns.first("coil_gains") >= own.size()) {
-    candidates.push_back(firstCoil(columns));
+  if (columns.firstCoil() >= 0) {
+    candidates.push_back({"coil_1/gain", "1", adviceFor("coil_gains"), columns.firstCoil(), {1.0}});
   }
   for (std::size_t k = 0; k < own.joints(); ++k) {
     candidates.push_back({"joint_" + std::to_string(numberOf(k)) + "/scale",
                           "1",
                           "check the scale of that joint's sensor",
-                          {{{columns.scale(k), 1.0}}},
+                          columns.scale(k),
                           {1.0}});
   }
   return candidates;

@@ -1,25 +1,23 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "score_sums.hpp"
+#include "further_columns.hpp"
 
 namespace sac {
-
-/// A sum of columns, each times a factor.
-using ColumnSum = std::vector<std::pair<Eigen::Index, double>>;
 
 /// Columns that are tried together, as one thing that an estimate may lack.
 struct EffectCandidate {
   std::string name;
-  std::string unit;                ///< of its values
-  std::string advice;              ///< what to do where it is found, to follow a colon
-  std::vector<ColumnSum> columns;  ///< of each of its coordinates
-  std::vector<double> scales;      ///< of each value per coordinate
+  std::string unit;            ///< of its values
+  std::string advice;          ///< what to do where it is found, to follow a colon
+  Eigen::Index first = 0;      ///< of its columns, which follow each other
+  std::vector<double> scales;  ///< of each column's value per coordinate
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(scales.size()); }
 };
 
 /// All that may be there during a whole session: each vector, pole, coil and joint by itself. Of

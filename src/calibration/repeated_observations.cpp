@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
@@ -12,84 +13,117 @@ namespace {
 /// Share of the noise within which vectors are equal.
 constexpr double kEqual = 1e-3;
 
-/// What was measured, and a number that is nearly equal where it is.
-struct Measured {
-  std::array<double, 9> numbers{};
+/// A measurement by a number that is nearly equal where it is: what was measured is in its sample.
+struct Keyed {
   double key = 0.0;
-  double tolerance = 0.0;  ///< of each number
-  std::size_t place = 0;
+  std::uint32_t place = 0;  ///< among the observations
 };
 
 double stddevOf(double stated, double assumed) {
   return stated > 0.0 ? stated : assumed;
 }
 
-void setKey(Measured& measured) {
-  // Weights without a common measure: only equal vectors have equal keys, but for rare chance.
-  constexpr double kRatio = 0.7548776662466927;
-  double weight = 1.0;
-  for (const double number : measured.numbers) {
-    measured.key += weight * number;
-    weight *= kRatio;
-  }
-}
+/// The measurements of one quantity.
+class Measurements {
+ public:
+  using Numbers = std::array<double, 9>;
 
-/// Those of one quantity that noise would tell apart, by their keys.
-std::vector<Measured> measuredOf(const std::vector<Sample>& samples,
-                                 const std::vector<Observation>& observations,
-                                 Quantity quantity,
-                                 const EstimationOptions& options) {
-  constexpr double kStandsOut = 10.0;  // standard deviations
-  std::vector<Measured> all;
-  for (std::size_t place = 0; place < observations.size(); ++place) {
-    if (observations[place].quantity != quantity) {
-      continue;
-    }
-    const Sample& sample = samples[observations[place].sample];
-    Measured measured;
-    measured.place = place;
-    if (quantity == Quantity::kTorque) {
-      const double stddev = stddevOf(sample.torque_stddev, options.default_torque_stddev);
-      if (sample.torque.norm() < kStandsOut * stddev) {
-        continue;
+  Measurements(const std::vector<Sample>& samples,
+               const std::vector<Observation>& observations,
+               Quantity quantity,
+               const EstimationOptions& options)
+      : samples_(samples), observations_(observations), quantity_(quantity), options_(options) {}
+
+  /// Those that noise would tell apart, by their keys.
+  std::vector<Keyed> sorted() const {
+    std::vector<Keyed> all;
+    all.reserve(static_cast<std::size_t>(
+        std::count_if(observations_.begin(), observations_.end(), [&](const Observation& one) {
+          return one.quantity == quantity_;
+        })));
+    for (std::size_t place = 0; place < observations_.size(); ++place) {
+      const auto at = static_cast<std::uint32_t>(place);
+      if (observations_[place].quantity == quantity_ && standsOut(at)) {
+        all.push_back({keyOf(at), at});
       }
-      std::copy_n(sample.torque.data(), 3, measured.numbers.begin());
-      measured.tolerance = kEqual * stddev;
+    }
+    std::sort(all.begin(), all.end(), [](const Keyed& a, const Keyed& b) {
+      return a.key < b.key || (a.key == b.key && a.place < b.place);
+    });
+    return all;
+  }
+
+  bool areEqual(std::uint32_t a, std::uint32_t b) const {
+    const double most = std::min(tolerance(a), tolerance(b));
+    const Numbers of_a = numbers(a);
+    const Numbers of_b = numbers(b);
+    for (std::size_t k = 0; k < of_a.size(); ++k) {
+      if (std::abs(of_a[k] - of_b[k]) > most) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Of each number.
+  double tolerance(std::uint32_t place) const { return kEqual * stddev(sample(place)); }
+
+ private:
+  const Sample& sample(std::uint32_t place) const { return samples_[observations_[place].sample]; }
+
+  double stddev(const Sample& sample) const {
+    return quantity_ == Quantity::kTorque
+               ? stddevOf(sample.torque_stddev, options_.default_torque_stddev)
+               : stddevOf(sample.orientation_stddev, options_.default_orientation_stddev);
+  }
+
+  bool standsOut(std::uint32_t place) const {
+    constexpr double kStandsOut = 10.0;  // standard deviations
+    const Sample& sample = this->sample(place);
+    return quantity_ != Quantity::kTorque || sample.torque.norm() >= kStandsOut * stddev(sample);
+  }
+
+  Numbers numbers(std::uint32_t place) const {
+    const Sample& sample = this->sample(place);
+    Numbers numbers{};
+    if (quantity_ == Quantity::kTorque) {
+      std::copy_n(sample.torque.data(), 3, numbers.begin());
     } else {
-      std::copy_n(sample.R_stator_rotor.data(), 9, measured.numbers.begin());
-      measured.tolerance =
-          kEqual * stddevOf(sample.orientation_stddev, options.default_orientation_stddev);
+      std::copy_n(sample.R_stator_rotor.data(), 9, numbers.begin());
     }
-    setKey(measured);
-    all.push_back(measured);
+    return numbers;
   }
-  std::sort(all.begin(), all.end(), [](const Measured& a, const Measured& b) {
-    return a.key < b.key || (a.key == b.key && a.place < b.place);
-  });
-  return all;
-}
 
-bool areEqual(const Measured& a, const Measured& b) {
-  const double tolerance = std::min(a.tolerance, b.tolerance);
-  for (std::size_t k = 0; k < a.numbers.size(); ++k) {
-    if (std::abs(a.numbers[k] - b.numbers[k]) > tolerance) {
-      return false;
+  double keyOf(std::uint32_t place) const {
+    // Weights without a common measure: only equal vectors have equal keys, but for rare chance.
+    constexpr double kRatio = 0.7548776662466927;
+    double key = 0.0;
+    double weight = 1.0;
+    for (const double number : numbers(place)) {
+      key += weight * number;
+      weight *= kRatio;
     }
+    return key;
   }
-  return true;
-}
 
-void addRepeated(const std::vector<Measured>& by_key, std::vector<RepeatedObservation>& repeated) {
+  const std::vector<Sample>& samples_;
+  const std::vector<Observation>& observations_;
+  const Quantity quantity_;
+  const EstimationOptions& options_;
+};
+
+void addRepeated(const Measurements& measurements, std::vector<RepeatedObservation>& repeated) {
   constexpr double kSumOfWeights = 4.1;  // 1 / (1 − ratio)
+  const std::vector<Keyed> by_key = measurements.sorted();
   // Per measurement the first, by its key, that it is equal to; of that the earliest place.
-  std::vector<std::size_t> groups(by_key.size());
-  std::vector<std::size_t> first(by_key.size());
+  std::vector<std::uint32_t> groups(by_key.size());
+  std::vector<std::uint32_t> first(by_key.size());
   for (std::size_t n = 0; n < by_key.size(); ++n) {
-    groups[n] = n;
+    groups[n] = static_cast<std::uint32_t>(n);
     first[n] = by_key[n].place;
-    const double reach = kSumOfWeights * by_key[n].tolerance;
+    const double reach = kSumOfWeights * measurements.tolerance(by_key[n].place);
     for (std::size_t m = n; m-- > 0 && by_key[n].key - by_key[m].key <= reach;) {
-      if (areEqual(by_key[n], by_key[m])) {
+      if (measurements.areEqual(by_key[n].place, by_key[m].place)) {
         groups[n] = groups[m];
         first[groups[n]] = std::min(first[groups[n]], by_key[n].place);
         break;
@@ -117,7 +151,7 @@ std::vector<RepeatedObservation> repeatedObservations(const std::vector<Sample>&
                                                       const EstimationOptions& options) {
   std::vector<RepeatedObservation> repeated;
   for (const Quantity quantity : {Quantity::kOrientation, Quantity::kTorque}) {
-    addRepeated(measuredOf(samples, observations, quantity, options), repeated);
+    addRepeated(Measurements(samples, observations, quantity, options), repeated);
   }
   std::sort(repeated.begin(), repeated.end(), [](const auto& a, const auto& b) {
     return a.place < b.place;

@@ -1,7 +1,7 @@
 #include "score_sums.hpp"
 
 #include <algorithm>
-#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
@@ -10,20 +10,6 @@
 
 namespace sac {
 namespace {
-
-/// The effects that an actuator can have and the problem does not model.
-EffectSelection missingEffects(const ParameterSpace& space) {
-  EffectSelection missing;
-  for (const std::string& effect : effectNames()) {
-    const std::vector<PlacedEffect>& own = space.effects().effects();
-    const bool is_modelled = std::any_of(
-        own.begin(), own.end(), [&](const PlacedEffect& one) { return one.name == effect; });
-    if (!is_modelled && canHaveEffect(space.nominal(), effect)) {
-      missing[effect] = true;
-    }
-  }
-  return missing;
-}
 
 /// Observations [begin, end) that nothing separates in time: those of a dwell that share errors, or
 /// of a sample.
@@ -63,9 +49,18 @@ std::vector<Unit> unitsOf(const EstimationProblem& problem, const SharedErrorMod
   return units;
 }
 
-EstimationProblem withModel(EstimationProblem problem, const CalibrationModel& model) {
-  problem.model = &model;
-  return problem;
+/// Per further column the first one of those that are tried with it, counted from 0.
+std::vector<Eigen::Index> groupsOf(const FurtherColumns& columns,
+                                   const std::vector<EffectCandidate>& effects) {
+  const Eigen::Index P = columns.space().size();
+  std::vector<Eigen::Index> groups(static_cast<std::size_t>(columns.size() - P));
+  std::iota(groups.begin(), groups.end(), 0);
+  for (const EffectCandidate& effect : effects) {
+    for (Eigen::Index n = std::max(effect.first, P); n < effect.first + effect.size(); ++n) {
+      groups[static_cast<std::size_t>(n - P)] = effect.first - P;
+    }
+  }
+  return groups;
 }
 
 /// Linearises and whitens observations in all columns at the solution.
@@ -79,34 +74,37 @@ class Summation {
         estimate_(estimate),
         columns_(columns),
         has_effects_(columns.space().effects().size() > 0),
-        without_effects_(has_effects_ ? EstimationProblem() : withModel(problem, columns.model())),
-        evaluator_(has_effects_ ? problem : without_effects_, options),
+        evaluator_(problem, has_effects_ ? *problem.model : columns.model(), options),
         shared_(groupByDwell(problem, options)),
         further_point_(columns.model(), furtherCoordinates()),
         point_(has_effects_ ? evaluator_.at(estimate.belief.x) : further_point_),
-        every_(ChosenCoordinates::all(columns.size())),
-        dwell_(columns.size()) {}
+        every_(ChosenCoordinates::all(has_effects_ ? columns.space().size() : columns.scale(0))),
+        strength_(columns.first("strength_scale")),
+        gains_(columns.first("coil_gains")),
+        dwell_(columns.size()) {
+    whitened_.jacobian.resize(3, columns.size());
+  }
 
   std::vector<Unit> units() const { return unitsOf(problem_, shared_); }
 
   /// Id of the last sample of a unit.
   std::uint32_t last(const Unit& unit) const { return sampleOf(problem_, unit.end - 1).id; }
 
-  void add(const Unit& unit, InformationSum& sum) {
+  void add(const Unit& unit, ScoreSum& sum) {
     const bool is_shared = shared_.shares[unit.begin];
     dwell_.begin();
     for (std::size_t n = unit.begin; n < unit.end; ++n) {
       if (estimate_.residuals[n].rejected) {
         continue;
       }
-      linearize(n);
+      evaluator_.linearize(n, point_, linear_);
       if (!is_shared) {
-        whiten(all_, whiteningOf(evaluator_.noise(n, linear_)), every_, whitened_);
+        whitenAll(n, whiteningOf(evaluator_.noise(n, linear_)));
         sum.add(whitened_);
         continue;
       }
       const Eigen::Matrix3d whitening = whiteningOf(evaluator_.ownNoise(n, linear_));
-      whiten(all_, whitening, every_, whitened_);
+      whitenAll(n, whitening);
       dwell_.add(whitened_, whitening * evaluator_.sharedErrors(n, linear_));
     }
     if (is_shared) {
@@ -124,37 +122,56 @@ class Summation {
     return x;
   }
 
-  void linearize(std::size_t n) {
-    evaluator_.linearize(n, point_, linear_);
+  /// Of what was linearised last.
+  void whitenAll(std::size_t n, const Eigen::Matrix3d& whitening) {
+    whiten(linear_, whitening, every_, whitened_);
     const Sample& sample = sampleOf(problem_, n);
-    const ParameterSpace& space = columns_.space();
-    all_.residual = linear_.residual;
-    all_.columns = linear_.columns;
-    all_.jacobian.resize(3, columns_.size());
-    all_.jacobian.leftCols(linear_.jacobian.cols()) = linear_.jacobian;
     if (has_effects_) {
-      addFurther(n, sample);
+      addFurther(n, sample, whitening);
     }
-    for (std::size_t k = 0; k < space.joints(); ++k) {
-      const Eigen::Index column = columns_.scale(k);
-      all_.jacobian.col(column) = sample.joint_position[static_cast<Eigen::Index>(k)] *
-                                  linear_.jacobian.col(space.joint(k));
-      all_.columns.push_back(column);
+    for (std::size_t k = 0; k < columns_.space().joints(); ++k) {
+      const double reading = sample.joint_position[static_cast<Eigen::Index>(k)];
+      append(columns_.scale(k),
+             reading * (whitening * linear_.jacobian.col(columns_.space().joint(k))));
+    }
+    if (columns_.firstCoil() >= 0) {
+      addFirstCoil();
     }
   }
 
-  void addFurther(std::size_t n, const Sample& sample) {
+  void append(Eigen::Index column, const Eigen::Vector3d& whitened) {
+    whitened_.jacobian.col(static_cast<Eigen::Index>(whitened_.columns.size())) = whitened;
+    whitened_.columns.push_back(column);
+  }
+
+  void addFurther(std::size_t n, const Sample& sample, const Eigen::Matrix3d& whitening) {
     if (problem_.observations[n].quantity == Quantity::kOrientation) {
       further_point_.orientationResidual(sample, &further_);
     } else {
       further_point_.torqueResidual(sample, evaluator_.excitations(n), &further_);
     }
-    const Eigen::Index effects = columns_.model().space().effects().size();
-    all_.jacobian.middleCols(columns_.effect(0), effects) = further_.rightCols(effects);
-    for (Eigen::Index p = columns_.effect(0); p < columns_.scale(0); ++p) {
-      if (!all_.jacobian.col(p).isZero(0.0)) {
-        all_.columns.push_back(p);
+    const Eigen::Index first = columns_.model().space().effect();
+    for (Eigen::Index e = 0; e < columns_.model().space().effects().size(); ++e) {
+      if (!further_.col(first + e).isZero(0.0)) {
+        append(columns_.effect(e), whitening * further_.col(first + e));
       }
+    }
+  }
+
+  /// The common strength less that of all other coils.
+  void addFirstCoil() {
+    const Eigen::Index end = gains_ + static_cast<Eigen::Index>(columns_.space().coils()) - 1;
+    Eigen::Vector3d column = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < whitened_.columns.size(); ++k) {
+      const Eigen::Index p = whitened_.columns[k];
+      if (p == strength_) {
+        column += whitened_.jacobian.col(static_cast<Eigen::Index>(k));
+      } else if (p >= gains_ && p < end) {
+        column -= whitened_.jacobian.col(static_cast<Eigen::Index>(k));
+      }
+    }
+    if (!column.isZero(0.0)) {
+      append(columns_.firstCoil(), column);
     }
   }
 
@@ -162,72 +179,70 @@ class Summation {
   const Estimate& estimate_;
   const FurtherColumns& columns_;
   bool has_effects_;  ///< of its own
-  /// With the further columns in its model; where it has no effects that is the problem itself.
-  EstimationProblem without_effects_;
+  /// With the further columns in its model where the problem models no effects.
   ObservationEvaluator evaluator_;
   SharedErrorModel shared_;
   ModelPoint further_point_;
   ModelPoint point_;
   ChosenCoordinates every_;
+  Eigen::Index strength_;  ///< column, or −1
+  Eigen::Index gains_;     ///< first column, or −1
   DwellSum dwell_;
   // Storage that is reused.
-  LinearizedObservation linear_;  ///< in the coordinates of the problem
-  LinearizedObservation all_;     ///< in all columns
-  WhitenedObservation whitened_;
+  LinearizedObservation linear_;  ///< as the evaluator does
+  WhitenedObservation whitened_;  ///< in all columns
   ResidualJacobian further_;
 };
 
-}  // namespace
-
-FurtherColumns::FurtherColumns(const EstimationProblem& problem)
-    : own_(problem.model->space()), model_(ParameterSpace(own_.nominal(), missingEffects(own_))) {}
-
-Eigen::Index FurtherColumns::first(const std::string& effect) const {
-  for (const PlacedEffect& placed : own_.effects().effects()) {
-    if (placed.name == effect) {
-      return own_.effect() + placed.first;
-    }
+ScoreSums::Later laterPart(const ScoreSum& sum, const std::vector<StepCandidate>& steps) {
+  Eigen::Index size = 0;
+  for (const StepCandidate& step : steps) {
+    size += step.count;
   }
-  for (const PlacedEffect& placed : model_.space().effects().effects()) {
-    if (placed.name == effect) {
-      return this->effect(placed.first);
+  ScoreSums::Later later;
+  later.crossed.resize(sum.coordinates(), size);
+  later.information.setZero(size, size);
+  later.gradient.resize(size);
+  Eigen::Index first = 0;
+  for (const StepCandidate& step : steps) {
+    for (Eigen::Index a = 0; a < step.count; ++a) {
+      later.crossed.col(first + a) = sum.crossed(step.first + a);
+      later.gradient[first + a] = sum.gradient(step.first + a);
+      for (Eigen::Index b = 0; b < step.count; ++b) {
+        later.information(first + a, first + b) = sum.between(step.first + a, step.first + b);
+      }
     }
+    first += step.count;
   }
-  return -1;
+  return later;
 }
+
+}  // namespace
 
 ScoreSums scoreSums(const EstimationProblem& problem,
                     const Estimate& estimate,
                     const EstimationOptions& options,
                     const FurtherColumns& columns,
-                    std::vector<Eigen::Index> stepped) {
+                    const std::vector<EffectCandidate>& effects,
+                    const std::vector<StepCandidate>& steps) {
   // More times would cost more than what they find: between two of them little is lost.
   constexpr std::size_t kMostParts = 48;
   Summation summation(problem, estimate, options, columns);
   const std::vector<Unit> units = summation.units();
   const std::size_t parts = std::min(kMostParts, units.size());
-  const Eigen::Index P = columns.space().size();
-  InformationSum sum(columns.size());
-  ScoreSums sums;
-  sums.stepped = std::move(stepped);
+  ScoreSums sums{ScoreSum(columns.space().size(), groupsOf(columns, effects)), {}};
   // From the end, so that what is summed up so far is what is later.
   for (std::size_t part = parts; part-- > 0;) {
     const std::size_t begin = part * units.size() / parts;
     const std::size_t end = (part + 1) * units.size() / parts;
     for (std::size_t u = begin; u < end; ++u) {
-      summation.add(units[u], sum);
+      summation.add(units[u], sums.all);
     }
     if (part > 0) {  // from the beginning on nothing is a step
-      const Eigen::MatrixXd rows = sum.information(sums.stepped);
-      sums.later.push_back({summation.last(units[begin - 1]),
-                            rows.leftCols(P),
-                            rows(Eigen::all, sums.stepped),
-                            sum.gradient()(sums.stepped)});
+      sums.later.push_back(laterPart(sums.all, steps));
+      sums.later.back().after = summation.last(units[begin - 1]);
     }
   }
-  std::reverse(sums.later.begin(), sums.later.end());
-  sums.information = sum.information();
-  sums.gradient = sum.gradient();
   return sums;
 }
 

@@ -11,7 +11,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "coordinate_elimination.hpp"
 #include "effect_candidates.hpp"
+#include "score_sums.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
@@ -37,10 +39,20 @@ Score scoreOf(const Eigen::MatrixXd& information,
               const Eigen::VectorXd& before,
               double unobservable_stddev) {
   constexpr double kLeastShare = 1e-5;  // less is left by rounding
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(information);
   const double least =
       std::max(kLeastShare * before.maxCoeff(), 1.0 / (unobservable_stddev * unobservable_stddev));
   Score score;
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (factor.info() == Eigen::Success) {
+    score.covariance = factor.solve(Eigen::MatrixXd::Identity(gradient.size(), gradient.size()));
+    if (score.covariance.trace() * least < 1.0) {  // no eigenvalue is less
+      score.value = -score.covariance * gradient;
+      score.square = -gradient.dot(score.value);
+      score.freedom = static_cast<int>(gradient.size());
+      return score;
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(information);
   score.value = Eigen::VectorXd::Zero(gradient.size());
   score.covariance = Eigen::MatrixXd::Zero(gradient.size(), gradient.size());
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
@@ -57,75 +69,6 @@ Score scoreOf(const Eigen::MatrixXd& information,
   return score;
 }
 
-/// What the coordinates can make up for: the covariance that they have from observations and what
-/// was known of them, and the gradient of all of it.
-class Elimination {
- public:
-  Elimination(const EstimationProblem& problem,
-              const Estimate& estimate,
-              const EstimationOptions& options,
-              const ScoreSums& sums) {
-    const ParameterSpace& space = problem.model->space();
-    const Eigen::Index P = space.size();
-    Eigen::MatrixXd information = sums.information.topLeftCorner(P, P);
-    gradient_ = sums.gradient.head(P);
-    for (const Eigen::Index p : problem.free) {
-      const double stated =
-          p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-      if (stated > 0.0) {
-        information(p, p) += 1.0 / stated;
-        gradient_[p] += estimate.belief.x[p] / stated;
-      }
-    }
-    covariance_ = Eigen::MatrixXd::Zero(P, P);
-    const double open = options.unobservable_stddev * options.unobservable_stddev;
-    eliminate(problem, information, open);
-  }
-
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Where the coordinates would go.
-  Eigen::VectorXd step() const { return -covariance_ * gradient_; }
-
- private:
-  /// `open`: variance of a free coordinate beside what the observations tell of it, where it stays
-  /// near where it is.
-  void eliminate(const EstimationProblem& problem,
-                 const Eigen::MatrixXd& information,
-                 double open) {
-    Eigen::MatrixXd known = problem.prior.covariance;
-    for (const Eigen::Index p : problem.free) {
-      known.row(p).setZero();
-      known.col(p).setZero();
-      known(p, p) = open;
-    }
-    std::vector<Eigen::Index> uncertain;
-    for (Eigen::Index p = 0; p < known.rows(); ++p) {
-      const bool is_free = std::binary_search(problem.free.begin(), problem.free.end(), p);
-      if (is_free || (known(p, p) > 0.0 && information(p, p) > 0.0)) {
-        uncertain.push_back(p);
-      }
-    }
-    Eigen::MatrixXd own = information(uncertain, uncertain);
-    if (uncertain == problem.free) {
-      own.diagonal().array() += 1.0 / open;
-      const Eigen::MatrixXd inverse =
-          own.llt().solve(Eigen::MatrixXd::Identity(own.rows(), own.cols()));
-      covariance_(uncertain, uncertain) = inverse;
-      return;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(known(uncertain, uncertain));
-    const Eigen::MatrixXd root =
-        spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    Eigen::MatrixXd inner = root.transpose() * own * root;
-    inner.diagonal().array() += 1.0;
-    const Eigen::MatrixXd inverse = root * inner.llt().solve(root.transpose());
-    covariance_(uncertain, uncertain) = inverse;
-  }
-
-  Eigen::MatrixXd covariance_;
-  Eigen::VectorXd gradient_;
-};
-
 /// A finding with what belongs to it.
 struct Finding {
   std::string name;
@@ -134,8 +77,8 @@ struct Finding {
   std::vector<double> scales;
   bool is_step = false;
   Score score = {};
-  double probability = 1.0;    ///< of this test alone
-  Eigen::VectorXd shift = {};  ///< of the coordinates, were it modelled
+  double probability = 1.0;      ///< of this test alone, 1 where nobody would wonder
+  Eigen::VectorXd crossed = {};  ///< its column's with the coordinates
 };
 
 /// "(0.52, 0.48, -0.31) ± (0.07, 0.06, 0.06) mrad"
@@ -182,16 +125,6 @@ std::array<Stream, 3> streamsOf(const Estimate& estimate) {
   return streams;
 }
 
-std::vector<Eigen::Index> steppedColumns(const std::vector<StepCandidate>& steps) {
-  std::vector<Eigen::Index> columns;
-  for (const StepCandidate& step : steps) {
-    for (Eigen::Index k = 0; k < step.count; ++k) {
-      columns.push_back(step.first + k);
-    }
-  }
-  return columns;
-}
-
 /// All score tests of one estimate.
 class Tests {
  public:
@@ -201,10 +134,11 @@ class Tests {
       : problem_(problem),
         estimate_(estimate),
         options_(options),
-        columns_(problem),
+        columns_(*problem.model),
+        effects_(effectCandidates(columns_)),
         steps_(stepCandidates(columns_)),
-        sums_(scoreSums(problem, estimate, options, columns_, steppedColumns(steps_))),
-        elimination_(problem, estimate, options, sums_),
+        sums_(scoreSums(problem, estimate, options, columns_, effects_, steps_)),
+        elimination_(problem, estimate, options, sums_.all),
         streams_(streamsOf(estimate)) {}
 
   std::optional<SingleEffect> strongest() {
@@ -234,63 +168,63 @@ class Tests {
 
  private:
   void tryEffects() {
-    const std::vector<EffectCandidate> candidates = effectCandidates(columns_);
-    const Eigen::Index P = columns_.space().size();
-    // Candidates come after the coordinates, but for those whose size is stated.
-    const Eigen::Index first = columns_.space().effect();
-    const auto count = columns_.size() - first;
-    const Eigen::MatrixXd crossed = sums_.information.block(first, 0, count, P);
-    const Eigen::MatrixXd spread = crossed * elimination_.covariance();
-    Eigen::MatrixXd left = sums_.information.bottomRightCorner(count, count);
-    left.noalias() -= spread * crossed.transpose();
-    const Eigen::VectorXd gradient = sums_.gradient.tail(count) + crossed * elimination_.step();
-    for (const EffectCandidate& candidate : candidates) {
-      const auto size = static_cast<Eigen::Index>(candidate.columns.size());
-      Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-      Eigen::VectorXd own = Eigen::VectorXd::Zero(size);
-      Eigen::VectorXd before = Eigen::VectorXd::Zero(size);
-      Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(P, size);
+    for (const EffectCandidate& candidate : effects_) {
+      const Eigen::Index size = candidate.size();
+      Eigen::MatrixXd crossed(sums_.all.coordinates(), size);
+      Eigen::MatrixXd information(size, size);
+      Eigen::VectorXd gradient(size);
       for (Eigen::Index a = 0; a < size; ++a) {
-        for (const auto& [n, factor] : candidate.columns[static_cast<std::size_t>(a)]) {
-          own[a] += factor * gradient[n - first];
-          before[a] += factor * factor * sums_.information(n, n);
-          shifts.col(a) -= factor * spread.row(n - first).transpose();
-          for (Eigen::Index b = 0; b < size; ++b) {
-            for (const auto& [m, other] : candidate.columns[static_cast<std::size_t>(b)]) {
-              information(a, b) += factor * other * left(n - first, m - first);
-            }
-          }
+        crossed.col(a) = sums_.all.crossed(candidate.first + a);
+        gradient[a] = sums_.all.gradient(candidate.first + a);
+        for (Eigen::Index b = 0; b < size; ++b) {
+          information(a, b) = sums_.all.between(candidate.first + a, candidate.first + b);
         }
       }
+      const Eigen::MatrixXd halves = elimination_.half(crossed);
       Finding finding{candidate.name, candidate.unit, candidate.advice, candidate.scales};
-      finding.score = scoreOf(information, own, before, options_.unobservable_stddev);
-      finding.shift = shifts * finding.score.value;
+      finding.score = scoreAfter(halves, information, gradient);
       judge(finding);
       if (finding.score.freedom > 0) {
+        finding.crossed = crossed * finding.score.value;
         findings_.push_back(std::move(finding));
       }
     }
   }
 
+  /// Of k columns once the coordinates have made up for what they can. `halves`: of the columns;
+  /// `information` and `gradient`: of them before.
+  template <typename Halves, typename Information, typename Gradient>
+  Score scoreAfter(const Halves& halves,
+                   const Information& information,
+                   const Gradient& gradient) const {
+    return scoreOf(information - halves.transpose().lazyProduct(halves),
+                   gradient - halves.transpose() * elimination_.halfGradient(),
+                   information.diagonal(),
+                   options_.unobservable_stddev);
+  }
+
   /// The most significant step of each kind.
   void trySteps() {
     std::vector<Finding> best(steps_.size());
+    Eigen::MatrixXd crossed;
+    Eigen::MatrixXd halves;
     for (const ScoreSums::Later& later : sums_.later) {
-      const Eigen::MatrixXd spread = later.crossed * elimination_.covariance();
-      const Eigen::MatrixXd left = later.information - spread * later.crossed.transpose();
-      const Eigen::VectorXd gradient = later.gradient + later.crossed * elimination_.step();
+      // From one time to the next few coils are measured, and all others stay as they were.
+      halves = crossed.size() == 0
+                   ? elimination_.half(later.crossed)
+                   : Eigen::MatrixXd(halves + elimination_.half(later.crossed - crossed));
+      crossed = later.crossed;
       Eigen::Index first = 0;
       for (std::size_t n = 0; n < steps_.size(); ++n) {
         const Eigen::Index count = steps_[n].count;
         Finding finding;
-        finding.score = scoreOf(left.block(first, first, count, count),
-                                gradient.segment(first, count),
-                                later.information.diagonal().segment(first, count),
-                                options_.unobservable_stddev);
+        finding.score = scoreAfter(halves.middleCols(first, count),
+                                   later.information.block(first, first, count, count),
+                                   later.gradient.segment(first, count));
         judge(finding);
-        if (finding.score.freedom > 0 && finding.probability < best[n].probability) {
+        if (finding.probability < 1.0 && finding.probability <= best[n].probability) {
           finding.name = steps_[n].name + " after sample " + std::to_string(later.after);
-          finding.shift = -spread.middleRows(first, count).transpose() * finding.score.value;
+          finding.crossed = later.crossed.middleCols(first, count) * finding.score.value;
           best[n] = std::move(finding);
         }
         first += count;
@@ -313,7 +247,9 @@ class Tests {
     if (finding.score.freedom > 0) {
       ++tests_;
       const double square = finding.score.square / noiseWithout(finding.score.square);
-      finding.probability = chiSquareProbability(finding.score.freedom, square);
+      if (square > finding.score.freedom) {  // three of ten times chance shows as much
+        finding.probability = chiSquareProbability(finding.score.freedom, square);
+      }
     }
   }
 
@@ -344,7 +280,7 @@ class Tests {
         best.name.c_str(),
         valueInWords(best, std::sqrt(noiseWithout(best.score.square))).c_str(),
         std::max(probability, std::numeric_limits<double>::min()),
-        mostShift(best.shift),
+        mostShift(elimination_.covarianceTimes(best.crossed)),
         best.advice.c_str(),
         others.c_str(),
         others.empty() ? "" : ".");
@@ -366,9 +302,10 @@ class Tests {
   const Estimate& estimate_;
   const EstimationOptions& options_;
   FurtherColumns columns_;
+  std::vector<EffectCandidate> effects_;
   std::vector<StepCandidate> steps_;
   ScoreSums sums_;
-  Elimination elimination_;
+  CoordinateElimination elimination_;
   std::array<Stream, 3> streams_;
   std::vector<Finding> findings_;
   std::size_t tests_ = 0;

@@ -8,10 +8,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "information_factor.hpp"
 #include "observability.hpp"
 #include "observed_information.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {

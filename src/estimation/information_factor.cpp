@@ -1,4 +1,4 @@
-#include "information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,6 +15,18 @@ constexpr std::size_t kLargestIsland = 16;
 
 // Of a coordinate, while islands are found.
 enum State { kOpen, kBorder, kTaken };
+
+/// Whether columns have something at some places.
+bool touches(const Eigen::MatrixXd& columns, const std::vector<Eigen::Index>& places) {
+  return std::any_of(places.begin(), places.end(), [&](Eigen::Index p) {
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      if (columns(p, k) != 0.0) {
+        return true;
+      }
+    }
+    return false;
+  });
+}
 
 }  // namespace
 
@@ -41,6 +53,7 @@ bool InformationFactor::factorise(const Eigen::MatrixXd& information, const Eige
       return false;
     }
     const Eigen::MatrixXd crossed = information(island.places, border_);
+    island.half = factor.matrixL().solve(Eigen::MatrixXd::Identity(size, size));
     island.inverse = factor.solve(Eigen::MatrixXd::Identity(size, size));
     island.to_border = factor.solve(crossed);
     rest.noalias() -= crossed.transpose() * island.to_border;
@@ -93,7 +106,7 @@ void InformationFactor::takeIsland(const Eigen::MatrixXd& information, std::size
       }
     }
   }
-  islands_.push_back({std::move(places), {}, {}});
+  islands_.push_back({std::move(places), {}, {}, {}});
 }
 
 Eigen::VectorXd InformationFactor::solve(const Eigen::VectorXd& right) const {
@@ -107,6 +120,24 @@ Eigen::VectorXd InformationFactor::solve(const Eigen::VectorXd& right) const {
   for (const Island& island : islands_) {
     result(island.places) = island.inverse * right(island.places) - island.to_border * of_border;
   }
+  return result;
+}
+
+Eigen::MatrixXd InformationFactor::half(const Eigen::MatrixXd& columns) const {
+  if (islands_.empty()) {
+    return rest_.matrixL().solve(columns);
+  }
+  Eigen::MatrixXd of_border = columns(border_, Eigen::all);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+  for (const Island& island : islands_) {
+    if (touches(columns, island.places)) {
+      const Eigen::MatrixXd own = columns(island.places, Eigen::all);
+      of_border.noalias() -= island.to_border.transpose() * own;
+      result(island.places, Eigen::all) = island.half * own;
+    }
+  }
+  rest_.matrixL().solveInPlace(of_border);
+  result(border_, Eigen::all) = of_border;
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {

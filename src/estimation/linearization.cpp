@@ -8,8 +8,10 @@
 namespace sac {
 
 ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
+                                           const CalibrationModel& model,
                                            const EstimationOptions& options)
     : problem_(problem),
+      model_(model),
       options_(options),
       uncertain_(static_cast<std::size_t>(problem.prior.covariance.rows())) {
   for (std::size_t p = 0; p < uncertain_.size(); ++p) {
@@ -49,7 +51,7 @@ Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
   for (std::size_t k = 0; linear != nullptr && k < kJoints; ++k) {
     // A joint sensor's error acts as an offset of that joint does.
     linear->d_reading.col(static_cast<Eigen::Index>(k)) =
-        linear->jacobian.col(problem_.model->space().joint(k));
+        linear->jacobian.col(model_.space().joint(k));
   }
   return residual;
 }
@@ -57,7 +59,7 @@ Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
 void ObservationEvaluator::linearize(std::size_t observation,
                                      const ModelPoint& point,
                                      LinearizedObservation& out) const {
-  const ParameterSpace& space = problem_.model->space();
+  const ParameterSpace& space = model_.space();
   const bool is_torque = problem_.observations[observation].quantity == Quantity::kTorque;
   out.residual = evaluate(observation, point, &out);
   out.columns.clear();

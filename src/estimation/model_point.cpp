@@ -14,15 +14,26 @@
 namespace sac {
 namespace {
 
-/// A rotation by the effects, e^{v̂}, and ∂v/∂their values.
+/// What the effects do that act so. `columns`: ∂/∂their values.
+Eigen::Vector3d applied(const Eigen::Matrix3Xd& columns, const ActingEffects& acting) {
+  // Of a matrix without columns Eigen forms addresses that are none.
+  return acting.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                        : Eigen::Vector3d(columns * acting.values);
+}
+
+/// A rotation by the effects that act on it, e^{v̂}, and ∂v/∂their values.
 struct EffectRotation {
-  explicit EffectRotation(const Eigen::Matrix3Xd& columns, const Eigen::VectorXd& values)
-      : d_vector(columns), vector(columns * values), rotation(rotationExp(vector)) {}
+  EffectRotation(const Eigen::Matrix3Xd& columns, const ActingEffects& acting)
+      : d_vector(columns), vector(applied(columns, acting)), rotation(rotationExp(vector)) {}
 
   Eigen::Matrix3Xd d_vector;
   Eigen::Vector3d vector;
   Eigen::Matrix3d rotation;
 };
+
+Eigen::Matrix3d minus() {
+  return -Eigen::Matrix3d::Identity();
+}
 
 /// left · ∂ξ/∂offset of each joint. An error of a reading acts as an offset of that joint does.
 Eigen::Matrix3d offsetColumns(const JointPoint::Linearized& linear, const Eigen::Matrix3d& left) {
@@ -31,11 +42,6 @@ Eigen::Matrix3d offsetColumns(const JointPoint::Linearized& linear, const Eigen:
     columns.col(k) = left * linear.d_coordinates.col(ParameterSpace::kPerJoint * k);
   }
   return columns;
-}
-
-/// ∂ξ/∂values of a rotation vector v that acts by its inverse, e^{−v̂}, and from the left.
-Eigen::Matrix3Xd inverseColumns(const EffectRotation& rotation) {
-  return -leftJacobian(-rotation.vector) * rotation.d_vector;
 }
 
 /// One excited coil while the torques of its pairs are summed up.
@@ -58,17 +64,16 @@ struct ModelPoint::Parts {
   Eigen::Matrix3d nominalTurn(const Eigen::Vector3d& reading) const;
   Eigen::Matrix3d turnedLeft(const Eigen::Vector3d& reading) const;
   Eigen::Matrix3d turnedRight(const Eigen::Matrix3d& R_stator_rotor) const;
-  Eigen::Matrix3Xd readingColumns(const Eigen::Matrix3d& d_rotation,
-                                  const Eigen::Matrix3d& d_offsets,
-                                  const Eigen::Matrix3d& R_stator_rotor,
-                                  const Eigen::Matrix3Xd& d_reading) const;
+  void addReadingColumns(const Eigen::Matrix3d& d_rotation,
+                         const Eigen::Matrix3d& d_offsets,
+                         const Eigen::Matrix3d& R_stator_rotor,
+                         const Eigen::Matrix3Xd& d_reading,
+                         ResidualJacobian& jacobian) const;
   Eigen::Vector3d corrected(const Eigen::Vector3d& reading, const Eigen::Matrix3Xd& columns) const;
   CoilTerms coilTerms(Excitations excitations, const Eigen::Matrix3d& R_rotor_stator) const;
   Eigen::Vector3d pairTorques(const CoilTerms& terms) const;
-  Eigen::Vector3d linearizePairTorques(CoilTerms& terms,
-                                       ResidualJacobian& jacobian,
-                                       Eigen::Matrix3Xd& d_effects) const;
-  Eigen::Vector3d torqueInRotor(const Eigen::Vector3d& measured, Eigen::Matrix3Xd* d_effects) const;
+  Eigen::Vector3d linearizePairTorques(CoilTerms& terms, ResidualJacobian& jacobian) const;
+  Eigen::Vector3d torqueInRotor(const Eigen::Vector3d& measured, ResidualJacobian* jacobian) const;
 
   /// Torque per ampere of a pair by its strength, that of the coil apart.
   double poleStrength(std::size_t pole, std::size_t coil) const {
@@ -94,9 +99,9 @@ ModelPoint::Parts::Parts(const CalibrationModel& model, const Eigen::VectorXd& x
       nominal_joints(jointGeometry(space.nominal())),
       joints(space, x),
       effects(space, x),
-      tracker(effects.trackerColumns(), effects.values()),
-      marker(effects.markerColumns(), effects.values()),
-      torque_frame(effects.torqueFrameColumns(), effects.values()) {
+      tracker(effects.trackerColumns(), effects.onTracker()),
+      marker(effects.markerColumns(), effects.onMarker()),
+      torque_frame(effects.torqueFrameColumns(), effects.onTorqueFrame()) {
   poles.reserve(space.poles());
   for (std::size_t i = 0; i < space.poles(); ++i) {
     poles.push_back(axisPoint(space.poleChart(i), x.data() + space.pole(i)));
@@ -129,26 +134,31 @@ Eigen::Matrix3d ModelPoint::Parts::turnedRight(const Eigen::Matrix3d& R_stator_r
                      : Eigen::Matrix3d(R_stator_rotor * marker.rotation.transpose());
 }
 
-/// ∂residual/∂values of the effects on the orientation. `d_rotation`: by ξ of the rotor;
+/// Adds ∂residual/∂values of the effects on the orientation. `d_rotation`: by ξ of the rotor;
 /// `d_offsets`: by offsets of the joints; `d_reading`: ∂q/∂values.
-Eigen::Matrix3Xd ModelPoint::Parts::readingColumns(const Eigen::Matrix3d& d_rotation,
-                                                   const Eigen::Matrix3d& d_offsets,
-                                                   const Eigen::Matrix3d& R_stator_rotor,
-                                                   const Eigen::Matrix3Xd& d_reading) const {
+void ModelPoint::Parts::addReadingColumns(const Eigen::Matrix3d& d_rotation,
+                                          const Eigen::Matrix3d& d_offsets,
+                                          const Eigen::Matrix3d& R_stator_rotor,
+                                          const Eigen::Matrix3Xd& d_reading,
+                                          ResidualJacobian& jacobian) const {
   if (hasJoints()) {
-    return d_offsets * d_reading;
+    effects.add(effects.onReadings(), d_offsets, d_reading, jacobian);
+    return;
   }
-  // e^{−(m + δ)^} = e^{−m̂} e^{−(J_l(m) δ)^}, which turns R from the right.
-  return d_rotation *
-         (inverseColumns(tracker) - R_stator_rotor * leftJacobian(marker.vector) * marker.d_vector);
+  // The tracker's rotation acts by its inverse and from the left, e^{−(t + δ)^}, and e^{−(m + δ)^}
+  // = e^{−m̂} e^{−(J_l(m) δ)^}, which turns R from the right.
+  effects.add(
+      effects.onTracker(), -d_rotation * leftJacobian(-tracker.vector), tracker.d_vector, jacobian);
+  effects.add(effects.onMarker(),
+              -d_rotation * R_stator_rotor * leftJacobian(marker.vector),
+              marker.d_vector,
+              jacobian);
 }
 
-/// Joint angles at a reading. `columns`: ∂ of them by the values of the effects.
+/// Joint angles at a reading. `columns`: ∂ of them by the values of the effects on readings.
 Eigen::Vector3d ModelPoint::Parts::corrected(const Eigen::Vector3d& reading,
                                              const Eigen::Matrix3Xd& columns) const {
-  const Eigen::Vector3d nominal = correctedReading(nominal_joints, reading);
-  // Of a matrix without columns Eigen forms addresses that are none.
-  return columns.cols() == 0 ? nominal : Eigen::Vector3d(nominal + columns * effects.values());
+  return correctedReading(nominal_joints, reading) + applied(columns, effects.onReadings());
 }
 
 CoilTerms ModelPoint::Parts::coilTerms(Excitations excitations,
@@ -178,12 +188,12 @@ Eigen::Vector3d ModelPoint::Parts::pairTorques(const CoilTerms& terms) const {
   return torque;
 }
 
-/// The same, with the columns of poles and of strengths in the residual's Jacobian and each term's
-/// ∂T/∂s. `d_effects`: 3×E, by values of the effects.
+/// The same, with the columns of poles, of strengths and of the curve in the residual's Jacobian
+/// and each term's ∂T/∂s.
 Eigen::Vector3d ModelPoint::Parts::linearizePairTorques(CoilTerms& terms,
-                                                        ResidualJacobian& jacobian,
-                                                        Eigen::Matrix3Xd& d_effects) const {
+                                                        ResidualJacobian& jacobian) const {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  Eigen::Matrix3Xd d_curve = Eigen::Matrix3Xd::Zero(3, effects.onCurve().size());
   for (std::size_t i = 0; i < poles.size(); ++i) {
     const auto& [pole_rotor, d_axis] = poles[i];
     for (CoilTerm& term : terms) {
@@ -195,22 +205,26 @@ Eigen::Vector3d ModelPoint::Parts::linearizePairTorques(CoilTerms& terms,
       torque += weight * pair.torque;
       term.d_coil += weight * pair.d_coil;
       jacobian.middleCols<2>(space.pole(i)) -= weight * pair.d_pole * d_axis;
-      effects.subtractStrengthColumns(i, term.coil, weight * pair.torque, d_effects);
-      effects.subtractPairColumns(pole_rotor, term.coil_rotor, weight, d_effects);
+      effects.subtractStrengthColumns(i, term.coil, weight * pair.torque, jacobian);
+      effects.addPairColumns(pole_rotor, term.coil_rotor, weight, d_curve);
     }
   }
+  effects.add(effects.onCurve(), minus(), d_curve, jacobian);
   return torque;
 }
 
-/// A measured torque in the rotor's frame, T_measured = e^{ẑ} T, and its ∂/∂values of the effects.
+/// A measured torque in the rotor's frame, T_measured = e^{ẑ} T; adds its ∂/∂values of the effects.
 Eigen::Vector3d ModelPoint::Parts::torqueInRotor(const Eigen::Vector3d& measured,
-                                                 Eigen::Matrix3Xd* d_effects) const {
-  if (effects.empty()) {
+                                                 ResidualJacobian* jacobian) const {
+  if (effects.onTorqueFrame().empty()) {
     return measured;
   }
   const Eigen::Matrix3d back = torque_frame.rotation.transpose();
-  if (d_effects != nullptr) {
-    *d_effects += back * skew(measured) * leftJacobian(torque_frame.vector) * torque_frame.d_vector;
+  if (jacobian != nullptr) {
+    effects.add(effects.onTorqueFrame(),
+                back * skew(measured) * leftJacobian(torque_frame.vector),
+                torque_frame.d_vector,
+                *jacobian);
   }
   return back * measured;
 }
@@ -239,10 +253,13 @@ Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
   if (!at.effects.empty()) {
     const Eigen::Matrix3d d_rotor =
         d_rotation * linear.R_stator_rotor * leftJacobian(at.marker.vector);
-    at.effects.write(offsetColumns(linear, d_rotation) * d_reading +
-                         d_stator * leftJacobian(at.tracker.vector) * at.tracker.d_vector +
-                         d_rotor * at.marker.d_vector,
-                     *jacobian);
+    at.effects.add(
+        at.effects.onReadings(), offsetColumns(linear, d_rotation), d_reading, *jacobian);
+    at.effects.add(at.effects.onTracker(),
+                   d_stator * leftJacobian(at.tracker.vector),
+                   at.tracker.d_vector,
+                   *jacobian);
+    at.effects.add(at.effects.onMarker(), d_rotor, at.marker.d_vector, *jacobian);
   }
   return y;
 }
@@ -263,9 +280,10 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
     const Eigen::Matrix3d R_rotor_stator = orientation(sample).transpose();
     const Eigen::Vector3d residual = at.torqueInRotor(sample.torque, nullptr) -
                                      at.pairTorques(at.coilTerms(excitations, R_rotor_stator));
-    return at.effects.empty() ? residual
-                              : Eigen::Vector3d(residual - at.effects.loadColumns(R_rotor_stator) *
-                                                               at.effects.values());
+    return at.effects.onLoad().empty()
+               ? residual
+               : Eigen::Vector3d(residual - applied(at.effects.loadColumns(R_rotor_stator),
+                                                    at.effects.onLoad()));
   }
   const Eigen::Matrix3Xd d_corrections = at.effects.readingColumns(sample.joint_position);
   const Eigen::Vector3d q = at.corrected(sample.joint_position, d_corrections);
@@ -275,11 +293,11 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
   const Eigen::Matrix3d R_rotor_stator = R_stator_rotor.transpose();
   CoilTerms terms = at.coilTerms(excitations, R_rotor_stator);
   const Eigen::Matrix3Xd d_load = at.effects.loadColumns(R_rotor_stator);
-  Eigen::Matrix3Xd d_effects = -d_load;
   jacobian->setZero(3, at.space.size());
+  at.effects.add(at.effects.onLoad(), minus(), d_load, *jacobian);
   const Eigen::Vector3d torque =
-      at.linearizePairTorques(terms, *jacobian, d_effects) + d_load * at.effects.values();
-  const Eigen::Vector3d measured = at.torqueInRotor(sample.torque, &d_effects);
+      at.linearizePairTorques(terms, *jacobian) + applied(d_load, at.effects.onLoad());
+  const Eigen::Vector3d measured = at.torqueInRotor(sample.torque, jacobian);
   // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰ and ∂s/∂s⁰ = Rᵀ; the residual carries the minus sign.
   Eigen::Matrix3d d_rotation = -at.effects.loadRotation(R_rotor_stator);
   for (const CoilTerm& term : terms) {
@@ -297,9 +315,7 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
     *d_reading = d_offsets;
   }
   if (!at.effects.empty()) {
-    at.effects.write(
-        d_effects + at.readingColumns(d_rotation, d_offsets, R_stator_rotor, d_corrections),
-        *jacobian);
+    at.addReadingColumns(d_rotation, d_offsets, R_stator_rotor, d_corrections, *jacobian);
   }
   return measured - torque;
 }

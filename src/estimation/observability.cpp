@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "extreme_eigenvalue.hpp"
-#include "information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 namespace sac {
 

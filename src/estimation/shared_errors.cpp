@@ -122,16 +122,10 @@ void DwellSum::add(const WhitenedObservation& observation,
   }
 }
 
-void DwellSum::addTo(InformationSum& sum) const {
-  const SharedErrors errors = elimination_.errors();
-  for (const Entry& entry : entries_) {
-    WhitenedObservation corrected = entry.observation;
-    corrected.residual -= entry.loading * errors;
-    sum.add(corrected, entry.weight);
-  }
+std::vector<Eigen::Index> DwellSum::touched() const {
   std::vector<Eigen::Index> columns = columns_;
   std::sort(columns.begin(), columns.end());
-  sum.takeOff(crossed_, columns, elimination_.covariance(), errors.squaredNorm());
+  return columns;
 }
 
 }  // namespace sac

@@ -78,11 +78,13 @@ InformationSum::InformationSum(Eigen::Index size)
 InformationSum::InformationSum(Eigen::MatrixXd known)
     : upper_(std::move(known)), gradient_(Eigen::VectorXd::Zero(upper_.rows())) {}
 
-void InformationSum::add(const WhitenedObservation& observation, double weight) {
+void InformationSum::addLeading(const WhitenedObservation& observation,
+                                std::size_t count,
+                                double weight) {
   const std::vector<Eigen::Index>& columns = observation.columns;
   squared_misfit_ += weight * observation.residual.squaredNorm();
   const double* const J = observation.jacobian.data();
-  for (std::size_t b = 0; b < columns.size(); ++b) {
+  for (std::size_t b = 0; b < count; ++b) {
     const Eigen::Vector3d column = weight * observation.jacobian.col(static_cast<Eigen::Index>(b));
     gradient_[columns[b]] += column.dot(observation.residual);
     double* const sums = upper_.col(columns[b]).data();

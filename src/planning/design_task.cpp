@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 namespace sac {
 namespace {
@@ -153,7 +152,7 @@ Eigen::VectorXd steepWeights(const Eigen::VectorXd& variances, double exponent) 
 }
 
 Eigen::MatrixXd covarianceOf(const Eigen::MatrixXd& information) {
-  return information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return InformationFactor(information).inverse();
 }
 
 }  // namespace sac

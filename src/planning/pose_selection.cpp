@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
+
 namespace sac {
 namespace {
 
@@ -110,7 +112,7 @@ double meritOf(const Eigen::MatrixXd& covariance, PlanCriterion criterion) {
 }
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& information) {
-  return information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return InformationFactor(information).inverse();
 }
 
 void addPose(const PoseCandidate& candidate,

@@ -1,4 +1,4 @@
-#include "information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +53,22 @@ TEST(InformationFactor, OfIslandsIsThatOfTheWhole) {
   const Eigen::MatrixXd larger = (information + Eigen::MatrixXd(more.asDiagonal())).inverse();
   EXPECT_LT((InformationFactor(information, more).inverse() - larger).norm(),
             1e-11 * larger.norm());
+}
+
+TEST(InformationFactor, HalvesMultiplyAsByTheInverse) {
+  for (const Eigen::Index coils : {10, 120}) {  // as a whole, and by islands
+    const Eigen::MatrixXd information = coilInformation(coils, 20, 6);
+    const InformationFactor factor(information);
+    const Eigen::MatrixXd inverse = information.inverse();
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(information.rows(), 2);
+    columns.col(0) = Eigen::VectorXd::LinSpaced(information.rows(), -1.0, 2.0);
+    columns.col(1).segment(30, 2) << 1.0, -2.0;  // of one coil
+    const Eigen::MatrixXd expected = columns.transpose() * inverse * columns;
+    const Eigen::MatrixXd halves = factor.half(columns);
+    EXPECT_LT((halves.transpose() * halves - expected).norm(), 1e-11 * expected.norm());
+    const Eigen::MatrixXd of_one_coil = factor.half(columns.rightCols(1));
+    EXPECT_LT((of_one_coil - halves.rightCols(1)).norm(), 1e-11 * halves.norm());
+  }
 }
 
 TEST(InformationFactor, FindsIslandsInAnyOrder) {

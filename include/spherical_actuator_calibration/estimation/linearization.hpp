@@ -23,7 +23,12 @@ struct LinearizedObservation {
 class ObservationEvaluator {
  public:
   /// Keeps references: the problem must outlive the evaluator.
-  ObservationEvaluator(const EstimationProblem& problem, const EstimationOptions& options);
+  ObservationEvaluator(const EstimationProblem& problem, const EstimationOptions& options)
+      : ObservationEvaluator(problem, *problem.model, options) {}
+  /// In the coordinates of another model, whose first ones are those of the problem.
+  ObservationEvaluator(const EstimationProblem& problem,
+                       const CalibrationModel& model,
+                       const EstimationOptions& options);
 
   Excitations excitations(std::size_t observation) const {
     const std::size_t first = first_excitation_[observation];
@@ -31,7 +36,7 @@ class ObservationEvaluator {
   }
 
   /// The model at coordinates, for the calls below.
-  ModelPoint at(const Eigen::VectorXd& x) const { return {*problem_.model, x}; }
+  ModelPoint at(const Eigen::VectorXd& x) const { return {model_, x}; }
 
   Eigen::Vector3d residual(std::size_t observation, const ModelPoint& point) const;
 
@@ -69,6 +74,7 @@ class ObservationEvaluator {
   double stddev(std::size_t observation) const;
 
   const EstimationProblem& problem_;
+  const CalibrationModel& model_;
   const EstimationOptions& options_;
   std::vector<Excitation> excitations_;          ///< of all observations, one after the other
   std::vector<std::uint32_t> first_excitation_;  ///< per observation, and where the last one ends

@@ -69,7 +69,17 @@ class DwellSum {
   /// Σ GᵀJ, 6×F.
   const Eigen::Matrix<double, kSharedErrors, Eigen::Dynamic>& crossed() const { return crossed_; }
   const DwellElimination& elimination() const { return elimination_; }
-  void addTo(InformationSum& sum) const;
+  /// `sum`: one that knows add() and takeOff(), as InformationSum does.
+  template <typename Sum>
+  void addTo(Sum& sum) const {
+    const SharedErrors errors = elimination_.errors();
+    for (const Entry& entry : entries_) {
+      WhitenedObservation corrected = entry.observation;
+      corrected.residual -= entry.loading * errors;
+      sum.add(corrected, entry.weight);
+    }
+    sum.takeOff(crossed_, touched(), elimination_.covariance(), errors.squaredNorm());
+  }
 
  private:
   struct Entry {
@@ -77,6 +87,9 @@ class DwellSum {
     SharedLoading loading;
     double weight;
   };
+  /// Columns of crossed_ that may not be zero, ascending.
+  std::vector<Eigen::Index> touched() const;
+
   std::vector<Entry> entries_;
   Eigen::Matrix<double, kSharedErrors, Eigen::Dynamic> crossed_;
   std::vector<bool> touched_;          ///< per column of crossed_: it may not be zero

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -82,7 +83,11 @@ class InformationSum {
   explicit InformationSum(Eigen::MatrixXd known);
 
   /// `weight`: of the observation beside its noise.
-  void add(const WhitenedObservation& observation, double weight = 1.0);
+  void add(const WhitenedObservation& observation, double weight = 1.0) {
+    addLeading(observation, observation.columns.size(), weight);
+  }
+  /// The same by its first `count` columns, as if there were no others.
+  void addLeading(const WhitenedObservation& observation, std::size_t count, double weight);
 
   /// n residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in units
   /// of their noise.
@@ -123,6 +128,9 @@ class InformationSum {
 
   /// Σ JᵀS⁻¹J, F×F.
   Eigen::MatrixXd information() const;
+  double information(Eigen::Index a, Eigen::Index b) const {
+    return upper_(std::min(a, b), std::max(a, b));
+  }
   /// Some rows of it. `rows`: ascending.
   Eigen::MatrixXd information(const std::vector<Eigen::Index>& rows) const;
   /// Σ JᵀS⁻¹r, half the derivative of Σ rᵀS⁻¹r.

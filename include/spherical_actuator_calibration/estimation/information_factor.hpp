@@ -25,12 +25,16 @@ class InformationFactor {
   bool hasIslands() const { return !islands_.empty(); }
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
   Eigen::MatrixXd inverse() const;
+  /// Y for columns C so that YᵀY' = CᵀN⁻¹C', with N the information. Islands where C is zero cost
+  /// nothing.
+  Eigen::MatrixXd half(const Eigen::MatrixXd& columns) const;
 
  private:
   /// Coordinates that meet each other and the border, but no others.
   struct Island {
     std::vector<Eigen::Index> places;
-    Eigen::MatrixXd inverse;    ///< of its own block D
+    Eigen::MatrixXd half;       ///< L⁻¹ of its own block D = LLᵀ
+    Eigen::MatrixXd inverse;    ///< D⁻¹
     Eigen::MatrixXd to_border;  ///< D⁻¹B
   };
 
