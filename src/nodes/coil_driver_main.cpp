@@ -3,6 +3,7 @@
 #include "spherical_actuator_calibration/ros/node/memory_limit.hpp"
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
+#include "spherical_actuator_calibration/ros/node/thread_priority.hpp"
 
 namespace {
 
@@ -12,6 +13,7 @@ constexpr unsigned kLeave = 3;
 }  // namespace
 
 int main(int argc, char** argv) {
+  sac::askForRealTime();
   bool may_flow = false;
   const int status = sac::runNode(
       argc,

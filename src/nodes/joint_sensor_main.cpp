@@ -2,8 +2,10 @@
 #include "spherical_actuator_calibration/ros/devices/joint_sensor_node.hpp"
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
+#include "spherical_actuator_calibration/ros/node/thread_priority.hpp"
 
 int main(int argc, char** argv) {
+  sac::askForRealTime();
   return sac::runNode(
       argc,
       argv,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/node/thread_priority.hpp"
 
 namespace sac {
 
@@ -75,6 +76,7 @@ void addTiming(DiagnosticStatus& status,
   status.add("largest age of the " + what + " [us]", kMicro * report.largest_age);
   status.add("mean " + work + " [us]", kMicro * report.mean_duration);
   status.add("longest " + work + " [us]", kMicro * report.longest_duration);
+  status.add("scheduled", describeScheduling());
 }
 
 TimingDiagnostics::TimingDiagnostics(std::string turns, std::string what, std::string work)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "spherical_actuator_calibration/ros/node/thread_priority.hpp"
+
 namespace sac {
 
 PeriodicThread::PeriodicThread(double rate, std::function<void()> function)
@@ -32,6 +34,7 @@ void PeriodicThread::stop() {
 }
 
 void PeriodicThread::run(Clock::duration period) {
+  goBeforeOtherThreads();
   std::unique_lock<std::mutex> lock(mutex_);
   Clock::time_point next = Clock::now() + period;
   while (!stopped_) {
