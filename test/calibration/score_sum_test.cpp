@@ -10,7 +10,9 @@ namespace {
 
 constexpr Eigen::Index kCoordinates = 5;
 /// Columns 5, then 6 to 8, then 9 and 10.
-const std::vector<Eigen::Index> kGroups{0, 1, 1, 1, 4, 4};
+std::vector<Eigen::Index> groups() {
+  return {0, 1, 1, 1, 4, 4};
+}
 constexpr Eigen::Index kColumns = 11;
 
 class ScoreSumTest : public ::testing::Test {
@@ -53,7 +55,7 @@ class ScoreSumTest : public ::testing::Test {
 
  private:
   static Eigen::Index groupOf(Eigen::Index column) {
-    return column < kCoordinates ? -1 : kGroups[static_cast<std::size_t>(column - kCoordinates)];
+    return column < kCoordinates ? -1 : groups()[static_cast<std::size_t>(column - kCoordinates)];
   }
 
   std::mt19937 generator_{1};
@@ -61,7 +63,7 @@ class ScoreSumTest : public ::testing::Test {
 };
 
 TEST_F(ScoreSumTest, IsThatOfAllColumns) {
-  ScoreSum some(kCoordinates, kGroups);
+  ScoreSum some(kCoordinates, groups());
   InformationSum all(kColumns);
   for (int n = 0; n < 20; ++n) {
     const WhitenedObservation one = observation();
@@ -72,7 +74,7 @@ TEST_F(ScoreSumTest, IsThatOfAllColumns) {
 }
 
 TEST_F(ScoreSumTest, IsThatOfAllColumnsWhereDwellsShareErrors) {
-  ScoreSum some(kCoordinates, kGroups);
+  ScoreSum some(kCoordinates, groups());
   InformationSum all(kColumns);
   DwellSum dwell(kColumns);
   for (int d = 0; d < 4; ++d) {
