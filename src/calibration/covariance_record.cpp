@@ -133,10 +133,14 @@ Eigen::MatrixXd coordinateCovariance(const ParameterSpace& space,
 }
 
 Eigen::MatrixXd machineCovariance(const ParameterSpace& space,
-                                  const CalibratedDescription& description) {
+                                  const CalibratedDescription& description,
+                                  bool has_load) {
+  using BelongsTo = LaboratoryEffect::BelongsTo;
   Eigen::MatrixXd covariance = coordinateCovariance(space, description);
   for (const PlacedEffect& placed : space.effects().effects()) {
-    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kActuator) {
+    const bool counts = placed.belongs_to == BelongsTo::kActuator ||
+                        (has_load && placed.belongs_to == BelongsTo::kLoad);
+    if (!counts) {
       const Eigen::Index first = space.effect() + placed.first;
       covariance.middleRows(first, placed.size()).setZero();
       covariance.middleCols(first, placed.size()).setZero();

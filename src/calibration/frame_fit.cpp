@@ -39,7 +39,7 @@ Eigen::MatrixXd machineUncertainty(const ParameterSpace& space,
                                    const CalibratedDescription& description,
                                    const ManufacturingTolerance& tolerance) {
   if (description.calibration && description.calibration->covariance) {
-    return machineCovariance(space, description);
+    return machineCovariance(space, description, false);
   }
   Eigen::VectorXd stddev = Eigen::VectorXd::Zero(space.size());
   for (std::size_t k = 0; k < kJoints; ++k) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
@@ -25,10 +26,12 @@ std::shared_ptr<const CalibrationModel> modelOf(const CalibratedDescription& des
 Predictor::Predictor(const CalibratedDescription& description)
     : model_(modelOf(description)),
       point_(*model_, Eigen::VectorXd::Zero(model_->space().size())),
-      covariance_(machineCovariance(model_->space(), description)) {}
+      covariance_(machineCovariance(model_->space(), description, false)),
+      loaded_covariance_(machineCovariance(model_->space(), description, true)) {}
 
-double Predictor::parameterVariance(const ResidualJacobian& jacobian) const {
-  return std::max(0.0, (jacobian * covariance_ * jacobian.transpose()).trace());
+double Predictor::parameterVariance(const ResidualJacobian& jacobian,
+                                    const Eigen::MatrixXd& covariance) {
+  return std::max(0.0, (jacobian * covariance * jacobian.transpose()).trace());
 }
 
 Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) const {
@@ -41,7 +44,7 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
   predictMeasurements(point_, sample);
   ResidualJacobian jacobian;
   point_.orientationResidual(sample, &jacobian);
-  double variance = parameterVariance(jacobian);
+  double variance = parameterVariance(jacobian, covariance_);
   Orientation result;
   result.R_stator_rotor = sample.R_stator_rotor;
   const Actuator& actuator = model_->space().nominal();
@@ -56,6 +59,20 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
 
 Predictor::Torque Predictor::torque(const Eigen::Vector3d& reading,
                                     const Eigen::VectorXd& current) const {
+  return torqueOfCoils(reading, current, covariance_);
+}
+
+Predictor::Torque Predictor::loadedTorque(const Eigen::Vector3d& reading,
+                                          const Eigen::VectorXd& current) const {
+  Torque result = torqueOfCoils(reading, current, loaded_covariance_);
+  const Eigen::Vector3d& unbalance = model_->space().nominal().unbalance;
+  result.torque += unbalance.cross(gravityDirection(orientation(reading).R_stator_rotor));
+  return result;
+}
+
+Predictor::Torque Predictor::torqueOfCoils(const Eigen::Vector3d& reading,
+                                           const Eigen::VectorXd& current,
+                                           const Eigen::MatrixXd& covariance) const {
   Sample sample;
   sample.joint_position = reading;
   sample.current = current;
@@ -63,7 +80,7 @@ Predictor::Torque Predictor::torque(const Eigen::Vector3d& reading,
   ResidualJacobian jacobian;
   Torque result;
   result.torque = -point_.torqueResidual(sample, excitations, &jacobian);
-  double variance = parameterVariance(jacobian);
+  double variance = parameterVariance(jacobian, covariance);
   const Actuator& actuator = model_->space().nominal();
   if (actuator.orientation_map) {
     // A rotation error ξ acts on the torque as offsets do: ∂T/∂ξ = (∂T/∂offsets)(∂ξ/∂offsets)⁻¹.

@@ -43,6 +43,7 @@ struct Options {
   std::optional<std::string> orientations_path;
   std::string output_path;
   std::optional<std::string> currents_path;
+  bool has_load = false;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };
 
@@ -60,6 +61,9 @@ std::optional<Options> parseOptions(int argc, char** argv) {
       "output", options.output_path, "CSV", "orientations (and torques) to write");
   line.addInput(
       "currents", options.currents_path, "CSV", "coil currents [A], a line for each pose");
+  line.addSwitch("unbalance",
+                 options.has_load,
+                 "add the weight of an unbalanced rotor to the torque, which takes --currents");
   line.addForce(options.overwrite);
   if (!line.parse(argc, argv, std::cout)) {
     return std::nullopt;
@@ -81,6 +85,9 @@ void requireFitting(const Options& options, bool has_joints) {
                       (has_joints ? ": the rotor has joints; give their angles by --joints."
                                   : ": the rotor has no joints; give its orientations by "
                                     "--orientations."));
+  }
+  if (options.has_load && !options.currents_path) {
+    throw ConfigError("--unbalance belongs to torques; give --currents, too.");
   }
   if (!has_joints && !options.currents_path) {
     throw ConfigError(options.actuator_path +
@@ -184,9 +191,10 @@ void predict(const Options& options) {
     }
     if (currents) {
       const std::vector<double>& values = currents->rows[n].values;
-      appendTorque(predictor.torque(reading,
-                                    Eigen::Map<const Eigen::VectorXd>(
-                                        values.data(), static_cast<Eigen::Index>(values.size()))),
+      const Eigen::VectorXd current = Eigen::Map<const Eigen::VectorXd>(
+          values.data(), static_cast<Eigen::Index>(values.size()));
+      appendTorque(options.has_load ? predictor.loadedTorque(reading, current)
+                                    : predictor.torque(reading, current),
                    text);
     }
     text += "\n";

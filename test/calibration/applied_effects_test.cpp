@@ -136,6 +136,44 @@ TEST(AppliedEffects, OfTorquesAsWell) {
   }
 }
 
+TEST(AppliedEffects, OfTheWeightThatATorqueSensorFeels) {
+  const Actuator truth = scenarios::paperTruth();
+  const Eigen::Vector3d unbalance(3e-3, -2e-3, 4e-3);
+  std::vector<Sample> samples = misreadSession(truth, 6);
+  for (Sample& sample : samples) {
+    const Eigen::Matrix3d R = rotorOrientation(jointGeometry(truth), sample.joint_position);
+    sample.torque += unbalance.cross(Eigen::Vector3d(-R.row(2).transpose()));
+  }
+  CalibrationSession session(
+      {scenarios::paperNominal()}, samples, modelling({"rotor_unbalance"}, MapUse::kNever));
+  session.run({Cycle::kJoint});
+  session.run({Cycle::kPoles, 0});
+  const CycleReport report = session.run({Cycle::kRefine});
+  ASSERT_TRUE(report.success) << report.message;
+  const Predictor predictor(reloaded(session));
+  double inside = 0.0;
+  double count = 0.0;
+  for (const Sample& sample : samples) {
+    if (!sample.has_torque) {
+      continue;
+    }
+    const Eigen::Vector3d refined = predicted(session, sample).torque;
+    const Predictor::Torque loaded = predictor.loadedTorque(sample.joint_position, sample.current);
+    EXPECT_LT((loaded.torque - refined).norm(), 1e-9);
+    const Predictor::Torque none =
+        predictor.loadedTorque(sample.joint_position, Eigen::VectorXd::Zero(24));
+    const Eigen::Matrix3d R = rotorOrientation(jointGeometry(truth), sample.joint_position);
+    const Eigen::Vector3d error =
+        none.torque - unbalance.cross(Eigen::Vector3d(-R.row(2).transpose()));
+    EXPECT_GT(none.stddev, 1e-6);
+    EXPECT_LT(error.norm(), 5.0 * none.stddev);
+    inside += static_cast<double>((error.array().abs() < 1.96 * none.stddev).count());
+    count += 3.0;
+    EXPECT_EQ(predictor.torque(sample.joint_position, Eigen::VectorXd::Zero(24)).stddev, 0.0);
+  }
+  EXPECT_GT(inside, 0.8 * count);
+}
+
 // Joints 1 and 2 move by ±0.6 rad only.
 TEST(EncoderHarmonics, OfEveryJointAreFoundAsFarAsItsTravelTells) {
   Actuator truth = scenarios::paperTruth();

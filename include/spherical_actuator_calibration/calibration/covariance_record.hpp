@@ -25,8 +25,10 @@ Eigen::MatrixXd coordinateCovariance(const ParameterSpace& space,
                                      const CalibratedDescription& description);
 
 /// The same of the machine alone: zero for effects of the laboratory (registrations, bias of the
-/// force/torque sensor, weight of the rotor), which are no part of what joints and coils do.
+/// force/torque sensor), which are no part of what joints and coils do, and without `has_load` for
+/// the weight that the rotor carries.
 Eigen::MatrixXd machineCovariance(const ParameterSpace& space,
-                                  const CalibratedDescription& description);
+                                  const CalibratedDescription& description,
+                                  bool has_load);
 
 }  // namespace sac

@@ -43,14 +43,22 @@ class Predictor {
   Orientation orientation(const Eigen::Vector3d& reading) const;
   /// Also at coil currents [A]. Precondition: hasTorqueModel() and one current per coil.
   Torque torque(const Eigen::Vector3d& reading, const Eigen::VectorXd& current) const;
+  /// The same with the weight of an unbalanced rotor, as a force/torque sensor feels it whose
+  /// torque without current was not taken off.
+  Torque loadedTorque(const Eigen::Vector3d& reading, const Eigen::VectorXd& current) const;
 
  private:
+  Torque torqueOfCoils(const Eigen::Vector3d& reading,
+                       const Eigen::VectorXd& current,
+                       const Eigen::MatrixXd& covariance) const;
   /// Sum of the variances of three components that follow from the parameters.
-  double parameterVariance(const ResidualJacobian& jacobian) const;
+  static double parameterVariance(const ResidualJacobian& jacobian,
+                                  const Eigen::MatrixXd& covariance);
 
   std::shared_ptr<const CalibrationModel> model_;  ///< where the point finds it, also after a copy
   ModelPoint point_;  ///< all coordinates zero: the description is the nominal one of its model
-  Eigen::MatrixXd covariance_;  ///< of the coordinates; zero for those of the laboratory
+  Eigen::MatrixXd covariance_;  ///< of the coordinates; zero for those of load and laboratory
+  Eigen::MatrixXd loaded_covariance_;  ///< the same with those of the load
 };
 
 }  // namespace sac
