@@ -121,17 +121,28 @@ class Guide {
       return "Do not use the parameters: held-out samples contradict them. Call diagnose, look at "
              "the rejected samples, then calibrate with more poses and call validate again.";
     }
-    if (progress_.saved && progress_.validation_samples == 0) {
-      return "The calibration is saved, and nothing judges it: capture a few poses with validation "
-             "set and call validate.";
+    if (!progress_.judged) {
+      return validationStep();
     }
-    if (progress_.saved) {
-      return "Nothing is left to do: the calibration is complete and saved.";
+    if (!progress_.good) {
+      const std::string rest = "the grade's reason says what it is not good for.";
+      return progress_.saved ? "The calibration is saved, and usable as far as it goes: " + rest
+                             : "Call save: held-out samples agree, and " + rest;
     }
-    if (progress_.validation_samples == 0) {
-      return "Capture a few poses with validation set and call validate, or call save.";
+    return progress_.saved ? "Nothing is left to do: the calibration is complete and saved."
+                           : "Call save: held-out samples agree.";
+  }
+
+  std::string validationStep() const {
+    if (progress_.validation_samples > 0) {
+      const std::string excited = model_.hasTorqueModel() ? ", coils excited in turn," : "";
+      return "The held-out samples do not judge all that is identified: capture further poses" +
+             excited + " with validation set and call validate.";
     }
-    return "Call validate, and save when it agrees.";
+    return progress_.saved
+               ? "The calibration is saved, and nothing judges it: capture a few poses with "
+                 "validation set and call validate."
+               : "Capture a few poses with validation set and call validate, or call save.";
   }
 
   const CalibrationModel& model_;

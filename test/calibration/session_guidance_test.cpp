@@ -51,11 +51,32 @@ TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
   progress.refined = true;
   EXPECT_NE(nextStep(session, progress).find("validation"), std::string::npos);
   progress.validation_samples = 3;
-  EXPECT_EQ(nextStep(session, progress), "Call validate, and save when it agrees.");
+  progress.judged = true;
+  progress.good = true;
+  EXPECT_EQ(nextStep(session, progress), "Call save: held-out samples agree.");
   progress.saved = true;
   EXPECT_NE(nextStep(session, progress).find("Nothing is left to do"), std::string::npos);
   progress.validation_samples = 0;
+  progress.judged = false;
   EXPECT_NE(nextStep(session, progress).find("nothing judges it"), std::string::npos);
+}
+
+TEST(SessionGuidance, OnlyWhatIsGoodIsDone) {
+  CalibrationSession session = paperSession();
+  for (const CycleRequest& request : progressOf(session).next_cycles) {
+    ASSERT_TRUE(session.run(request).success);
+  }
+  SessionProgress progress = progressOf(session);
+  progress.refined = true;
+  progress.validation_samples = 1;
+  for (const bool saved : {false, true}) {
+    progress.saved = saved;
+    progress.judged = false;
+    EXPECT_NE(nextStep(session, progress).find("do not judge"), std::string::npos);
+    progress.judged = true;
+    EXPECT_NE(nextStep(session, progress).find("not good for"), std::string::npos);
+    EXPECT_EQ(nextStep(session, progress).find("Nothing is left"), std::string::npos);
+  }
 }
 
 TEST(SessionGuidance, WhatIsContradictedIsNeverDone) {

@@ -43,6 +43,8 @@ struct SessionProgress {
   bool complete = false;                      ///< all is identified, and isComplete() (session)
   bool saved = false;                         ///< the parameters in force are in a file
   bool contradicted = false;                  ///< held-out samples disagree with what is in force
+  bool judged = false;                        ///< they agree, and judge all of it
+  bool good = false;                          ///< and nothing else speaks against it
   std::string plan_step;  ///< next pose of the plan that is followed, see planStep(); empty: none
 
   /// Whether the joint, every pole and every coil is identified.
@@ -62,7 +64,7 @@ class ProgressCounter {
   void add(const std::vector<Sample>& samples);
 
   /// What samples and parameters tell of the progress; `refined`, `complete`, `saved`,
-  /// `contradicted` and `plan_step` are not in them.
+  /// `contradicted`, `judged`, `good` and `plan_step` are not in them.
   SessionProgress progress() const;
 
  private:

@@ -337,6 +337,8 @@ void CalibrationNode::publishStatus() {
     const GradedCalibration& graded = session_.grade();
     progress.saved = files_.isSaved(session_.revision().number);
     progress.contradicted = graded.grade == Grade::kContradicted;
+    progress.good = graded.grade == Grade::kGood;
+    progress.judged = progress.good || graded.grade == Grade::kUsable;
     if (plan_) {
       progress.plan_step = planStep(*plan_,
                                     calibration.samples(),
