@@ -64,6 +64,7 @@ void MotionPoint::setAxes() {
     space_->coilChart(j).evaluate(x_[at], x_[at + 1], axis, d_coil_[j]);
     coils_.col(static_cast<Eigen::Index>(j)) = axis;
   }
+  coils_by_row_ = coils_.transpose();
 }
 
 void MotionPoint::setStrengths() {
@@ -194,35 +195,41 @@ void MotionPoint::addEffects(std::size_t pole,
   }
 }
 
-/// With all coils, pair by pair as linearizePairTorque(); axes are turned back into coordinates
-/// once for all pairs.
+/// With all coils, pair by pair as linearizePairTorque(). A coil meets one pole or two at a time,
+/// so its axis is turned into coordinates with each pair; that of the pole once for all pairs.
 void MotionPoint::addPole(std::size_t pole,
                           const Eigen::Matrix3d& R,
                           const Eigen::VectorXd& current,
                           StatorTorque& out) const {
   const auto i = static_cast<Eigen::Index>(pole);
   const Eigen::Vector3d r = R * poles_.col(i);
-  AxisSlope slope{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
+  out.cosines.noalias() = coils_by_row_ * r;
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();
   for (Eigen::Index j = 0; j < coils_.cols(); ++j) {
-    const Eigen::Vector3d s = coils_.col(j);
-    const double cosine = r.dot(s);
+    const double cosine = out.cosines[j];
     if (cosine <= curve_->cosSupportEnd()) {
       continue;
     }
+    const Eigen::Vector3d s = coils_.col(j);
     const Eigen::Vector3d cross = r.cross(s);
     const TorqueCurve::Safe safe = curve_->safe(cosine, cross.norm());
     const Eigen::Vector3d torque = safe.h * cross;
     out.d_coil.col(j) += weight_(i, j) * torque;
     const double weight = current[j] * weight_(i, j);
     const Eigen::Vector3d steep = (weight * safe.dh) * cross;
-    slope.outer += steep * s.transpose();
-    slope.along += (weight * safe.h) * s;
-    AxisSlope& coil = out.coil_slopes[static_cast<std::size_t>(j)];
-    coil.outer += steep * r.transpose();
-    coil.along += (weight * safe.h) * r;
+    const Eigen::Vector3d pulled = (weight * safe.h) * r;
+    slope += steep * s.transpose();
+    along += (weight * safe.h) * s;
+    const Eigen::Matrix<double, 3, 2>& d_coil = d_coil_[static_cast<std::size_t>(j)];
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const Eigen::Vector3d moved = d_coil.col(c);
+      out.d_x.col(space_->coil(static_cast<std::size_t>(j)) + c) +=
+          r.dot(moved) * steep + pulled.cross(moved);
+    }
     addEffects(pole, static_cast<std::size_t>(j), weight, r, torque, out);
   }
-  const Eigen::Matrix3d d_pole = slope.outer - skew(slope.along);
+  const Eigen::Matrix3d d_pole = slope - skew(along);
   // Only the pole turns with the rotor: r → r + ξ × r.
   out.d_turn -= d_pole * skew(r);
   out.d_x.middleCols<2>(space_->pole(pole)) = d_pole * (R * d_pole_[pole]);
@@ -248,15 +255,10 @@ void MotionPoint::torque(const Eigen::Matrix3d& R_stator_rotor,
   out.d_turn.setZero();
   out.d_x.setZero(3, space_->size());
   out.d_coil.setZero(3, coils_.cols());
-  out.coil_slopes.assign(space_->coils(), {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()});
   for (std::size_t i = 0; i < space_->poles(); ++i) {
     addPole(i, R_stator_rotor, current, out);
   }
   out.torque = out.d_coil * current;
-  for (std::size_t j = 0; j < space_->coils(); ++j) {
-    const AxisSlope& slope = out.coil_slopes[j];
-    out.d_x.middleCols<2>(space_->coil(j)) = (slope.outer + skew(slope.along)) * d_coil_[j];
-  }
   addLoads(R_stator_rotor, out);
 }
 

@@ -31,20 +31,13 @@ struct TurnedRotor {
   Eigen::Matrix3Xd d_x;       ///< ∂ξ/∂x of MotionPoint::turning()
 };
 
-/// ∂T/∂a of the axis a of one pole or coil over all its pairs: the sum of slopes (r×s)aᵀ, and of h
-/// a, which stands for its cross product.
-struct AxisSlope {
-  Eigen::Matrix3d outer;
-  Eigen::Vector3d along;
-};
-
 /// Torque on the rotor, stator frame, and its derivatives.
 struct StatorTorque {
-  Eigen::Vector3d torque;              ///< R T [N·m]
-  Eigen::Matrix3d d_turn;              ///< ∂(RT)/∂ξ
-  Eigen::Matrix3Xd d_x;                ///< 3×P, without what turns the rotor
-  Eigen::Matrix3Xd d_coil;             ///< per ampere of each coil
-  std::vector<AxisSlope> coil_slopes;  ///< while it is summed up
+  Eigen::Vector3d torque;   ///< R T [N·m]
+  Eigen::Matrix3d d_turn;   ///< ∂(RT)/∂ξ
+  Eigen::Matrix3Xd d_x;     ///< 3×P, without what turns the rotor
+  Eigen::Matrix3Xd d_coil;  ///< per ampere of each coil
+  Eigen::VectorXd cosines;  ///< of a pole with all coils, while it is summed up
 };
 
 /// All that a model of motion needs at coordinates x.
@@ -116,6 +109,7 @@ class MotionPoint {
   JointGeometry nominal_joints_;  ///< what the description corrects already
   Eigen::Matrix3Xd poles_;        ///< rotor frame
   Eigen::Matrix3Xd coils_;        ///< stator frame
+  Eigen::Matrix<double, Eigen::Dynamic, 3> coils_by_row_;  ///< the same, for many products at once
   std::vector<Eigen::Matrix<double, 3, 2>> d_pole_;
   std::vector<Eigen::Matrix<double, 3, 2>> d_coil_;
   Eigen::MatrixXd weight_;                        ///< poles × coils
