@@ -29,6 +29,27 @@ std::vector<MotionSpan> spansOf(const MotionRecording& recording) {
   return spans;
 }
 
+/// Coordinates that orientations of the tracker tell of, ascending: of joints and their sensors, of
+/// registrations, and its delay.
+std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
+                                               const MotionPlaces& places) {
+  std::vector<Eigen::Index> coordinates;
+  for (Eigen::Index p = 0; p < space.pole(0); ++p) {
+    coordinates.push_back(p);
+  }
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    const bool turns = placed.acts_on == LaboratoryEffect::ActsOn::kOrientations ||
+                       placed.acts_on == LaboratoryEffect::ActsOn::kEverything;
+    const Eigen::Index first = space.effect() + placed.first;
+    for (Eigen::Index n = 0; n < placed.size(); ++n) {
+      if (turns || first + n == places.tracker_delay) {
+        coordinates.push_back(first + n);
+      }
+    }
+  }
+  return coordinates;
+}
+
 /// What the orientations of a window tell together.
 struct OrientationSum {
   Eigen::MatrixXd jacobian;
@@ -76,12 +97,7 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
     }
   }
   holdOut();
-  const ParameterSpace& space = problem.model->space();
-  for (Eigen::Index p = 0; p < space.size(); ++p) {
-    if (p < space.pole(0) || p >= space.effect()) {
-      orienting_.push_back(p);
-    }
-  }
+  orienting_ = orientingCoordinates(problem.model->space(), places_);
 }
 
 std::size_t MotionTerms::servingWindows() const {
