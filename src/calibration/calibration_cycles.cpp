@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
+#include "stream_noise.hpp"
 
 namespace sac {
 namespace {
@@ -189,6 +190,9 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
   if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
     if (const auto effect = findSingleEffect(problem, estimate, options)) {
       words.push_back(effect->sentence);
+    } else {
+      const std::vector<std::string> noise = noiseInWords(streamNoise(problem, estimate, options));
+      words.insert(words.end(), noise.begin(), noise.end());
     }
   }
   return words;
