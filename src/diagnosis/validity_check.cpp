@@ -61,6 +61,9 @@ std::map<std::string, Group> groupsOf(const std::vector<Sample>& samples,
                                       double current_threshold) {
   std::map<std::string, Group> groups;
   for (const SampleResidual& residual : validation.residuals) {
+    if (residual.rejected) {
+      continue;
+    }
     if (residual.quantity == Quantity::kOrientation) {
       groups["the orientation"].add(residual);
       continue;
@@ -73,6 +76,23 @@ std::map<std::string, Group> groupsOf(const std::vector<Sample>& samples,
         .add(residual);
   }
   return groups;
+}
+
+/// At which the last cycle that succeeded rejected single measurements, or the one that made the
+/// description that the session starts from.
+double usualOutlierRate(const CalibrationSession& session) {
+  const std::vector<CycleReport>& reports = session.reports();
+  const auto last = std::find_if(
+      reports.rbegin(), reports.rend(), [](const CycleReport& one) { return one.success; });
+  if (last != reports.rend()) {
+    return outlierRate(*last);
+  }
+  const auto& before = session.start().calibration;
+  if (!before || before->cycles.empty() || before->cycles.back().samples_used == 0) {
+    return 0.0;
+  }
+  const CycleRecord& cycle = before->cycles.back();
+  return static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used);
 }
 
 std::string boundsInWords(const std::map<std::string, Group>& groups) {
@@ -99,8 +119,11 @@ std::string boundsInWords(const std::map<std::string, Group>& groups) {
 ValidityCheck checkValidity(const CalibrationSession& session) {
   ValidityCheck check;
   const std::vector<Sample> newest = newestHeldOut(session.samples());
-  const HeldOutValidation validation =
-      validateHeldOut(session.model(), newest, session.state(), session.config().estimation);
+  const HeldOutValidation validation = validateHeldOut(session.model(),
+                                                       newest,
+                                                       session.state(),
+                                                       session.config().estimation,
+                                                       usualOutlierRate(session));
   if (!validation.hasVerdict()) {
     check.message =
         "Nothing can be told: capture some poses for validation, 3 or more, and check again.";
@@ -123,7 +146,14 @@ ValidityCheck checkValidity(const CalibrationSession& session) {
   check.is_valid = changed.empty() && validation.probability >= least;
   if (check.is_valid) {
     check.message = format(
-        "Valid to %s, by %zu held-out samples.", boundsInWords(groups).c_str(), validation.samples);
+        "Valid to %s, by %zu held-out samples%s. This holds beside the registrations: frames that "
+        "were off when the unit was calibrated, and still are, show in no sample.",
+        boundsInWords(groups).c_str(),
+        validation.samples,
+        validation.outliers > 0
+            ? format(" (%zu outliers, as rare as the others', are not judged)", validation.outliers)
+                  .c_str()
+            : "");
     return check;
   }
   check.message = changed.empty() ? format(
