@@ -91,8 +91,19 @@ class Examiner {
     if (!doubts.empty()) {
       return ", but " + doubts.front();
     }
+    if (isUnasked()) {
+      return ", but no refinement asked all samples together whether something is not modelled: "
+             "run refine";
+    }
     const std::string confounded = confoundedRegistration();
     return confounded.empty() ? unstatedRegistration() : confounded;
+  }
+
+  /// Whether poles and coils were calibrated one after the other only: each cycle has few samples
+  /// of its own, which tell little of what is not modelled.
+  bool isUnasked() const {
+    return isTorqueIdentified() && last_success_ != nullptr &&
+           last_success_->cycle != Cycle::kRefine && last_success_->cycle != Cycle::kMotion;
   }
 
   /// Of the last successful cycle, and of those before it that it does not make up for.

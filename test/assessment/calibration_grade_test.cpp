@@ -120,6 +120,18 @@ TEST(CalibrationGrade, ACycleThatFailedSpoilsNothing) {
   EXPECT_EQ(gradeOf(scenarios::heldOutSession(), requests).grade, Grade::kGood);
 }
 
+TEST(CalibrationGrade, UsableWhereNoRefinementAskedAllSamples) {
+  std::vector<CycleRequest> requests{{Cycle::kJoint}, {Cycle::kPoles, 0}};
+  for (std::size_t coil = 1; coil < scenarios::paperNominal().coils.size(); ++coil) {
+    requests.push_back({Cycle::kCoil, coil});
+  }
+  const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), requests);
+  EXPECT_EQ(graded.grade, Grade::kUsable) << graded.reason;
+  EXPECT_TRUE(tells(graded, "run refine")) << graded.reason;
+  requests.push_back({Cycle::kRefine});
+  EXPECT_EQ(gradeOf(scenarios::heldOutSession(), requests).grade, Grade::kGood);
+}
+
 TEST(CalibrationGrade, FailedWhereNothingIsIdentified) {
   EXPECT_EQ(gradeOf({}, {}).grade, Grade::kFailed);
   EXPECT_EQ(gradeOf({}, {{Cycle::kJoint}}).grade, Grade::kFailed);
