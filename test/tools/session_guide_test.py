@@ -7,6 +7,7 @@ import threading
 import unittest
 from types import SimpleNamespace
 
+from spherical_actuator_calibration.msg import JointAxis
 from spherical_actuator_calibration.session_guide import laboratory, progress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.calibration import excitations_of
@@ -32,6 +33,25 @@ class ExcitedCoils(unittest.TestCase):
     def test_in_words(self):
         self.assertEqual(progress.in_words((3,)), "Coil 3")
         self.assertEqual(progress.in_words((1, -4, 12)), "Coils +1 -4 +12")
+
+
+class KnownJoint(unittest.TestCase):
+    def setUp(self):
+        self.joints = [JointAxis(offset_stddev=1e-4, axis_stddev=[2e-4, 3e-4]) for _ in range(3)]
+
+    def test_is_as_good_as_its_worst_axis_or_offset(self):
+        self.assertEqual(progress.joint_stddev(self.joints), 3e-4)
+        self.joints[2].offset_stddev = 5e-4
+        self.assertEqual(progress.joint_stddev(self.joints), 5e-4)
+
+    def test_is_not_told_by_corrections_of_readings(self):
+        self.joints[1].linear_stddev = [2e-3, math.inf, math.inf]
+        self.joints[0].harmonics_stddev = [1e-3, 1e-3, math.inf, math.inf]
+        self.assertEqual(progress.joint_stddev(self.joints), 3e-4)
+
+    def test_with_a_part_that_is_not_identified_is_not_known(self):
+        self.joints[0].axis_stddev[1] = math.inf
+        self.assertEqual(progress.joint_stddev(self.joints), 0.0)
 
 
 class PlannedPatterns(unittest.TestCase):

@@ -3,7 +3,7 @@
 import math
 
 import rospy
-from spherical_actuator_calibration.msg import CalibrationStatus
+from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationStatus
 from spherical_actuator_calibration.srv import Calibrate, Capture, CapturePlanned, ListSamples, PlanPoses
 from std_srvs.srv import Trigger
 
@@ -23,7 +23,7 @@ SERVICES = {
     "validate": Calibrate,
 }
 PATIENCE = 1.0  # [s] between two looks for a node that is gone
-LATEST = 1.0  # [s] after which a status counts as new, whatever its time
+LATEST = 1.0  # [s] after which a message counts as new, whatever its time
 
 
 class Calibration:
@@ -33,29 +33,40 @@ class Calibration:
         self._node = ns + "/calibration"
         self._narrator = narrator
         self._task = Task()
-        self._status = None
+        self._latest = {CalibrationStatus: None, ActuatorParameters: None}
         self._answered = rospy.Time()  # time of what the node answered last
-        self._subscriber = rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep)
+        self._subscribers = [
+            rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep),
+            rospy.Subscriber(ns + "/parameters", ActuatorParameters, self._keep),
+        ]
 
     def serve(self, task, narrator):
         """From now on calls are of a task, whose Cancelled they raise, and tell its narrator what they wait for."""
         self._task = task
         self._narrator = narrator
 
-    def _keep(self, status):
-        self._status = status
+    def _keep(self, message):
+        self._latest[type(message)] = message
 
     def wait_until_up(self):
         self._wait_for("save")
-        while self._status is None:
+        while None in self._latest.values():
             self._task.pause(0.05)
 
     def status(self):
-        """The status that goes with the last answer: topics may be slower than services."""
+        """The status that goes with the last answer."""
+        return self._of_the_answer(CalibrationStatus)
+
+    def parameters(self):
+        """The parameters that the last answer, of a successful cycle, has put in force."""
+        return self._of_the_answer(ActuatorParameters)
+
+    def _of_the_answer(self, kind):
+        """Topics may be slower than services."""
         end = self._task.time() + LATEST
-        while self._status.header.stamp < self._answered and self._task.time() < end:
+        while self._latest[kind].header.stamp < self._answered and self._task.time() < end:
             self._task.pause(0.02)
-        return self._status
+        return self._latest[kind]
 
     def _wait_for(self, service):
         while True:
@@ -118,7 +129,8 @@ class Calibration:
 
     def excited(self, currents):
         """The coils that currents [A] excite, see excited_coils; none before the first status."""
-        return excited_coils(currents, self._status.current_threshold) if self._status else ()
+        status = self._latest[CalibrationStatus]
+        return excited_coils(currents, status.current_threshold) if status else ()
 
     def measured(self):
         """Samples that are held."""
@@ -137,7 +149,7 @@ class Calibration:
 
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""
-        return self._status.pose_tolerance
+        return self._latest[CalibrationStatus].pose_tolerance
 
     def plan(self, poses, wanted_stddev, cycle="refine", **excitation):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan.

@@ -48,6 +48,12 @@ def excited_coils(currents, threshold):
     return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
 
 
+def joint_stddev(joints):
+    """[rad] of the axis or offset that is known worst, by the messages of the joints; 0 while one is not known."""
+    worst = max(max(joint.offset_stddev, *joint.axis_stddev) for joint in joints)
+    return worst if math.isfinite(worst) else 0.0
+
+
 def is_same_pattern(one, other):
     """A pattern or its opposite, which tells the same."""
     return one == other or one == tuple(-coil for coil in other)

@@ -115,9 +115,8 @@ class Session:
             return
         answer = self._calibration.run("joint")
         if answer.success:
-            stddevs = [each.stddev for each in answer.report.estimates if each.name.startswith("joint_")]
             self._account.set(
-                joint_stddev=max(stddevs, default=0.0),
+                joint_stddev=progress.joint_stddev(self._calibration.parameters().joints),
                 orientation_uncertainty=answer.report.orientation_uncertainty,
             )
 
