@@ -1,6 +1,7 @@
 #include "cycle_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -244,6 +245,29 @@ std::string lostAxes(const EstimationProblem& problem,
   return {};
 }
 
+/// Of orientations, then torques: those that lose more than a quarter to outliers, which accidents
+/// do not come near; noise that is stated too small does.
+std::vector<std::string> frequentOutliers(const Estimate& estimate) {
+  constexpr std::size_t kLeast = 3;
+  constexpr std::size_t kPart = 4;
+  std::array<Group, 2> streams{Group{"orientations", true}, Group{"torques", true}};
+  for (const ObservationResidual& residual : estimate.residuals) {
+    count(residual, streams[residual.observation.quantity == Quantity::kOrientation ? 0 : 1]);
+  }
+  std::vector<std::string> words;
+  for (const Group& stream : streams) {
+    if (stream.rejected >= kLeast && kPart * stream.rejected > stream.count) {
+      words.push_back(
+          format("%zu of %zu %s were left out as outliers, more than accidents are: is their noise "
+                 "as their samples state it?",
+                 stream.rejected,
+                 stream.count,
+                 stream.name.c_str()));
+    }
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string deviation(const ParameterSpace& space,
@@ -302,7 +326,7 @@ std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate
   constexpr double kSmall = 0.25;
   constexpr double kLeastFreedom = 30.0;
   constexpr double kExact = 1e-12;  // without noise nothing is told of it
-  std::vector<std::string> words;
+  std::vector<std::string> words = frequentOutliers(estimate);
   const double chi_square = estimate.reduced_chi_square;
   if (estimate.covariance_scale > 1.0 && chi_square > kLarge) {
     words.push_back(

@@ -165,7 +165,9 @@ std::vector<StreamNoise> streamNoise(const EstimationProblem& problem,
                                      const Estimate& estimate,
                                      const EstimationOptions& options) {
   const NoiseSums sums(problem, estimate, options);
-  const Eigen::MatrixXd& covariance = estimate.belief.covariance;
+  // By the noise as stated.
+  const Eigen::MatrixXd covariance =
+      estimate.belief.covariance / (estimate.covariance_scale * estimate.covariance_scale);
   const auto of = [&](const char* name, const Stream& stream) {
     return StreamNoise{name,
                        stream.sum.squaredMisfit(),
