@@ -10,6 +10,9 @@ double chiSquareLimit(double degrees_of_freedom, double probability) {
 }
 
 double chiSquareProbability(double degrees_of_freedom, double value) {
+  if (value <= 0.0) {
+    return 1.0;  // which Boost fails to tell of thousands of degrees
+  }
   const boost::math::chi_squared_distribution<double> distribution(degrees_of_freedom);
   return boost::math::cdf(boost::math::complement(distribution, value));
 }

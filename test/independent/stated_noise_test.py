@@ -21,7 +21,7 @@ class StatedNoise(unittest.TestCase):
         self.assertGreaterEqual(result.good(), 2, result.reasons)
 
     def test_orientations_with_twice_their_noise(self):
-        count, result = self.told("orientation_noise_2", "The orientations scatter by 2")
+        count, result = self.told("orientation_noise_2", " times what their samples state (by chance")
         self.assertGreaterEqual(count, 2, result.reasons)
         self.assertLessEqual(result.good(), 1, result.reasons)
 
