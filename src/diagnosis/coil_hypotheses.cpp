@@ -55,6 +55,30 @@ Hypothesis ofPole(const std::string& cause,
   return result;
 }
 
+/// A pole or coil whose torque is a factor times that of its description, by its start; what it
+/// corrects is left to the caller. `should`: how much it should exert, and what to check.
+Hypothesis strength(const std::string& kind,
+                    std::size_t index,
+                    double factor,
+                    double tolerance,
+                    const std::string& should) {
+  Hypothesis result;
+  result.cause = kind + "_gain:" + number(index);
+  result.family = kind + ":" + number(index);
+  result.start = Eigen::VectorXd::Constant(1, factor);
+  result.is_strength = true;
+  result.is_material = [tolerance](const Eigen::VectorXd& values) {
+    return std::abs(values[0] - 1.0) > kMaterial * tolerance;
+  };
+  result.sentence =
+      [kind, name = kind + " " + number(index), should](const Eigen::VectorXd& values) {
+        return name + format(" exerts %.3g times the torque that ", values[0]) + should +
+               format("; multiply its `gain` in the description by %.4g, or model ", values[0]) +
+               kind + "_gains in calibration.yaml.";
+      };
+  return result;
+}
+
 }  // namespace
 
 Hypothesis coilShift(std::size_t steps) {
@@ -117,11 +141,12 @@ Hypothesis coilDead(std::size_t coil) {
 }
 
 Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
-  Hypothesis result;
-  result.cause = "coil_gain:" + number(coil);
-  result.family = "coil:" + number(coil);
-  result.start = Eigen::VectorXd::Constant(1, gain);
-  result.is_strength = true;
+  Hypothesis result = strength("coil",
+                               coil,
+                               gain,
+                               tolerance,
+                               "its current should: check its winding and the scale of its current "
+                               "sensor");
   result.correct = [coil](WiringCase& wiring, const Eigen::VectorXd& values) {
     // By the currents: the factor may pass zero on the way.
     for (Sample& sample : wiring.samples) {
@@ -132,18 +157,6 @@ Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
   };
   result.redescribe = [coil](Actuator& actuator, const Eigen::VectorXd& values) {
     actuator.coils[coil].gain *= std::max(values[0], kNearlyNothing);
-  };
-  result.is_material = [tolerance](const Eigen::VectorXd& values) {
-    return std::abs(values[0] - 1.0) > kMaterial * tolerance;
-  };
-  const std::string name = "coil " + number(coil);
-  result.sentence = [name](const Eigen::VectorXd& values) {
-    return name + format(
-                      " exerts %.3g times the torque that its current should: check its "
-                      "winding and the scale of its current sensor; set its `gain` in the "
-                      "description to %.4g, or model coil_gains in calibration.yaml.",
-                      values[0],
-                      values[0]);
   };
   return result;
 }
@@ -167,30 +180,14 @@ Hypothesis poleMissing(std::size_t pole) {
 }
 
 Hypothesis poleGain(std::size_t pole, double gain, double tolerance) {
-  Hypothesis result;
-  result.cause = "pole_gain:" + number(pole);
-  result.family = "pole:" + number(pole);
-  result.start = Eigen::VectorXd::Constant(1, gain);
-  result.is_strength = true;
-  const auto change = [pole](Actuator& actuator, const Eigen::VectorXd& values) {
+  Hypothesis result = strength(
+      "pole", pole, gain, tolerance, "it should: check its magnet and its distance to the coils");
+  result.redescribe = [pole](Actuator& actuator, const Eigen::VectorXd& values) {
     // The polarity is another hypothesis, and a description has no zero.
     actuator.poles[pole].gain *= std::max(values[0], kNearlyNothing);
   };
-  result.correct = [change](WiringCase& wiring, const Eigen::VectorXd& values) {
+  result.correct = [change = result.redescribe](WiringCase& wiring, const Eigen::VectorXd& values) {
     change(wiring.actuator, values);
-  };
-  result.redescribe = change;
-  result.is_material = [tolerance](const Eigen::VectorXd& values) {
-    return std::abs(values[0] - 1.0) > kMaterial * tolerance;
-  };
-  const std::string name = "pole " + number(pole);
-  result.sentence = [name](const Eigen::VectorXd& values) {
-    return name + format(
-                      " exerts %.3g times the torque that it should: check its magnet and its "
-                      "distance to the coils; set its `gain` in the description to %.4g, or model "
-                      "pole_gains in calibration.yaml.",
-                      values[0],
-                      values[0]);
   };
   return result;
 }

@@ -90,6 +90,16 @@ TEST_F(SingleExplanation, IsACoilThatIsSlightlyTooStrong) {
   expectFirst(session(truth, 12), "coil_gain:1", "coil_1/gain = 7.0");
 }
 
+TEST_F(SingleExplanation, CorrectsTheGainThatTheDescriptionHas) {
+  Actuator truth = scenarios::paperTruth();
+  truth.coils[0].gain = 0.9 * 1.07;
+  Actuator described = scenarios::paperNominal();
+  described.coils[0].gain = 0.9;
+  expectFirst({{described}, session(truth, 12).samples(), {}},
+              "coil_gain:1",
+              "multiply its `gain` in the description by 1.07");
+}
+
 TEST_F(SingleExplanation, IsTheScaleOfAJoint) {
   CalibrationSession given = session(scenarios::paperTruth(), 13);
   std::vector<Sample> samples = given.samples();
