@@ -48,7 +48,7 @@ PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request,
       throw ConfigError("coils: numbers from 1 to " + std::to_string(coils) +
                         " in ascending order, negative where the current is.");
     }
-    planned.pattern.push_back({number - 1, signed_number < 0 ? -1 : 1});
+    planned.pattern.push_back({indexOf(number).value(), signed_number < 0 ? -1 : 1});
     before = number;
   }
   if (!planned.pattern.empty()) {
