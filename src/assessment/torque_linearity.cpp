@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
@@ -45,17 +46,11 @@ double currentOf(const Sample& sample, std::size_t coil) {
 
 /// The only coil that is excited; nothing for several. Without any, `coils`.
 std::optional<std::size_t> onlyCoil(const Sample& sample, double threshold) {
-  auto found = static_cast<std::size_t>(sample.current.size());
-  for (Eigen::Index j = 0; j < sample.current.size(); ++j) {
-    if (std::abs(sample.current[j]) < threshold) {
-      continue;
-    }
-    if (found < static_cast<std::size_t>(sample.current.size())) {
-      return std::nullopt;
-    }
-    found = static_cast<std::size_t>(j);
+  const std::vector<Excitation> excited = excitedCoils(sample, threshold);
+  if (excited.size() > 1) {
+    return std::nullopt;
   }
-  return found;
+  return excited.empty() ? static_cast<std::size_t>(sample.current.size()) : excited.front().coil;
 }
 
 /// Adds the coils of a rest that have enough torques.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "predicted_torques.hpp"
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "torque_hypotheses.hpp"
 
 namespace sac {
@@ -36,7 +37,7 @@ bool allFit(const WiringCase& fitted, const CalibrationConfig& config) {
       }
     }
     for (Eigen::Index j = 0; j < torque.current.size(); ++j) {
-      if (std::abs(torque.current[j]) >= config.estimation.current_threshold) {
+      if (isExcited(torque.current[j], config.estimation.current_threshold)) {
         groups[static_cast<std::size_t>(sizes.size() + j)].add(misfit);
       }
     }

@@ -10,6 +10,7 @@
 #include "predicted_torques.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "torque_hypotheses.hpp"
 
 namespace sac {
@@ -231,7 +232,7 @@ class TorqueScreen {
   /// A coil that is off measures some milliamperes all the same, which explain anything when they
   /// are multiplied by enough.
   bool isOn(const PredictedTorque& torque, Eigen::Index coil) const {
-    return std::abs(torque.current[coil]) >= config_.estimation.current_threshold;
+    return isExcited(torque.current[coil], config_.estimation.current_threshold);
   }
 
   /// By the samples in which one of two coils is on.
@@ -338,7 +339,7 @@ std::vector<ScreenedCandidate> screenMisfittingCoils(const WiringCase& described
     std::vector<double> strengths;
     for (std::size_t n = 0; n < torques.size(); ++n) {
       const Eigen::Vector3d own = drawn[n].per_ampere.col(column) * drawn[n].current[column];
-      if (std::abs(torques[n].current[column]) >= config.estimation.current_threshold &&
+      if (isExcited(torques[n].current[column], config.estimation.current_threshold) &&
           !own.isZero(0.0)) {
         misfits.push_back((torques[n].measured - torques[n].total).squaredNorm() /
                           torques[n].noise);

@@ -1,14 +1,15 @@
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 
-#include <cmath>
 #include <utility>
+
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 
 namespace sac {
 
 std::vector<Excitation> excitedCoils(const Sample& sample, double threshold) {
   std::vector<Excitation> excitations;
   for (Eigen::Index j = 0; j < sample.current.size(); ++j) {
-    if (std::abs(sample.current[j]) >= threshold) {
+    if (isExcited(sample.current[j], threshold)) {
       excitations.push_back({static_cast<std::size_t>(j), sample.current[j]});
     }
   }

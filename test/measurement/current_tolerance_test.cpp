@@ -10,6 +10,8 @@ namespace {
 TEST(CurrentTolerance, ACoilThatCarriesItsCurrentIsExcitedAndOneThatIsOffIsNot) {
   for (const double threshold : {0.01, kExcitationThreshold, 0.3}) {
     const CurrentTolerance tolerance = currentTolerance(threshold);
+    EXPECT_TRUE(isExcited(threshold, threshold) && isExcited(-threshold, threshold));
+    EXPECT_FALSE(isExcited(0.999 * threshold, threshold));
     EXPECT_FALSE(tolerance.allows(threshold, 0.0));
     EXPECT_TRUE(tolerance.allows(0.79 * threshold, 0.0));
     for (const double command : {leastExcitation(threshold), 3.0 * threshold, 100.0 * threshold}) {

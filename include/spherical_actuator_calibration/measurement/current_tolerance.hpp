@@ -16,6 +16,11 @@ struct CurrentTolerance {
   }
 };
 
+/// Whether a coil with so much measured current [A] counts as excited: from `threshold` [A] on.
+inline bool isExcited(double current, double threshold) {
+  return std::abs(current) >= threshold;
+}
+
 /// Of a coil that counts as excited from `threshold` [A] on: what is off by it counts as off. A
 /// tenth is what amplifiers miss, and the measured current is what estimates take.
 inline CurrentTolerance currentTolerance(double threshold) {
