@@ -50,18 +50,16 @@ class NoiseSums {
  private:
   void addAll() {
     constexpr std::size_t kMost = 2000;  // tells noise to a few percent
-    std::vector<std::vector<std::size_t>> units = shared_.dwells;
-    for (std::size_t n = 0; n < problem_.observations.size(); ++n) {
-      if (!shared_.shares[n]) {
-        units.push_back({n});
+    const std::size_t every = 1 + problem_.observations.size() / kMost;
+    std::size_t unit = 0;
+    for (const std::vector<std::size_t>& dwell : shared_.dwells) {
+      if (unit++ % every == 0) {
+        addDwell(dwell);
       }
     }
-    const std::size_t every = 1 + problem_.observations.size() / kMost;
-    for (std::size_t u = 0; u < units.size(); u += every) {
-      if (shared_.shares[units[u].front()]) {
-        addDwell(units[u]);
-      } else {
-        addAlone(units[u].front());
+    for (std::size_t n = 0; n < problem_.observations.size(); ++n) {
+      if (!shared_.shares[n] && unit++ % every == 0) {
+        addAlone(n);
       }
     }
   }
