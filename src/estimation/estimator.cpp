@@ -174,17 +174,17 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   path.insert(path.end(), result.path.begin() + (path.back() == start ? 1 : 0), result.path.end());
 }
 
-/// Solves on from where the path is, and once more with the weights at the solution where they
-/// depend on it.
+/// Solves on with the weights at the solution, until it does not depend on where the path began.
 bool Estimator::solveReweighted() {
-  const auto solve_on = [this] {
-    const Eigen::VectorXd start = solution_.path.empty() ? start_ : solution_.x();
-    solve(start, Loss::kSquared, 0.0);
-  };
-  solve_on();
-  if (result_.termination == Termination::kConverged && updateWeights(solution_.x())) {
-    solve_on();
-  }
+  constexpr double kSettled = 1e-7;  // [rad]; of such a step a thousandth is left at most
+  int round = 0;
+  Eigen::VectorXd before;
+  do {
+    before = solution_.path.empty() ? start_ : solution_.x();
+    solve(before, Loss::kSquared, 0.0);
+  } while (result_.termination == Termination::kConverged &&
+           (round == 0 || (solution_.x() - before).lpNorm<Eigen::Infinity>() > kSettled) &&
+           ++round <= 3 && updateWeights(solution_.x()));
   return result_.termination == Termination::kConverged;
 }
 
