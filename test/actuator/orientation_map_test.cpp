@@ -17,20 +17,8 @@
 namespace sac {
 namespace {
 
-OrientationMapDescription example() {
-  OrientationMapDescription map;
-  map.length = {0.3, 0.5, 0.8};
-  map.amplitude = {1e-3, 2e-3, 5e-4};
-  map.noise = {1e-4, 3e-4, 2e-4};
-  for (int n = 0; n < 12; ++n) {
-    map.readings.emplace_back(0.1 * std::sin(n), 0.2 * std::cos(2.0 * n), 0.5 * n);
-    map.rotations.emplace_back(1e-3 * std::cos(n), 2e-3 * std::sin(3.0 * n), 5e-4 * std::sin(n));
-  }
-  return map;
-}
-
 TEST(OrientationMap, IsTheGaussianProcessGivenItsPoints) {
-  const OrientationMapDescription description = example();
+  const OrientationMapDescription description = scenarios::orientationMap();
   const OrientationMap map(description);
   const Eigen::Vector3d q(0.05, -0.1, 1.2);
   const auto count = static_cast<Eigen::Index>(description.readings.size());
@@ -67,16 +55,16 @@ TEST(OrientationMap, IsTheGaussianProcessGivenItsPoints) {
 }
 
 TEST(OrientationMap, TellsNothingAwayFromItsPoints) {
-  const OrientationMap map(example());
+  const OrientationMap map(scenarios::orientationMap());
   const Eigen::Vector3d far(3.0, 0.0, 0.0);
   EXPECT_LT(map.mean(far).norm(), 1e-6);
   EXPECT_LT(map.uncertainty(far).support, 0.01);
   EXPECT_NEAR(map.uncertainty(far).variance[0], 1e-6, 1e-8);
-  EXPECT_GT(map.uncertainty(example().readings[0]).support, 0.7);
+  EXPECT_GT(map.uncertainty(scenarios::orientationMap().readings[0]).support, 0.7);
 }
 
 TEST(OrientationMap, IsTheSameAfterAWholeTurn) {
-  const OrientationMap map(example());
+  const OrientationMap map(scenarios::orientationMap());
   const Eigen::Vector3d q(0.05, -0.1, 1.2);
   EXPECT_LT((map.mean(q) - map.mean(q + Eigen::Vector3d(0.0, 0.0, 2.0 * std::acos(-1.0)))).norm(),
             1e-12);
@@ -84,7 +72,7 @@ TEST(OrientationMap, IsTheSameAfterAWholeTurn) {
 
 TEST(OrientationMap, RefusesWhatIsNoMap) {
   const auto refused = [](const std::function<void(OrientationMapDescription&)>& spoil) {
-    OrientationMapDescription map = example();
+    OrientationMapDescription map = scenarios::orientationMap();
     spoil(map);
     EXPECT_THROW(OrientationMap{map}, ConfigError);
   };
@@ -108,7 +96,7 @@ Actuator corrected() {
   Actuator actuator = scenarios::paperTruth();
   actuator.joints[0].correction = {{1e-3, -2e-3, 0.0}, {1e-3, 2e-3, -1e-3, 5e-4}};
   actuator.joints[2].correction = {{0.0, 0.0, 3e-3}, {0.0, 1e-3, 0.0, -2e-3}};
-  actuator.orientation_map = std::make_shared<OrientationMap>(example());
+  actuator.orientation_map = std::make_shared<OrientationMap>(scenarios::orientationMap());
   return actuator;
 }
 

@@ -1,6 +1,5 @@
 #include "motion_point.hpp"
 
-#include <cmath>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -19,15 +18,7 @@ Actuator corrected() {
   actuator.joints[0].correction.linear[1] = 2e-3;
   actuator.joints[2].correction.harmonics[0] = 5e-3;
   actuator.joints[2].correction.harmonics[3] = -3e-3;
-  OrientationMapDescription map;
-  map.length = {0.3, 0.5, 0.8};
-  map.amplitude = {1e-3, 2e-3, 5e-4};
-  map.noise = {1e-4, 3e-4, 2e-4};
-  for (int n = 0; n < 12; ++n) {
-    map.readings.emplace_back(0.1 * std::sin(n), 0.2 * std::cos(2.0 * n), 0.5 * n);
-    map.rotations.emplace_back(1e-3 * std::cos(n), 2e-3 * std::sin(3.0 * n), 5e-4 * std::sin(n));
-  }
-  actuator.orientation_map = std::make_shared<OrientationMap>(map);
+  actuator.orientation_map = std::make_shared<OrientationMap>(scenarios::orientationMap());
   return actuator;
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/orientation_map.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
@@ -103,5 +104,8 @@ std::vector<Sample> levitatedSession(const Actuator& truth,
 CalibrationState exactJoints(const ParameterSpace& space,
                              const Actuator& truth,
                              const ManufacturingTolerance& tolerance);
+
+/// What axes leave of a machine's orientations, as found at twelve poses.
+OrientationMapDescription orientationMap();
 
 }  // namespace sac::scenarios

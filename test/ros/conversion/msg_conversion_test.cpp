@@ -190,15 +190,7 @@ Actuator identifiedActuator() {
   actuator.poles[1].gain = 1.05;
   actuator.unbalance << 1e-3, -2e-3, 3e-3;
   actuator.torque_curve->coefficients[1] *= 1.02;
-  OrientationMapDescription map;
-  map.length = {0.3, 0.5, 0.8};
-  map.amplitude = {1e-3, 2e-3, 5e-4};
-  map.noise = {1e-4, 3e-4, 2e-4};
-  for (int n = 0; n < 9; ++n) {
-    map.readings.emplace_back(0.1 * n, -0.05 * n, 0.4 * n);
-    map.rotations.emplace_back(1e-3 * std::cos(n), 2e-3 * std::sin(n), 5e-4);
-  }
-  actuator.orientation_map = std::make_shared<OrientationMap>(map);
+  actuator.orientation_map = std::make_shared<OrientationMap>(scenarios::orientationMap());
   return actuator;
 }
 
