@@ -61,6 +61,14 @@ std::vector<Eigen::Vector3d> largeTorquePoses(const PaperStudyOptions& options,
   return poses;
 }
 
+/// A further sample, at a pose; what was measured there is for the caller to add.
+Sample& addSample(std::vector<Sample>& samples, const Eigen::Vector3d& q) {
+  Sample& sample = samples.emplace_back();
+  sample.id = static_cast<std::uint32_t>(samples.size());
+  sample.joint_position = q;
+  return sample;
+}
+
 std::vector<Sample> orientationSamples(const PaperStudyOptions& options,
                                        const std::vector<Eigen::Vector3d>& poses,
                                        double noise,
@@ -70,9 +78,7 @@ std::vector<Sample> orientationSamples(const PaperStudyOptions& options,
   std::vector<Sample> samples;
   samples.reserve(poses.size());
   for (const Eigen::Vector3d& q : poses) {
-    Sample& sample = samples.emplace_back();
-    sample.id = static_cast<std::uint32_t>(samples.size());
-    sample.joint_position = q;
+    Sample& sample = addSample(samples, q);
     sample.has_orientation = true;
     const Eigen::Matrix3d turn = rotationExp(random.uniformVector(noise));
     const Eigen::Matrix3d R_stator_rotor = rotorOrientation(joints, q);
@@ -95,9 +101,7 @@ std::vector<Sample> torqueSamples(const PaperStudyOptions& options,
   std::vector<Sample> samples;
   samples.reserve(poses.size());
   for (const Eigen::Vector3d& q : poses) {
-    Sample& sample = samples.emplace_back();
-    sample.id = static_cast<std::uint32_t>(samples.size());
-    sample.joint_position = q;
+    Sample& sample = addSample(samples, q);
     sample.has_torque = true;
     sample.current = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(options.truth.coils.size()));
     sample.current[static_cast<Eigen::Index>(coil)] = options.current;
