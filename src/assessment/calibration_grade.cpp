@@ -185,11 +185,11 @@ class Examiner {
     if (last_success_ == nullptr) {
       return {};
     }
-    if (wanted.orientation > 0.0 && last_success_->orientation_uncertainty > wanted.orientation) {
+    if (wanted.orientation > 0.0 && session_.expectedErrors().orientation > wanted.orientation) {
       return format(", but the expected orientation error is above the wanted %.2g mrad",
                     1e3 * wanted.orientation);
     }
-    if (wanted.torque > 0.0 && last_success_->torque_uncertainty > wanted.torque) {
+    if (wanted.torque > 0.0 && session_.expectedErrors().torque > wanted.torque) {
       return format(", but the expected torque error is above the wanted %.2g mN.m per ampere",
                     1e3 * wanted.torque);
     }
@@ -246,11 +246,11 @@ class Examiner {
     const CalibrationModel& model = session_.model();
     std::string text = " Expected error over the workspace:";
     if (model.space().joints() > 0) {
-      text += format(" orientation %.2g mrad", 1e3 * last_success_->orientation_uncertainty);
+      text += format(" orientation %.2g mrad", 1e3 * session_.expectedErrors().orientation);
       text += model.hasTorqueModel() ? "," : "";
     }
     if (model.hasTorqueModel()) {
-      text += format(" torque %.2g mN.m per ampere", 1e3 * last_success_->torque_uncertainty);
+      text += format(" torque %.2g mN.m per ampere", 1e3 * session_.expectedErrors().torque);
     }
     return text + " (1 sigma, 95 % of all poses are better).";
   }

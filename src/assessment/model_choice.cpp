@@ -63,8 +63,11 @@ std::optional<double> heldOutError(const CalibrationSession& session) {
       others[n].validation = others[n].validation || regions[n] == region;
       others[n].has_torque = false;
     }
-    const CycleOutcome outcome = runCycle(
-        session.model(), others, session.state(), {Cycle::kRefine}, session.config().estimation);
+    const CycleOutcome outcome = runCycle(session.model(),
+                                          others,
+                                          session.state(),
+                                          withoutExpectedErrors({Cycle::kRefine}),
+                                          session.config().estimation);
     const ModelPoint point(session.model(), outcome.state.belief.x);
     for (std::size_t n = 0; outcome.report.success && n < others.size(); ++n) {
       const Sample& sample = session.samples()[n];
@@ -94,9 +97,9 @@ ModelFit fitWith(const std::string& name,
   CalibrationSession session(start, samples, config);
   for (const CycleRequest& request :
        possibleCycles(session.model(), session.samples(), config.estimation)) {
-    session.run(request);
+    session.run(withoutExpectedErrors(request));
   }
-  const CycleReport refined = session.run({Cycle::kRefine});
+  const CycleReport refined = session.run(withoutExpectedErrors({Cycle::kRefine}));
   ModelFit fit;
   fit.effects = name;
   fit.converged = refined.success;

@@ -270,6 +270,9 @@ CycleOutcome runCycle(const CalibrationModel& model,
   }
   std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
   conclude(model, estimate, coordinates, outcome.state, report);
+  if (request.expected_errors == ExpectedErrors::kReported) {
+    reportExpectedErrors(model, outcome.state.belief, report);
+  }
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
       left_out + together;

@@ -136,6 +136,7 @@ void CalibrationSession::resume(CalibrationState state,
   reports_ = std::move(reports);
   motion_evidence_ = std::move(motion_evidence);
   map_choice_.reset();
+  expected_errors_.reset();
 }
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
@@ -154,6 +155,7 @@ const CycleReport& CalibrationSession::run(const CycleRequest& request) {
     motion_evidence_ = sac::motionEvidence(model_.space(), reports_.back(), state_, startState());
   }
   map_choice_.reset();
+  expected_errors_.reset();
   return reports_.back();
 }
 
@@ -222,6 +224,13 @@ const OrientationMapChoice& CalibrationSession::orientationMap() const {
         model_, samples_, state_, {*last}, config_.estimation, config_.orientation_map);
   }
   return *map_choice_;
+}
+
+const WorkspaceUncertainty& CalibrationSession::expectedErrors() const {
+  if (!expected_errors_) {
+    expected_errors_ = workspaceUncertainty(model_, state_.belief);
+  }
+  return *expected_errors_;
 }
 
 /// The model with the orientation map that is in force.
@@ -325,16 +334,15 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
   record.source = origin.recordings;
   record.software = origin.software;
   for (const CycleReport& report : reports_) {
-    if (!report.success) {
-      continue;
+    if (report.success) {
+      record.cycles.push_back(cycleRecord(report));
     }
-    record.cycles.push_back(cycleRecord(report));
-    if (model_.space().joints() > 0) {
-      record.orientation_uncertainty = report.orientation_uncertainty;
-    }
-    if (model_.hasTorqueModel()) {
-      record.torque_uncertainty = report.torque_uncertainty;
-    }
+  }
+  if (!record.cycles.empty() && model_.space().joints() > 0) {
+    record.orientation_uncertainty = expectedErrors().orientation;
+  }
+  if (!record.cycles.empty() && model_.hasTorqueModel()) {
+    record.torque_uncertainty = expectedErrors().torque;
   }
   const std::vector<ParameterEstimate> estimates = parameters();
   for (const ParameterEstimate& parameter : estimates) {
@@ -360,38 +368,6 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
     record.validation = validationRecord(*validation);
   }
   return record;
-}
-
-std::string unitOf(ErrorMeasure measure) {
-  switch (measure) {
-    case ErrorMeasure::kOrientation:
-      return unitOf(Quantity::kOrientation);
-    case ErrorMeasure::kTorque:
-      return unitOf(Quantity::kTorque);
-    case ErrorMeasure::kStandardized:
-      break;
-  }
-  return "1";
-}
-
-std::string quantityName(Quantity quantity) {
-  return quantity == Quantity::kOrientation ? "orientation" : "torque";
-}
-
-std::string unitOf(Quantity quantity) {
-  return quantity == Quantity::kOrientation ? "rad" : "N·m";
-}
-
-std::optional<double> residualRms(const CycleReport& report, Quantity quantity) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const SampleResidual& residual : report.residuals) {
-    if (residual.quantity == quantity && !residual.rejected) {
-      sum += residual.residual * residual.residual;
-      ++count;
-    }
-  }
-  return count == 0 ? std::nullopt : std::optional(std::sqrt(sum / static_cast<double>(count)));
 }
 
 }  // namespace sac

@@ -84,7 +84,12 @@ void conclude(const CalibrationModel& model,
   for (const Eigen::Index p : in_directions) {
     state.identified[static_cast<std::size_t>(p)] = false;
   }
-  const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, state.belief);
+}
+
+void reportExpectedErrors(const CalibrationModel& model,
+                          const ParameterBelief& belief,
+                          CycleReport& report) {
+  const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, belief);
   report.orientation_uncertainty = uncertainty.orientation;
   report.torque_uncertainty = uncertainty.torque;
 }

@@ -30,4 +30,9 @@ void conclude(const CalibrationModel& model,
               CalibrationState& state,
               CycleReport& report);
 
+/// Puts what errors the belief lets expect over the workspace into the report.
+void reportExpectedErrors(const CalibrationModel& model,
+                          const ParameterBelief& belief,
+                          CycleReport& report);
+
 }  // namespace sac

@@ -110,7 +110,8 @@ class RegionJudge {
           held.push_back(samples_[places_[n]]);
         }
       }
-      const CycleOutcome outcome = runCycle(model_, others, state_, cycle_, options_);
+      const CycleOutcome outcome =
+          runCycle(model_, others, state_, withoutExpectedErrors(cycle_), options_);
       const UnexplainedRotations known =
           mergedPoses(unexplained(model_, others, outcome.state.belief.x));
       const UnexplainedRotations tested =

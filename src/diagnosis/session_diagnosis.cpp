@@ -62,7 +62,7 @@ RefinedFit refined(const CalibrationSession& session, const EffectSelection& eff
   CalibrationSession trial(session.start(), session.samples(), config);
   RefinedFit fit;
   for (const CycleRequest& request : cyclesOf(session, trial)) {
-    const CycleReport& report = trial.run(request);
+    const CycleReport& report = trial.run(withoutExpectedErrors(request));
     fit.converged = report.success;
     fit.reduced_chi_square = report.reduced_chi_square;
     fit.freedom = request.cycle == Cycle::kMotion

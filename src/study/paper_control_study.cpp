@@ -43,7 +43,7 @@ Calibrated calibrated(const PaperStudyOptions& options, std::uint64_t seed) {
   config.estimation = options.estimation;
   CalibrationSession session({options.nominal}, samples, config);
   const auto run = [&](const CycleRequest& request) {
-    const CycleReport report = session.run(request);
+    const CycleReport report = session.run(withoutExpectedErrors(request));
     if (!report.success) {
       throw DataError("A session of the study failed: " + report.message);
     }

@@ -241,7 +241,8 @@ std::vector<LevelOneRun> studyLevelOne(const PaperStudyOptions& options, std::si
         orientationSamples(options, randomPoses(orientations, options.joint_tilt, seed), 0.0, seed);
     LevelOneRun& run = runs.emplace_back();
     run.errors =
-        runCycle(model, samples, start, {Cycle::kJoint}, options.estimation).report.error_history;
+        runCycle(model, samples, start, withoutExpectedErrors({Cycle::kJoint}), options.estimation)
+            .report.error_history;
     const FreeAxisPath newton =
         calibrateFreeAxes(samples, nominal, JacobianUse::kEveryIteration, kPaperIterations);
     const FreeAxisPath chord =
@@ -279,7 +280,7 @@ std::vector<LevelOneNoiseRun> studyLevelOneNoise(const PaperStudyOptions& option
             samples, freeAxes(options.nominal), JacobianUse::kEveryIteration, kPaperIterations)
             .errors.back();
     const CycleOutcome outcome =
-        runCycle(model, samples, start, {Cycle::kJoint}, options.estimation);
+        runCycle(model, samples, start, withoutExpectedErrors({Cycle::kJoint}), options.estimation);
     const bool is_done = outcome.report.success && !outcome.report.error_history.empty();
     run.error =
         is_done ? outcome.report.error_history.back() : std::numeric_limits<double>::infinity();
@@ -296,7 +297,7 @@ std::vector<LevelTwoRun> studyLevelTwo(const PaperStudyOptions& options,
                                        bool noise) {
   const CalibrationModel model{ParameterSpace(options.nominal)};
   const CalibrationState start = startOf(model.space(), options.truth, situation);
-  const CycleRequest request = requestOf(situation);
+  const CycleRequest request = withoutExpectedErrors(requestOf(situation));
   std::vector<Eigen::Vector3d> poses;
   if (orientations == Orientations::kPlanned) {
     poses = plannedPoses(options, model, situation, measurements);

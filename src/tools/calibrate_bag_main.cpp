@@ -188,7 +188,9 @@ std::vector<CycleRequest> cyclesOf(const CalibrationSession& session,
 void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {
   const std::vector<CycleRequest> requests = cyclesOf(session, options);
   for (const CycleRequest& request : requests) {
-    std::cout << cycleParagraph(session.run(request)) << std::flush;
+    const CycleReport& report =
+        session.run(options.report_folder ? request : withoutExpectedErrors(request));
+    std::cout << cycleParagraph(report) << std::flush;
   }
 }
 

@@ -137,6 +137,26 @@ TEST(CalibrationSession, RecordTellsCyclesOriginAndWhatIsOpen) {
   EXPECT_GT(record.torque_uncertainty.value(), 0.0);
 }
 
+TEST(CalibrationSession, ExpectsTheSameErrorsWhereReportsLeaveThemOut) {
+  CalibrationSession telling = paperSession(3);
+  CalibrationSession silent = paperSession(3);
+  for (const CycleRequest& request :
+       {CycleRequest{Cycle::kJoint}, CycleRequest{Cycle::kPoles, 0}}) {
+    const CycleReport told = telling.run(request);
+    const CycleReport left_out = silent.run(withoutExpectedErrors(request));
+    EXPECT_GT(told.orientation_uncertainty, 0.0);
+    EXPECT_EQ(silent.expectedErrors().orientation, told.orientation_uncertainty);
+    EXPECT_EQ(silent.expectedErrors().torque, told.torque_uncertainty);
+    EXPECT_EQ(left_out.orientation_uncertainty, 0.0);
+    EXPECT_EQ(left_out.torque_uncertainty, 0.0);
+  }
+  EXPECT_EQ(renderDescription(silent.description(exampleOrigin()), "c.yaml"),
+            renderDescription(telling.description(exampleOrigin()), "c.yaml"));
+  const double after = silent.expectedErrors().torque;
+  silent.resume(silent.startState(), {});
+  EXPECT_GT(silent.expectedErrors().torque, 2.0 * after);
+}
+
 TEST(CalibrationSession, CalibratedDescriptionsCanBeSavedAndLoaded) {
   CalibrationSession session = paperSession(4);
   runAll(session);

@@ -43,6 +43,8 @@ TEST_F(MotionCycleTest, NeedsNoModelOfWhatOnlyMotionTells) {
   EXPECT_LT(state.belief.covariance.diagonal().maxCoeff(), 1e-6);
   EXPECT_TRUE(isTold(report, "rotor_inertia/xx"));
   EXPECT_TRUE(isTold(report, "tracker_delay"));
+  EXPECT_NEAR(session_.expectedErrors().orientation, report.orientation_uncertainty, 1e-15);
+  EXPECT_NEAR(session_.expectedErrors().torque, report.torque_uncertainty, 1e-15);
 }
 
 TEST_F(MotionCycleTest, WithoutMotionChangesNothing) {

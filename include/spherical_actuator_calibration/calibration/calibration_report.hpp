@@ -58,9 +58,21 @@ struct CycleReport {
   std::vector<ParameterEstimate> estimates;
   std::vector<OpenDirection> open_directions;  ///< beside single unobservable parameters
   std::vector<SampleResidual> residuals;
-  double orientation_uncertainty = 0.0;                ///< see workspace_uncertainty.hpp [rad]
+  // See workspace_uncertainty.hpp; 0 where the request left them out.
+  double orientation_uncertainty = 0.0;                ///< [rad]
   double torque_uncertainty = 0.0;                     ///< [N·m/A]
   std::optional<MotionSummary> motion = std::nullopt;  ///< of the cycle motion
 };
+
+/// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.
+std::string unitOf(ErrorMeasure measure);
+
+/// orientation or torque, and the unit of its residuals: rad or N·m.
+std::string quantityName(Quantity quantity);
+std::string unitOf(Quantity quantity);
+
+/// Root mean square norm of the residuals of one kind that were not rejected; nothing when there
+/// are none.
+std::optional<double> residualRms(const CycleReport& report, Quantity quantity);
 
 }  // namespace sac

@@ -16,6 +16,7 @@
 #include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
@@ -99,6 +100,10 @@ class CalibrationSession {
   /// held, and kept until the parameters change.
   const OrientationMapChoice& orientationMap() const;
 
+  /// What errors the parameters in force let expect over the workspace, whether the reports tell or
+  /// not. Found when it is first asked for, and kept until the parameters change.
+  const WorkspaceUncertainty& expectedErrors() const;
+
   /// Everything in force: geometry, corrections, torque law and orientation map.
   Actuator actuator() const;
 
@@ -122,18 +127,9 @@ class CalibrationSession {
   CalibrationState state_;
   std::vector<CycleReport> reports_;
   std::optional<MotionEvidence> motion_evidence_;
-  mutable std::optional<OrientationMapChoice> map_choice_;  ///< nothing: not asked for yet
+  // Nothing: not asked for yet.
+  mutable std::optional<OrientationMapChoice> map_choice_;
+  mutable std::optional<WorkspaceUncertainty> expected_errors_;
 };
-
-/// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.
-std::string unitOf(ErrorMeasure measure);
-
-/// orientation or torque, and the unit of its residuals: rad or N·m.
-std::string quantityName(Quantity quantity);
-std::string unitOf(Quantity quantity);
-
-/// Root mean square norm of the residuals of one kind that were not rejected; nothing when there
-/// are none.
-std::optional<double> residualRms(const CycleReport& report, Quantity quantity);
 
 }  // namespace sac
