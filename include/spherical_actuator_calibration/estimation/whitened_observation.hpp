@@ -95,9 +95,14 @@ class InformationSum {
   void addDense(const Eigen::MatrixBase<Jacobian>& jacobian,
                 const Eigen::MatrixBase<Residual>& residual,
                 double weight = 1.0) {
-    upper_.template selfadjointView<Eigen::Upper>().rankUpdate(jacobian.transpose(), weight);
-    gradient_.noalias() += weight * (jacobian.transpose() * residual);
-    squared_misfit_ += weight * residual.squaredNorm();
+    if constexpr ((Jacobian::Flags & Eigen::DirectAccessBit) == 0) {
+      // Of an expression that is not evaluated, rankUpdate() would count a factor once, not twice.
+      addDense(jacobian.eval(), residual, weight);
+    } else {
+      upper_.template selfadjointView<Eigen::Upper>().rankUpdate(jacobian.transpose(), weight);
+      gradient_.noalias() += weight * (jacobian.transpose() * residual);
+      squared_misfit_ += weight * residual.squaredNorm();
+    }
   }
 
   /// A sum over some of the coordinates. `places`: theirs, ascending.
