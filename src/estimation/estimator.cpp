@@ -8,7 +8,9 @@
 
 #include "axis_modes.hpp"
 #include "estimate_conclusion.hpp"
+#include "held_prior.hpp"
 #include "problem_check.hpp"
+#include "single_step.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
@@ -44,10 +46,10 @@ class Estimator {
   UnidentifiedPart unidentifiedAt(const Eigen::VectorXd& x, Which which = Which::kActive) const;
   void noteRejectedAway(const UnidentifiedPart& seen);
   bool refineOpen(int round, UnidentifiedPart& open);
-  double statedVariance(Eigen::Index coordinate) const;
-  std::vector<Eigen::Index> stated(const std::vector<Eigen::Index>& coordinates) const;
   void widenAmbiguous();
+  LeastSquaresInput inputFrom(const Eigen::VectorXd& start, Loss loss) const;
   void solve(const Eigen::VectorXd& start, Loss loss, double transition);
+  bool stepOn(double longest);
   bool solveReweighted();
   bool solveRobustly(double transition);
   bool solveWithoutOutliers();
@@ -87,46 +89,14 @@ void Estimator::setFree(const UnidentifiedPart& part) {
   for (Eigen::Index p = 0; p < start_.size(); ++p) {
     start_[p] = held_[static_cast<std::size_t>(p)] ? problem_.prior.x[p] : start_[p];
   }
-  const std::vector<Eigen::Index> stated = this->stated(solution_.estimated);
-  const Eigen::Index open = part.directions.cols();
-  const Eigen::Index all = open + static_cast<Eigen::Index>(stated.size());
-  LinearPrior& prior = solution_.prior;
-  prior.directions.setZero(part.directions.rows(), all);
-  prior.mean.setZero(all);
-  prior.covariance.setZero(all, all);
-  prior.directions.leftCols(open) = part.directions;
-  prior.mean.head(open) = part.directions.transpose() * problem_.prior.x;
-  prior.covariance.topLeftCorner(open, open) =
-      part.directions.transpose() * problem_.prior.covariance * part.directions;
-  for (Eigen::Index k = open; k < all; ++k) {
-    const Eigen::Index p = stated[static_cast<std::size_t>(k - open)];
-    prior.directions(p, k) = 1.0;
-    prior.covariance(k, k) = statedVariance(p);
-  }
-}
-
-double Estimator::statedVariance(Eigen::Index coordinate) const {
-  const ParameterSpace& space = problem_.model->space();
-  return coordinate < space.effect() ? 0.0
-                                     : space.effects().statedVariance(coordinate - space.effect());
-}
-
-/// Those whose size is stated beforehand. That counts in every cycle as if none had run before: a
-/// cycle that estimates them uses all samples that tell them.
-std::vector<Eigen::Index> Estimator::stated(const std::vector<Eigen::Index>& coordinates) const {
-  std::vector<Eigen::Index> result;
-  std::copy_if(
-      coordinates.begin(), coordinates.end(), std::back_inserter(result), [this](Eigen::Index p) {
-        return statedVariance(p) > 0.0;
-      });
-  return result;
+  solution_.prior = heldPrior(problem_, part.directions, solution_.estimated);
 }
 
 /// What observations leave open of the free coordinates of the problem, at x.
 UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x, Which which) const {
   Eigen::MatrixXd information = observations_.information(x, problem_.free, which);
   for (std::size_t k = 0; k < problem_.free.size(); ++k) {
-    const double variance = statedVariance(problem_.free[k]);
+    const double variance = statedVariance(problem_.model->space(), problem_.free[k]);
     information.diagonal()[static_cast<Eigen::Index>(k)] += variance > 0.0 ? 1.0 / variance : 0.0;
   }
   return unidentifiedPart(
@@ -148,8 +118,8 @@ void Estimator::noteRejectedAway(const UnidentifiedPart& seen) {
   }
 }
 
-/// One least-squares solution over the active observations; its path is kept for the error history.
-void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition) {
+/// The active observations as they are weighed now, and the coordinates to estimate.
+LeastSquaresInput Estimator::inputFrom(const Eigen::VectorXd& start, Loss loss) const {
   LeastSquaresInput input;
   input.evaluator = &observations_.evaluator();
   input.whitening = &observations_.whitening();
@@ -160,10 +130,16 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   input.at_start = loss == Loss::kSquared ? &observations_.sum(start) : nullptr;
   input.prior = solution_.prior;
   input.loss = loss;
-  input.loss_transition = transition;
   input.max_iterations = options_.max_iterations;
   // A robust pass only sorts the observations: the last digits are the plain solution's.
   input.parameter_tolerance = loss == Loss::kSquared ? 1e-12 : 1e-6;
+  return input;
+}
+
+/// One least-squares solution over the active observations; its path is kept for the error history.
+void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition) {
+  LeastSquaresInput input = inputFrom(start, loss);
+  input.loss_transition = transition;
   const LeastSquaresResult result = solveLeastSquares(input);
   result_.solve_time += result.solve_time;
   result_.termination = result.termination;
@@ -174,17 +150,39 @@ void Estimator::solve(const Eigen::VectorXd& start, Loss loss, double transition
   path.insert(path.end(), result.path.begin() + (path.back() == start ? 1 : 0), result.path.end());
 }
 
-/// Solves on with the weights at the solution, until it does not depend on where the path began.
+/// One step by the weights at the solution; false where it would be longer [rad].
+bool Estimator::stepOn(double longest) {
+  const auto moved = afterOneStep(inputFrom(solution_.x(), Loss::kSquared));
+  if (!moved || !((*moved - solution_.x()).lpNorm<Eigen::Infinity>() <= longest)) {
+    return false;
+  }
+  solution_.path.push_back(*moved);
+  return true;
+}
+
+/// Goes on with the weights at each point, until the solution does not depend on where the path
+/// began. A single step leads on as long as steps shrink, a whole solution elsewhere.
 bool Estimator::solveReweighted() {
-  constexpr double kSettled = 1e-7;  // [rad]; of such a step a thousandth is left at most
-  int round = 0;
-  Eigen::VectorXd before;
-  do {
-    before = solution_.path.empty() ? start_ : solution_.x();
-    solve(before, Loss::kSquared, 0.0);
-  } while (result_.termination == Termination::kConverged &&
-           (round == 0 || (solution_.x() - before).lpNorm<Eigen::Infinity>() > kSettled) &&
-           ++round <= 3 && updateWeights(solution_.x()));
+  constexpr int kMaxSteps = 10;
+  constexpr double kSettled = 1e-12;  // [rad] left to go
+  constexpr double kFine = 1e-9;      // [rad]; below it steps that do not shrink are rounding
+  constexpr double kNear = 2e-3;      // [rad]; twice the longest step that is taken as it is
+  constexpr double kLeastShrinkage = 0.05;
+  double before = kNear;
+  solve(solution_.path.empty() ? start_ : solution_.x(), Loss::kSquared, 0.0);
+  bool goes_on = result_.termination == Termination::kConverged && updateWeights(solution_.x());
+  for (int n = 0; goes_on && n < kMaxSteps; ++n) {
+    const Eigen::VectorXd from = solution_.x();
+    if (!stepOn(0.5 * before)) {
+      solve(from, Loss::kSquared, 0.0);
+    }
+    updateWeights(solution_.x());
+    const double moved = (solution_.x() - from).lpNorm<Eigen::Infinity>();
+    const double shrinkage = std::max(moved / before, kLeastShrinkage);
+    goes_on = result_.termination == Termination::kConverged && moved * shrinkage > kSettled &&
+              (shrinkage <= 0.5 || moved > kFine);
+    before = moved;
+  }
   return result_.termination == Termination::kConverged;
 }
 
@@ -211,7 +209,8 @@ bool Estimator::rejectOutliers() {
 }
 
 bool Estimator::hasEnoughObservations() {
-  const std::size_t unknowns = solution_.estimated.size() - stated(solution_.estimated).size();
+  const std::size_t stated = statedOf(problem_.model->space(), solution_.estimated).size();
+  const std::size_t unknowns = solution_.estimated.size() - stated;
   if (static_cast<std::size_t>(kComponents) * observations_.activeCount() >= unknowns) {
     return true;
   }

@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "single_step.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
@@ -306,6 +307,17 @@ class Descent {
 };
 
 }  // namespace
+
+std::optional<Eigen::VectorXd> afterOneStep(const LeastSquaresInput& input) {
+  const Objective objective(input);
+  const NormalEquations normal = objective.atStart();
+  const InformationFactor factor(
+      normal.information, kLeastDamping * normal.information.diagonal().cwiseMax(kLeastDiagonal));
+  if (!factor.isPositive()) {
+    return std::nullopt;
+  }
+  return objective.moved(input.start, -factor.solve(normal.gradient));
+}
 
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   const auto begin = std::chrono::steady_clock::now();

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <numeric>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +96,30 @@ TEST_F(Refinement, UsesSamplesWithSeveralCoilsAtOnce) {
   EXPECT_EQ(outcome.report.samples_used, 172u);
   EXPECT_LT(outcome.report.torque_uncertainty, before);
   EXPECT_NEAR(outcome.report.reduced_chi_square, 1.0, 0.2);
+}
+
+// Errors of the readings weigh by how the torque changes with them, which parameters decide.
+TEST_F(Refinement, DoesNotDependOnTheCyclesBeforeIt) {
+  constexpr double kReadingNoise = 2e-4;
+  scenarios::Generator generator(79);
+  const Actuator truth = scenarios::perturbed(scenarios::paperNominal(), 0.03, 0.02, generator);
+  std::vector<Sample> samples =
+      scenarios::paperSession(truth, scenarios::Tracker::kFirstTenPoses, generator);
+  std::normal_distribution<double> noise(0.0, kReadingNoise);
+  for (Sample& sample : samples) {
+    sample.joint_stddev.setConstant(kReadingNoise);
+    sample.joint_position += Eigen::Vector3d::NullaryExpr([&] { return noise(generator); });
+  }
+  const CycleOutcome after_others = refine(samples);
+  CalibrationState start = nominalState(space_, ManufacturingTolerance());
+  const CycleOutcome by_itself = runCycle(model_, samples, start, kRefine, options_);
+  start.belief.x = after_others.state.belief.x;
+  const CycleOutcome from_there = runCycle(model_, samples, start, kRefine, options_);
+  for (const CycleOutcome& outcome : {by_itself, from_there}) {
+    ASSERT_TRUE(outcome.report.success) << outcome.report.message;
+    const Eigen::VectorXd apart = outcome.state.belief.x - after_others.state.belief.x;
+    EXPECT_LT(apart.lpNorm<Eigen::Infinity>(), 1e-12);
+  }
 }
 
 TEST_F(Refinement, LeavesCoilsWithoutSamplesAlone) {
