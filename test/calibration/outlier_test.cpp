@@ -57,6 +57,26 @@ TEST_F(Outliers, OfOrientationAreFoundAndTheRestFitsAsIfTheyWereAbsent) {
   }
 }
 
+TEST_F(Outliers, AreToldAsADoubtWhereTheyAreMoreThanAQuarter) {
+  const CalibrationState nominal = nominalState(space_, ManufacturingTolerance());
+  const auto doubts = [&](std::size_t outliers) {
+    scenarios::Generator generator(5);
+    const auto poses = scenarios::randomPoses(21, 0.6, generator);
+    std::vector<Sample> data = scenarios::orientationSamples(
+        truth_, poses, 1e-3, scenarios::uniformStddev(1e-3), generator);
+    for (std::size_t n = 0; n < outliers; ++n) {
+      const Eigen::Vector3d direction = scenarios::uniformNoise(1.0, generator).normalized();
+      data[3 * n].R_stator_rotor = rotationExp(0.02 * direction) * data[3 * n].R_stator_rotor;
+    }
+    const CycleReport report = runCycle(model_, data, nominal, {Cycle::kJoint}, options_).report;
+    EXPECT_EQ(report.samples_rejected, outliers);
+    return report.doubts;
+  };
+  EXPECT_TRUE(doubts(5).empty());
+  ASSERT_EQ(doubts(6).size(), 1U);
+  EXPECT_EQ(doubts(6).front().rfind("6 of 21 orientations were left out as outliers", 0), 0U);
+}
+
 TEST_F(Outliers, OfTorqueAreFoundAndTheRestFitsAsIfTheyWereAbsent) {
   const CalibrationState state = scenarios::exactJoints(space_, truth_, ManufacturingTolerance());
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
