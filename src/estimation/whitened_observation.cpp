@@ -106,6 +106,12 @@ void InformationSum::addAt(const std::vector<Eigen::Index>& places, const Inform
   squared_misfit_ += other.squared_misfit_;
 }
 
+void InformationSum::moveBy(const Eigen::VectorXd& step) {
+  const Eigen::VectorXd change = upper_.selfadjointView<Eigen::Upper>() * step;
+  squared_misfit_ += step.dot(2.0 * gradient_ + change);
+  gradient_ += change;
+}
+
 InformationSum InformationSum::at(const std::vector<Eigen::Index>& places) const {
   InformationSum chosen(upper_(places, places));
   chosen.gradient_ = gradient_(places);

@@ -4,17 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "spherical_actuator_calibration/base/pi.hpp"
+#include "unwrapped_angle.hpp"
 
 namespace sac {
-namespace {
-
-/// The angle of the same direction nearest to the one before.
-double unwrapped(double angle, double before) {
-  return angle - 2.0 * kPi * std::round((angle - before) / (2.0 * kPi));
-}
-
-}  // namespace
 
 bool MotionRecorder::isNext(const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine) {
   // Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
@@ -29,14 +21,10 @@ void MotionRecorder::add(const JointMeasurement& measurement) {
   if (!isNext(streams_.joint_stamps, measurement.stamp, measurement.position.allFinite())) {
     return;
   }
-  Eigen::Vector3d position = measurement.position;
-  if (!streams_.joints.empty()) {
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      position[k] = unwrapped(position[k], streams_.joints.back()[k]);
-    }
-  }
   streams_.joint_stamps.push_back(measurement.stamp);
-  streams_.joints.push_back(position);
+  streams_.joints.push_back(streams_.joints.empty()
+                                ? measurement.position
+                                : unwrapped(measurement.position, streams_.joints.back()));
 }
 
 void MotionRecorder::add(const CurrentMeasurement& measurement) {

@@ -88,23 +88,6 @@ double largestSpeed(const JointTrack& track, const MotionWindow& window) {
   return fastest;
 }
 
-/// Why a window cannot serve; empty: it can.
-std::string refusal(const MotionSpan& span,
-                    const MotionWindow& window,
-                    const MotionOptions& options) {
-  for (std::size_t n = window.first - 1; n <= window.last; ++n) {
-    if (!span.track.isWhole(n)) {
-      return "joint readings are missing";
-    }
-  }
-  const double begin = span.track.time(window.first) - options.largest_delay;
-  const double end = span.track.time(window.last) + options.largest_delay;
-  if (!hasCurrents(span, begin, end)) {
-    return "currents are missing";
-  }
-  return largestSpeed(span.track, window) < options.least_speed ? "the rotor rests" : "";
-}
-
 }  // namespace
 
 MotionSpan::MotionSpan(const MotionStreams& recorded)
@@ -125,6 +108,22 @@ void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_o
   }
 }
 
+std::string refusalOf(const MotionSpan& span,
+                      const MotionWindow& window,
+                      const MotionOptions& options) {
+  for (std::size_t n = window.first - 1; n <= window.last; ++n) {
+    if (!span.track.isWhole(n)) {
+      return "joint readings are missing";
+    }
+  }
+  const double begin = span.track.time(window.first) - options.largest_delay;
+  const double end = span.track.time(window.last) + options.largest_delay;
+  if (!hasCurrents(span, begin, end)) {
+    return "currents are missing";
+  }
+  return largestSpeed(span.track, window) < options.least_speed ? "the rotor rests" : "";
+}
+
 std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out) {
@@ -140,7 +139,7 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
     const std::vector<std::size_t> borders = bordersOf(spans[s], options.largest_delay, length);
     for (std::size_t n = 0; n + 1 < borders.size(); ++n) {
       const MotionWindow window{s, borders[n], borders[n + 1]};
-      const std::string reason = refusal(spans[s], window, options);
+      const std::string reason = refusalOf(spans[s], window, options);
       if (reason.empty()) {
         windows.push_back(window);
       } else {

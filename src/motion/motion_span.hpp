@@ -36,6 +36,11 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out);
 
+/// Why a window cannot serve; empty: it can.
+std::string refusalOf(const MotionSpan& span,
+                      const MotionWindow& window,
+                      const MotionOptions& options);
+
 /// Counts one more window left out for a reason.
 void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_out);
 

@@ -13,13 +13,6 @@
 namespace sac {
 namespace {
 
-/// Weight of a misfit whose square over its scale is s: beyond twice the scale it counts linearly
-/// (Huber).
-double weightOf(double s) {
-  constexpr double kTransition = 4.0;
-  return s <= kTransition ? 1.0 : std::sqrt(kTransition / s);
-}
-
 std::vector<MotionSpan> spansOf(const MotionRecording& recording) {
   std::vector<MotionSpan> spans;
   spans.reserve(recording.spans.size());
@@ -29,25 +22,19 @@ std::vector<MotionSpan> spansOf(const MotionRecording& recording) {
   return spans;
 }
 
-/// Coordinates that orientations of the tracker tell of, ascending: of joints and their sensors, of
-/// registrations, and its delay.
-std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
-                                               const MotionPlaces& places) {
-  std::vector<Eigen::Index> coordinates;
-  for (Eigen::Index p = 0; p < space.pole(0); ++p) {
-    coordinates.push_back(p);
+/// Those of slices, or cut.
+std::vector<MotionWindow> windowsOf(const MotionRecording& recording,
+                                    const std::vector<MotionSpan>& spans,
+                                    const MotionOptions& options,
+                                    std::vector<WindowsLeftOut>& left_out) {
+  if (recording.windows.empty()) {
+    return cutWindows(spans, options, left_out);
   }
-  for (const PlacedEffect& placed : space.effects().effects()) {
-    const bool turns = placed.acts_on == LaboratoryEffect::ActsOn::kOrientations ||
-                       placed.acts_on == LaboratoryEffect::ActsOn::kEverything;
-    const Eigen::Index first = space.effect() + placed.first;
-    for (Eigen::Index n = 0; n < placed.size(); ++n) {
-      if (turns || first + n == places.tracker_delay) {
-        coordinates.push_back(first + n);
-      }
-    }
+  std::vector<MotionWindow> windows;
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    windows.push_back({s, recording.windows[s].first, recording.windows[s].last});
   }
-  return coordinates;
+  return windows;
 }
 
 /// What the orientations of a window tell together.
@@ -75,6 +62,30 @@ Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance) {
       Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
+double robustWeight(double s) {
+  constexpr double kTransition = 4.0;
+  return s <= kTransition ? 1.0 : std::sqrt(kTransition / s);
+}
+
+std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
+                                               const MotionPlaces& places) {
+  std::vector<Eigen::Index> coordinates;
+  for (Eigen::Index p = 0; p < space.pole(0); ++p) {
+    coordinates.push_back(p);
+  }
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    const bool turns = placed.acts_on == LaboratoryEffect::ActsOn::kOrientations ||
+                       placed.acts_on == LaboratoryEffect::ActsOn::kEverything;
+    const Eigen::Index first = space.effect() + placed.first;
+    for (Eigen::Index n = 0; n < placed.size(); ++n) {
+      if (turns || first + n == places.tracker_delay) {
+        coordinates.push_back(first + n);
+      }
+    }
+  }
+  return coordinates;
+}
+
 MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& options)
     : problem_(problem),
       options_(options),
@@ -83,7 +94,7 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       noise_(noiseOf(spans_, *problem.model, problem.prior.x)),
       evaluators_(std::max(1U, std::thread::hardware_concurrency()),
                   BalanceEvaluator(options, noise_.joint)) {
-  for (const MotionWindow& window : cutWindows(spans_, options, left_out_)) {
+  for (const MotionWindow& window : windowsOf(*problem.recording, spans_, options, left_out_)) {
     WindowTerm term;
     term.window = window;
     windows_.push_back(std::move(term));
@@ -179,7 +190,7 @@ InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
       continue;
     }
     jacobian = whitening * term.balance.jacobian;
-    sum.addDense(jacobian, term.residual, weightOf(term.square / window_scale_));
+    sum.addDense(jacobian, term.residual, robustWeight(term.square / window_scale_));
   }
   return sum;
 }
@@ -229,7 +240,7 @@ InformationSum MotionTerms::orientation(const Eigen::VectorXd& x) {
     const OrientationTerm& term = orientations_[n];
     if (term.serves()) {
       orienting.addDense(
-          orientationJacobian(n), term.residual, weightOf(term.square / orientation_scale_));
+          orientationJacobian(n), term.residual, robustWeight(term.square / orientation_scale_));
     }
   }
   InformationSum sum(x.size());

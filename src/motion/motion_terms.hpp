@@ -127,4 +127,13 @@ class MotionTerms {
 /// W with WᵀW the inverse of a covariance.
 Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance);
 
+/// Weight of a misfit whose square over its scale is s: beyond twice the scale it counts linearly
+/// (Huber).
+double robustWeight(double s);
+
+/// Coordinates that orientations of the tracker tell of, ascending: of joints and their sensors, of
+/// registrations, and its delay.
+std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
+                                               const MotionPlaces& places);
+
 }  // namespace sac

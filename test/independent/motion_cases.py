@@ -31,6 +31,10 @@ class Outcome:
                 rows.append([float(value) for value in rest])
             elif word == "left_out":
                 self.left_out[" ".join(rest[1:])] = int(rest[0])
+            elif word == "live":
+                self.live = {"windows": int(rest[0])}
+                self.live.update({rest[n]: float(rest[n + 1]) for n in (1, 3, 5, 7)})
+                self.live["ratios"] = float(rest[10]), float(rest[11])
             elif word == "held_out":
                 self.held_out, self.probability = int(rest[0]), float(rest[rest.index("probability") + 1])
             elif word == "motion":

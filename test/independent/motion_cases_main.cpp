@@ -1,20 +1,24 @@
 // motion_cases ACTUATOR.yaml STREAMS.txt...: runs the cycle motion on each file of streams and
 // prints what came out, one line a fact, for programs that know the truth and share no code with
 // this package; last the rows of the covariance of all parameters. A line of a file is J, C or O, a
-// stamp [ns], and values: joint angles, currents, or an orientation as x y z w.
+// stamp [ns], and values: joint angles, currents, or an orientation as x y z w. With --live the
+// windows are taken as they come, and one more line tells how far that is from all of them at once.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/motion/live_motion.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 
 namespace sac {
@@ -47,7 +51,68 @@ MotionRecording readStreams(const char* path, std::size_t coils) {
   return recorder.take();
 }
 
-void calibrate(const Actuator& nominal, const EffectSelection& effects, const char* path) {
+/// All measurements in the order of their stamps, window by window.
+std::vector<MotionSlice> slicesOf(const MotionRecording& recording, std::size_t coils) {
+  std::vector<MotionSlice> slices;
+  MotionSlicer slicer(coils, MotionOptions());
+  for (const MotionStreams& streams : recording.spans) {
+    std::size_t current = 0;
+    std::size_t orientation = 0;
+    for (std::size_t n = 0; n < streams.joints.size(); ++n) {
+      const Stamp now = streams.joint_stamps[n];
+      for (; current < streams.current_stamps.size() && streams.current_stamps[current] <= now;
+           ++current) {
+        const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
+        slicer.add(CurrentMeasurement{streams.current_stamps[current],
+                                      Eigen::VectorXd(row.transpose().cast<double>())});
+      }
+      for (; orientation < streams.orientation_stamps.size() &&
+             streams.orientation_stamps[orientation] <= now;
+           ++orientation) {
+        slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
+                                          streams.orientations[orientation]});
+      }
+      slicer.add(JointMeasurement{now, streams.joints[n]});
+      while (auto slice = slicer.take()) {
+        slices.push_back(std::move(*slice));
+      }
+    }
+  }
+  return slices;
+}
+
+/// Puts the estimate of windows as they came in place of that of all at once.
+void followLive(const MotionProblem& problem, MotionEstimate& found) {
+  LiveMotion live(*problem.model, problem.prior, problem.free, EstimationOptions());
+  MotionRecording taken;
+  for (const MotionSlice& slice : slicesOf(*problem.recording, problem.model->space().coils())) {
+    taken.spans.push_back(slice.streams);
+    taken.windows.push_back(slice.window);
+    live.add(slice);
+  }
+  MotionProblem again = problem;
+  again.recording = &taken;
+  const ParameterBelief whole = estimateMotion(again, {}, {}).estimate.belief;
+  const LiveEstimate& last = live.estimate();
+  const Eigen::ArrayXd stddevs = whole.covariance.diagonal().array().sqrt();
+  const Eigen::ArrayXd apart = (last.belief.x - whole.x).array() / stddevs;
+  const Eigen::ArrayXd ratios = last.belief.covariance.diagonal().array().sqrt() / stddevs;
+  std::printf("live %zu left_out %zu linearizations %d worst %.6g rms %.6g ratios %.6g %.6g\n",
+              last.windows,
+              last.left_out,
+              last.linearizations,
+              apart.abs().maxCoeff(),
+              std::sqrt(apart.square().mean()),
+              ratios.minCoeff(),
+              ratios.maxCoeff());
+  found.estimate.belief = last.belief;
+  found.summary.window_chi_square = last.chi_square;
+}
+
+void calibrate(const Actuator& nominal,
+               const EffectSelection& effects,
+               bool is_live,
+               const char* path) {
   const MotionRecording recording = readStreams(path, nominal.coils.size());
   const CalibrationModel model(ParameterSpace(nominal, withMotionEffects(effects)));
   MotionProblem problem;
@@ -57,7 +122,10 @@ void calibrate(const Actuator& nominal, const EffectSelection& effects, const ch
   for (Eigen::Index p = 0; p < model.space().size(); ++p) {
     problem.free.push_back(p);
   }
-  const MotionEstimate found = estimateMotion(problem, {}, {});
+  MotionEstimate found = estimateMotion(problem, {}, {});
+  if (is_live) {
+    followLive(problem, found);
+  }
   const Estimate& estimate = found.estimate;
   const MotionSummary& summary = found.summary;
   std::printf("case %s\n", path);
@@ -113,12 +181,15 @@ int main(int argc, char** argv) {
   try {
     const sac::Actuator nominal = sac::loadActuator(argv[1]);
     sac::EffectSelection effects;
+    bool is_live = false;
     for (int k = 2; k < argc; ++k) {
       const std::string word = argv[k];
       if (word.rfind("--model=", 0) == 0) {
         effects[word.substr(8)] = true;
+      } else if (word == "--live") {
+        is_live = true;
       } else {
-        sac::calibrate(nominal, effects, argv[k]);
+        sac::calibrate(nominal, effects, is_live, argv[k]);
       }
     }
   } catch (const std::exception& error) {

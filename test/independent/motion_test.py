@@ -63,6 +63,17 @@ class Motion(unittest.TestCase):
         self.assertEqual(len(touched), 1)
         self.assertLessEqual(touched[0], 3)
 
+    def test_windows_as_they_come_tell_what_all_at_once_do(self):
+        for streams in ({"current_delay": -0.02}, {"joint_rate": 200.0, "current_rate": 200.0}):
+            outcome = calibrate(self.record(**streams), options=["--live"])
+            self.check(outcome, 1.6e-4)
+            self.assertGreaterEqual(outcome.live["windows"], 44)
+            self.assertLessEqual(outcome.live["left_out"], 3)  # a hand touched the rotor
+            self.assertLess(outcome.live["worst"], 0.2)
+            self.assertLess(outcome.live["rms"], 0.05)
+            self.assertGreater(outcome.live["ratios"][0], 0.95)
+            self.assertLess(outcome.live["ratios"][1], 1.05)
+
     def test_two_hundred_hertz(self):
         self.check(calibrate(self.record(joint_rate=200.0, current_rate=200.0)), 1.6e-4)
 

@@ -110,6 +110,10 @@ class InformationSum {
   /// The same in some of the coordinates, the others held. `places`: theirs, ascending.
   InformationSum at(const std::vector<Eigen::Index>& places) const;
 
+  /// From here on gradient and misfit are those at coordinates that are `step` farther on, as
+  /// linear residuals say.
+  void moveBy(const Eigen::VectorXd& step);
+
   /// Takes CᵀKC off the information, what was spent on quantities beside the coordinates; they add
   /// `misfit` of their own. `crossed`: C, of which only `columns` (ascending) are not zero.
   template <typename Crossed, typename Covariance>

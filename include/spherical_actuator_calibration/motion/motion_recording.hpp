@@ -21,10 +21,19 @@ struct MotionStreams {
   std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
 };
 
+/// Readings at the begin and at the end of a window.
+struct WindowRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
 /// What a rotor did while it moved: spans with clocks of their own, as of several recordings.
 struct MotionRecording {
   std::vector<MotionStreams> spans;
   std::size_t dropped = 0;  ///< measurements that were not finite, or out of order
+  /// The only one of each span, where all are slices of a MotionSlicer; else empty: windows are to
+  /// be cut.
+  std::vector<WindowRange> windows;
 
   bool empty() const { return spans.empty(); }
 };

@@ -1,0 +1,66 @@
+#include "live_window.hpp"
+
+#include <utility>
+
+namespace sac {
+
+LiveWindow::LiveWindow(MotionSlice slice)
+    : streams_(std::make_unique<const MotionStreams>(std::move(slice.streams))), span_(*streams_) {
+  term.window = {0, slice.window.first, slice.window.last};
+}
+
+double LiveWindow::duration() const {
+  return span_.track.time(term.window.last) - span_.track.time(term.window.first);
+}
+
+void LiveWindow::linearize(const MotionPoint& point,
+                           const BalanceOrder& order,
+                           BalanceEvaluator& evaluator) {
+  evaluator.evaluate(span_, term.window, point, order, term.balance);
+  linearized_at_ = point.x();
+}
+
+void LiveWindow::linearizeOrientations(const CalibrationModel& model,
+                                       const MotionPlaces& places,
+                                       const std::vector<Eigen::Index>& orienting,
+                                       const Eigen::VectorXd& x,
+                                       double stddev) {
+  orientation = InformationSum(static_cast<Eigen::Index>(orienting.size()));
+  orientations = 0;
+  orientation_residual_.setZero();
+  orientation_jacobian_.setZero(3, orientation.gradient().size());
+  orientation_at_ = x(orienting);
+  TrackerTerm tracker(model, places, x);
+  for (std::size_t n = 0; n < span_.orientation_times.size(); ++n) {
+    if (!tracker.evaluate(span_, n)) {
+      continue;
+    }
+    const Eigen::Vector3d residual = tracker.residual() / stddev;
+    const double square = residual.squaredNorm() / 3.0;
+    const Eigen::MatrixXd jacobian = tracker.jacobian()(Eigen::all, orienting) / stddev;
+    const double weight = robustWeight(square);
+    orientation.addDense(jacobian, residual, weight);
+    orientation_residual_ += weight * residual;
+    orientation_jacobian_ += weight * jacobian;
+    ++orientations;
+  }
+}
+
+double LiveWindow::meanSquare(const Eigen::VectorXd& x) const {
+  return orientations == 0 ? 0.0
+                           : (orientation_residual_ + orientation_jacobian_ * (x - orientation_at_))
+                                     .squaredNorm() /
+                                 static_cast<double>(orientations);
+}
+
+void LiveWindow::whiten(double joint_factor, double current_variance) {
+  term.whitening = whiteningOfMany(joint_factor * term.balance.by_joints +
+                                   current_variance * term.balance.by_currents);
+}
+
+Eigen::VectorXd LiveWindow::residualAt(const Eigen::VectorXd& x) const {
+  return term.whitening.triangularView<Eigen::Lower>() *
+         (term.balance.residual + term.balance.jacobian * (x - linearized_at_));
+}
+
+}  // namespace sac

@@ -1,0 +1,211 @@
+#include "spherical_actuator_calibration/motion/live_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "support/moving_rotor.hpp"
+#include "support/resident_memory.hpp"
+
+namespace sac {
+namespace {
+
+/// Calls `take` with all measurements of a recording in the order of their stamps.
+template <typename Take>
+void play(const MotionStreams& streams, const Take& take) {
+  std::size_t current = 0;
+  std::size_t orientation = 0;
+  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
+    const Stamp now = streams.joint_stamps[n];
+    for (; current < streams.current_stamps.size() && streams.current_stamps[current] <= now;
+         ++current) {
+      const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
+      take(CurrentMeasurement{streams.current_stamps[current],
+                              Eigen::VectorXd(row.transpose().cast<double>())});
+    }
+    for (; orientation < streams.orientation_stamps.size() &&
+           streams.orientation_stamps[orientation] <= now;
+         ++orientation) {
+      take(OrientationMeasurement{streams.orientation_stamps[orientation],
+                                  streams.orientations[orientation]});
+    }
+    take(JointMeasurement{now, streams.joints[n]});
+  }
+}
+
+MotionRecording noisy(MotionRecording recording) {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double stddev) -> Eigen::Vector3d {
+    return stddev * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+  };
+  for (MotionStreams& streams : recording.spans) {
+    for (Eigen::Vector3d& reading : streams.joints) {
+      reading += noise(2e-5);
+    }
+    for (Eigen::Index n = 0; n < streams.currents.size(); ++n) {
+      streams.currents.data()[n] += static_cast<float>(1e-3 * normal(generator));
+    }
+    for (Eigen::Quaterniond& orientation : streams.orientations) {
+      orientation = Eigen::Quaterniond(rotationExp(noise(5e-4))) * orientation;
+    }
+  }
+  return recording;
+}
+
+class LiveMotionTest : public ::testing::Test {
+ protected:
+  LiveMotionTest() {
+    scenarios::Generator generator(3);
+    moving_.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+    moving_.rotor.inertia(0, 0) *= 1.1;
+    moving_.rotor.unbalance = Eigen::Vector3d(1e-3, -5e-4, 2e-3);
+    moving_.current_delay = 3e-3;
+    moving_.tracker_delay = 5e-3;
+    moving_.duration = 15.0;
+    free_.resize(static_cast<std::size_t>(model_.space().size()));
+    std::iota(free_.begin(), free_.end(), 0);
+  }
+  LiveMotion live(const LiveMotionOptions& options = {}) const {
+    return LiveMotion(
+        model_, nominalState(model_.space(), {}).belief, free_, EstimationOptions(), {}, options);
+  }
+  /// Takes a whole recording, window by window, which are added to `taken`.
+  void follow(const MotionRecording& recording, LiveMotion& live, MotionRecording& taken) const {
+    MotionSlicer slicer(24, MotionOptions());
+    for (const MotionStreams& streams : recording.spans) {
+      play(streams, [&](const auto& measurement) {
+        slicer.add(measurement);
+        while (auto slice = slicer.take()) {
+          taken.spans.push_back(slice->streams);
+          taken.windows.push_back(slice->window);
+          live.add(std::move(*slice));
+        }
+      });
+    }
+  }
+  Estimate batch(const MotionRecording& recording) const {
+    MotionProblem problem;
+    problem.model = &model_;
+    problem.recording = &recording;
+    problem.prior = nominalState(model_.space(), {}).belief;
+    problem.free = free_;
+    return estimateMotion(problem, {}, {}).estimate;
+  }
+
+  CalibrationModel model_{ParameterSpace(scenarios::paperNominal(), withMotionEffects({}))};
+  MovingRotor moving_;
+  std::vector<Eigen::Index> free_;
+};
+
+/// How far an estimate is from another one, in standard deviations of that.
+struct Distance {
+  Distance(const ParameterBelief& one, const ParameterBelief& other) {
+    const Eigen::ArrayXd stddevs = other.covariance.diagonal().array().sqrt();
+    const Eigen::ArrayXd apart = (one.x - other.x).array() / stddevs;
+    const Eigen::ArrayXd ratios = one.covariance.diagonal().array().sqrt() / stddevs;
+    worst = apart.abs().maxCoeff();
+    rms = std::sqrt(apart.square().mean());
+    least_ratio = ratios.minCoeff();
+    largest_ratio = ratios.maxCoeff();
+  }
+  double worst;
+  double rms;
+  double least_ratio;  ///< of standard deviations
+  double largest_ratio;
+};
+
+TEST_F(LiveMotionTest, AgreesWithTheEstimateOfAllWindowsAtOnce) {
+  LiveMotion live = this->live();
+  MotionRecording taken;
+  follow(noisy(moving_.record()), live, taken);
+  const LiveEstimate& found = live.estimate();
+  ASSERT_TRUE(found.is_told);
+  EXPECT_GE(found.windows, 56U);
+  EXPECT_EQ(found.left_out, 0U);
+  EXPECT_NEAR(found.chi_square, 1.0, 0.15);
+  const Distance distance(found.belief, batch(taken).belief);
+  EXPECT_LT(distance.worst, 0.1);
+  EXPECT_LT(distance.rms, 0.02);
+  EXPECT_GT(distance.least_ratio, 0.97);
+  EXPECT_LT(distance.largest_ratio, 1.03);
+}
+
+TEST_F(LiveMotionTest, ToldTheSameWithoutOldWindows) {
+  LiveMotionOptions options;
+  options.kept_windows = 30;
+  LiveMotion live = this->live(options);
+  MotionRecording taken;
+  follow(noisy(moving_.record()), live, taken);
+  const Distance distance(live.estimate().belief, batch(taken).belief);
+  EXPECT_LT(distance.worst, 0.3);
+  EXPECT_GT(distance.least_ratio, 0.95);
+  EXPECT_LT(distance.largest_ratio, 1.05);
+}
+
+TEST_F(LiveMotionTest, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
+  const MotionRecording pushed = [&] {
+    MovingRotor moving = moving_;
+    moving.duration = 10.0;
+    moving.push = 3e-3;
+    return noisy(moving.record());
+  }();
+  LiveMotionOptions options;
+  // The hand comes before the first estimate, and after it.
+  for (const std::size_t first : {24U, 7U}) {
+    options.first_windows = first;
+    LiveMotion live = this->live(options);
+    MotionRecording taken;
+    follow(pushed, live, taken);
+    const LiveEstimate& found = live.estimate();
+    ASSERT_TRUE(found.is_told);
+    EXPECT_GE(found.left_out, 1U);
+    EXPECT_LE(found.left_out, 3U);
+    const Eigen::Index geometry = model_.space().effect();
+    const Eigen::VectorXd truth = model_.space().coordinatesOf(moving_.truth);
+    const Eigen::ArrayXd apart = (found.belief.x - truth).head(geometry).array() /
+                                 found.belief.covariance.diagonal().head(geometry).array().sqrt();
+    EXPECT_LT(std::sqrt(apart.square().mean()), 1.6);
+  }
+}
+
+TEST_F(LiveMotionTest, TellsThePriorUntilThereIsEnough) {
+  LiveMotion live = this->live();
+  moving_.duration = 3.0;
+  MotionRecording taken;
+  follow(noisy(moving_.record()), live, taken);
+  EXPECT_FALSE(live.estimate().is_told);
+  EXPECT_EQ(live.estimate().windows, taken.spans.size());
+  const ParameterBelief prior = nominalState(model_.space(), {}).belief;
+  EXPECT_EQ(live.estimate().belief.x, prior.x);
+  EXPECT_EQ(live.estimate().belief.covariance, prior.covariance);
+}
+
+// Of windows that come again and again: each counts by its own times.
+TEST_F(LiveMotionTest, TakesNoMoreMemoryTheLongerItGoes) {
+  moving_.duration = 9.0;
+  MotionRecording taken;
+  LiveMotion live = this->live();
+  follow(noisy(moving_.record()), live, taken);
+  std::size_t next = 0;
+  const auto pass = [&](std::size_t windows) {
+    for (std::size_t n = 0; n < windows; ++n, ++next) {
+      const std::size_t place = next % taken.spans.size();
+      live.add({taken.spans[place], taken.windows[place]});
+    }
+  };
+  pass(400);
+  // What a look at the noise takes for a while is the same for ever; 800 windows are 50 MB.
+  EXPECT_LT(peakBeside([&] { pass(800); }), 12e6);
+  EXPECT_EQ(live.estimate().windows, taken.spans.size() + 1200);
+  EXPECT_GT(live.estimate().duration, 300.0);
+}
+
+}  // namespace
+}  // namespace sac
