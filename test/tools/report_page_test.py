@@ -278,6 +278,31 @@ class ReportPage(unittest.TestCase):
         for part in ("Torque is not proportional to current.", "2.00, 1.00, −2.00 A", "−2.03 ± 0.11 %", "0.000 ± 0.040 %", "1e-90"):
             self.assertIn(part, page.text)
 
+    def test_tells_of_a_motion_what_served_and_what_else_moved_the_rotor(self):
+        self.assertNotIn("Residual torque over the motion", self.html)
+        motion = {"duration": 2.5, "windows": 12, "windows_used": 10, "orientations": 600, "orientations_rejected": 3}
+        motion["windows_left_out"] = [{"count": 2, "reason": "something else moved the rotor"}]
+        motion.update(joint_stddev=[2e-5, 3e-5, 4e-5], current_stddev=1e-3, orientation_stddev=5e-4)
+        motion.update(window_chi_square=1.02, orientation_chi_square=0.97)
+        cycle = dict(next(one for one in self.figures["cycles"] if one["success"]), cycle="motion", title="Motion", motion=motion)
+        estimate = {"initial": 0.0, "observable": True}
+        cycle["estimates"] = [
+            dict(estimate, name="rotor_inertia/zz", nominal=1.3e-3, value=1.43e-3, stddev=1e-6, unit="kg·m²"),
+            dict(estimate, name="coulomb_friction", nominal=0.0, value=4.2e-4, stddev=2.5e-5, unit="N·m"),
+            dict(estimate, name="tracker_delay", nominal=0.0, value=4e-3, stddev=5e-6, unit="s", observable=False),
+        ]
+        residual = {"quantity": "torque", "unit": "N·m", "standardized": 1.0}
+        cycle["residuals"] = [dict(residual, id=n, residual=1e-4 * n, rejected=n > 10, reason="") for n in range(1, 13)]
+        page = self.render(dict(self.figures, cycles=[*self.figures["cycles"], cycle]), "motion")
+        for part in ("10 of 12", "something else moved the rotor", "600 (3 rejected)", "0.02 mrad, 0.03 mrad, 0.04 mrad", "1.02"):
+            self.assertIn(part, page.text)
+        self.assertEqual(page.row("rotor_inertia/zz")[1:], ["0.0014300 ± 0.0000010 kg·m²", "0.0013", "+10.00 %"])
+        self.assertIn("0.000420 ± 0.000025 N·m", page.row("coulomb_friction"))
+        self.assertIn("not identified", page.row("tracker_delay")[0])
+        pictures = [attrs["alt"] for attrs in page.of("img")]
+        told = "Mean residual torque of each of 12 windows over time: at most 1 mN·m among those used, 2 left out."
+        self.assertIn(told, pictures)
+
     def test_refuses_what_is_no_report(self):
         page = os.path.join(self.folder.name, "none.html")
         for content, part in (

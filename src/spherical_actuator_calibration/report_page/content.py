@@ -3,6 +3,7 @@
 import math
 
 from . import figures
+from .motion import motion_of
 from .numbers import change_of, plus_minus, signed, significant, with_unit
 
 GRADES = {
@@ -364,6 +365,10 @@ class Report:
             }
             for fit in fits
         ]
+
+    def motion(self):
+        """What the last motion told; None without one."""
+        return motion_of(self._cycles)
 
     def linearity(self):
         """Whether torque is proportional to current: sentence, and rows where it is told; None without torque."""

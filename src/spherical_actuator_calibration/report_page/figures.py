@@ -125,6 +125,29 @@ def residuals_of(quantity, residuals, influential):
     return figure
 
 
+def residuals_over_time(residuals):
+    """Mean residual torque of each window of a motion."""
+    factor, name = shown_in("N·m")
+    with Figure("motion_residuals", "Residual torque over the motion") as figure:
+        axes = figure.axes
+        for is_rejected, style, label in ((False, {"marker": ".", "color": TEAL}, "used"), (True, {"marker": "x", "color": RED}, "left out")):
+            chosen = [item for item in residuals if item["rejected"] is is_rejected]
+            if chosen:
+                values = [factor * item["residual"] for item in chosen]
+                axes.plot([item["time"] for item in chosen], values, linestyle="none", label=label, **style)
+        _logarithmic_if_wide(axes, [factor * item["residual"] for item in residuals])
+        axes.set_xlabel("time of the windows [s]")
+        axes.set_ylabel(f"residual [{name}]")
+        axes.legend(loc="best", ncol=2, handletextpad=0.2, columnspacing=1.0)
+        largest = max((item["residual"] for item in residuals if not item["rejected"]), default=0.0)
+        count = sum(item["rejected"] for item in residuals)
+        figure.alt = (
+            f"Mean residual torque of each of {len(residuals)} windows over time: at most "
+            f"{with_unit(largest, 'N·m')} among those used, {count} left out."
+        )
+    return figure
+
+
 def _usual_line(axes):
     axes.axhline(USUAL_STANDARDIZED, color=GREY, linewidth=1.0, linestyle="--")
 
