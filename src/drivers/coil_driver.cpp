@@ -231,4 +231,22 @@ std::string CoilDriver::stop(double now) {
   return disabling.failure.empty() ? supervisor_.unconfirmedReason() : disabling.failure;
 }
 
+// An amplifier that has gone in the meantime had no current when it was heard last.
+std::string CoilDriver::watch(double now) {
+  const BeatClock clock(now);
+  try {
+    allowOneBeat();
+    transport_.open();
+    Beat last;
+    observe(amplifier_.read(), clock, last);
+  } catch (const Error&) {
+    transport_.close();
+  }
+  std::string reason = supervisor_.unconfirmedReason();
+  if (!reason.empty()) {
+    tryToDisable();
+  }
+  return reason;
+}
+
 }  // namespace sac

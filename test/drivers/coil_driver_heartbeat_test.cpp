@@ -139,6 +139,35 @@ TEST(CoilDriverHeartbeat, GoesOnAtTheEndUntilAnAmplifierThatKeepsItsCurrentIsTol
   }
 }
 
+// Zero is confirmed, and the program has not ended yet.
+TEST(CoilDriverHeartbeat, DoesNotGoOnWhileTheEndIsWatchedAndCurrentIsTold) {
+  ScriptedTransport bus;
+  CoilDriver driver(
+      readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")),
+      kCoils,
+      bus);
+  double now = 100.0;
+  driver.beat(now);
+  std::string reason = "not confirmed";
+  for (; !reason.empty() && now < 102.0; now += kBeat) {
+    reason = driver.stop(now);
+  }
+  ASSERT_EQ(reason, "");
+  const std::size_t writes = bus.writes().size();
+  EXPECT_EQ(driver.watch(now), "");
+  bus.setReachable(false);
+  EXPECT_EQ(driver.watch(now + kBeat), "") << "it had no current when it was heard last";
+  bus.setReachable(true);
+  EXPECT_EQ(driver.watch(now + 2.0 * kBeat), "");
+  EXPECT_EQ(bus.writes().size(), writes);
+  bus.set(kUnit, RegisterTable::kInput, 0, {1500});
+  EXPECT_NE(driver.watch(now + 3.0 * kBeat).find("1.50 A"), std::string::npos);
+  EXPECT_GT(bus.writes().size(), writes) << "zero is set again";
+  for (std::size_t n = writes; n < bus.writes().size(); ++n) {
+    EXPECT_NE(bus.writes()[n].address, kHeartbeat);
+  }
+}
+
 // A watchdog may have ended the current since the heartbeat was given last, which gives it again.
 TEST(CoilDriverHeartbeat, DoesNotComeBackAtTheEnd) {
   ScriptedTransport bus;

@@ -6,6 +6,7 @@ import time
 
 from fault_laboratory import Outcome, command, outcome, status_of
 
+COMES_BACK = 0.36  # [s] after zero was set, which is confirmed after 0.3 s
 TOLD_DEVIATION = "A are set: the amplifier does not do what it acknowledges"
 
 
@@ -71,6 +72,15 @@ def alternating(laboratory):
     watchdog = laboratory.amplifier.on_until(begin)[1]
     laboratory.driver.process.send_signal(signal.SIGTERM)
     return Outcome(watchdog=watchdog, told=told, defect="exit status 0" if status_of(laboratory) == 0 else "")
+
+
+def coming_back(laboratory):
+    """Zero is obeyed when the driver ends, and 1.5 A are back a moment after it has confirmed that, when all that is left
+    to do is to take leave of the master."""
+    ended = time.monotonic()
+    laboratory.amplifier.stray = lambda now: 1500 if now - ended > COMES_BACK else 0
+    laboratory.driver.process.send_signal(signal.SIGTERM)
+    return Outcome(defect="exit status 0" if status_of(laboratory) == 0 else "")
 
 
 def standing_still(laboratory):

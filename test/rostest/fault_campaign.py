@@ -23,6 +23,7 @@ import rospy
 from amplifier_faults import (
     alternating,
     applied_again,
+    coming_back,
     dribbling_to_the_end,
     misbehaving,
     not_applied,
@@ -253,6 +254,7 @@ def faults_of(master):
         Fault("driver: SIGQUIT", ended(signal.SIGQUIT), end),
         Fault("driver: SIGTERM, never applied", ended_while_stuck(math.inf), (None, None, None)),
         Fault("the same, watchdog of 0.3 s", ended_while_stuck(0.3), (None, None, None), is_short=True),
+        Fault("driver: SIGTERM, current comes back", coming_back, (None, None, None), is_short=True),
         Fault("driver: exception", thrown, end, is_short=True, preload=True),
         Fault("driver: no memory", without_memory, end),
         Fault("driver's clock +1 h", clock_jump(JUMP), stop, preload=True),

@@ -55,6 +55,11 @@ class CoilDriver {
   /// currents need a moment to fade, and a confirmation needs several.
   std::string stop(double now);
 
+  /// After stop(), until the program has ended: measures once more, without a heartbeat. Returns
+  /// why the currents are not zero any more, once they are not, and sets zero again; nothing while
+  /// they are, as far as it can be measured.
+  std::string watch(double now);
+
   const LinkSupervisor& link() const { return link_; }
   const CurrentLimiter& limiter() const { return limiter_; }
   const CurrentSupervisor& supervisor() const { return supervisor_; }

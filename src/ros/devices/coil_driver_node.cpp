@@ -74,8 +74,10 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
                                const CurrentAmplifierOptions& options,
                                std::unique_ptr<ModbusTransport> transport)
     : is_unattended_(!options.heartbeat_address),
-      transport_(std::move(transport)),
-      driver_(options, withCoils(actuator).coils.size(), *transport_),
+      rate_(options.rate),
+      amplifier_(std::make_shared<DrivenAmplifier>(
+          options, withCoils(actuator).coils.size(), std::move(transport))),
+      driver_(amplifier_->driver),
       zero_reason_("no command has come"),
       setpoints_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuator.coils.size()))),
       commands_("coil_command", {0.0, options.supervision.watchdog}),
@@ -150,6 +152,10 @@ bool CoilDriverNode::stop() {
                                                                  << ": " << failure
                                                                  << " Switch the amplifier off.");
   return false;
+}
+
+std::unique_ptr<ZeroWatch> CoilDriverNode::watch() const {
+  return std::make_unique<ZeroWatch>(amplifier_, rate_);
 }
 
 // An amplifier that does not do what it acknowledges may have current again at any time.

@@ -101,6 +101,10 @@ void endWithin(unsigned seconds, int status) {
   ::alarm(seconds);
 }
 
+void lateEndFails() {
+  g_late_status = 1;
+}
+
 void spinUntilTermination() {
   endStart();
   while (ros::ok() && !terminationRequested()) {

@@ -16,6 +16,7 @@
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/devices/link_diagnostics.hpp"
+#include "spherical_actuator_calibration/ros/devices/zero_watch.hpp"
 #include "spherical_actuator_calibration/ros/node/loop_timing.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
@@ -50,6 +51,8 @@ class CoilDriverNode {
   /// loop had not failed, zero was confirmed since anything else was set or measured, and no
   /// deviation of currents stands. What is dangerous is told on the console.
   bool stop();
+  /// After stop(): goes on measuring while this object, and ROS, end.
+  std::unique_ptr<ZeroWatch> watch() const;
 
  private:
   void receive(const msg::CoilCurrents& message, const MessageSender& sender);
@@ -61,8 +64,9 @@ class CoilDriverNode {
   void diagnoseOutput(DiagnosticStatus& status);
 
   const bool is_unattended_;  ///< the amplifier has no watchdog of its own, which was accepted
-  std::unique_ptr<ModbusTransport> transport_;
-  CoilDriver driver_;
+  const double rate_;         ///< of the control loop [Hz]
+  std::shared_ptr<DrivenAmplifier> amplifier_;
+  CoilDriver& driver_;
   bool stopped_ = false;
   bool is_leaving_ = false;          ///< of the control loop alone
   std::atomic<bool> failed_{false};  ///< the control loop, by an exception

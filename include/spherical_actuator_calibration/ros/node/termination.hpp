@@ -27,6 +27,9 @@ bool failedFatally();
 /// all that is left to do is to take leave of a master, which may not answer.
 void endWithin(unsigned seconds, int status);
 
+/// The status of endWithin() is 1 from now on, whatever was said. For any thread.
+void lateEndFails();
+
 /// Serves the global callback queue until a signal came or ROS is shut down from outside. ROS
 /// itself still runs afterwards in the first case, so that last messages can be sent.
 void spinUntilTermination();
