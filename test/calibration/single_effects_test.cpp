@@ -103,6 +103,15 @@ TEST_F(SingleEffectsTest, AFirstCoilThatIsTooStrongIsNamed) {
   EXPECT_EQ(effect->name, "coil_1/gain");
 }
 
+TEST_F(SingleEffectsTest, AJointWhoseReadingsAreTooLargeIsNamed) {
+  for (Sample& sample : samples_) {
+    sample.joint_position[2] *= 1.005;
+  }
+  const std::optional<SingleEffect> effect = found();
+  ASSERT_TRUE(effect);
+  EXPECT_EQ(effect->name, "joint_3/scale");
+}
+
 TEST_F(SingleEffectsTest, AJointThatStepsIsNamedWithThePlace) {
   for (Sample& sample : samples_) {
     sample.joint_position[1] += sample.id > 70 ? 3e-3 : 0.0;
