@@ -269,10 +269,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
     coordinates.unobservable.insert(coordinates.unobservable.end(), {first, first + 1});
   }
   std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
-  conclude(model, estimate, coordinates, outcome.state, report);
-  if (request.expected_errors == ExpectedErrors::kReported) {
-    reportExpectedErrors(model, outcome.state.belief, report);
-  }
+  conclude(model, estimate, coordinates, request.expected_errors, outcome.state, report);
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
       left_out + together;

@@ -61,6 +61,7 @@ SampleResidual reportedResidual(const ObservationResidual& from, std::uint32_t i
 void conclude(const CalibrationModel& model,
               const Estimate& estimate,
               const CycleCoordinates& coordinates,
+              ExpectedErrors expected_errors,
               CalibrationState& state,
               CycleReport& report) {
   report.success = true;
@@ -84,14 +85,11 @@ void conclude(const CalibrationModel& model,
   for (const Eigen::Index p : in_directions) {
     state.identified[static_cast<std::size_t>(p)] = false;
   }
-}
-
-void reportExpectedErrors(const CalibrationModel& model,
-                          const ParameterBelief& belief,
-                          CycleReport& report) {
-  const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, belief);
-  report.orientation_uncertainty = uncertainty.orientation;
-  report.torque_uncertainty = uncertainty.torque;
+  if (expected_errors == ExpectedErrors::kReported) {
+    const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, state.belief);
+    report.orientation_uncertainty = uncertainty.orientation;
+    report.torque_uncertainty = uncertainty.torque;
+  }
 }
 
 }  // namespace sac

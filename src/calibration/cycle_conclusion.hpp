@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimate.hpp"
@@ -27,12 +28,8 @@ SampleResidual reportedResidual(const ObservationResidual& from, std::uint32_t i
 void conclude(const CalibrationModel& model,
               const Estimate& estimate,
               const CycleCoordinates& coordinates,
+              ExpectedErrors expected_errors,
               CalibrationState& state,
               CycleReport& report);
-
-/// Puts what errors the belief lets expect over the workspace into the report.
-void reportExpectedErrors(const CalibrationModel& model,
-                          const ParameterBelief& belief,
-                          CycleReport& report);
 
 }  // namespace sac

@@ -232,8 +232,7 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   CycleCoordinates coordinates;
   coordinates.requested = problem.free;
   coordinates.unobservable = found.estimate.unobservable;
-  conclude(model, found.estimate, coordinates, outcome.state, report);
-  reportExpectedErrors(model, outcome.state.belief, report);
+  conclude(model, found.estimate, coordinates, ExpectedErrors::kReported, outcome.state, report);
   report.message = successInWords(found.summary, coordinates.unobservable.size());
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;

@@ -10,7 +10,6 @@
 #include "estimate_conclusion.hpp"
 #include "held_prior.hpp"
 #include "problem_check.hpp"
-#include "single_step.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"

@@ -8,7 +8,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "single_step.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -66,5 +67,9 @@ struct LeastSquaresResult {
 /// would change nothing, so that the solution keeps the digits of an orthogonal factorisation.
 /// Analytic Jacobians, one thread, so that the same input gives the same bits.
 LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input);
+
+/// Where one Gauss–Newton step by what is known at the start leads, with the squared loss, whatever
+/// it brings; nothing where no step is defined. Precondition: `at_start`.
+std::optional<Eigen::VectorXd> afterOneStep(const LeastSquaresInput& input);
 
 }  // namespace sac
