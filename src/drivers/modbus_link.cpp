@@ -10,7 +10,10 @@
 
 #include <modbus/modbus.h>
 
+#include <sys/socket.h>
+
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/drivers/tcp_frame.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
 
 namespace sac {
@@ -91,20 +94,29 @@ class LibmodbusTransport final : public ModbusTransport {
 
   std::vector<std::uint16_t> read(int unit, RegisterTable table, int address, int count) override {
     select(unit);
+    const std::string what = tableName(table) + std::to_string(address);
+    if (!is_serial_) {
+      return ask(TcpFrame::read(++transaction_, {unit, table, address, count}), unit, what);
+    }
     std::vector<std::uint16_t> words(static_cast<std::size_t>(count));
     const auto request =
         table == RegisterTable::kHolding ? modbus_read_registers : modbus_read_input_registers;
     if (request(context_.get(), address, count, words.data()) != count) {
-      fail(unit, tableName(table) + std::to_string(address));
+      fail(unit, what);
     }
     return words;
   }
 
   void write(int unit, int address, const std::vector<std::uint16_t>& words) override {
     select(unit);
+    const std::string what = tableName(RegisterTable::kHolding) + std::to_string(address);
+    if (!is_serial_) {
+      ask(TcpFrame::write(++transaction_, unit, address, words), unit, what);
+      return;
+    }
     const int count = static_cast<int>(words.size());
     if (modbus_write_registers(context_.get(), address, count, words.data()) != count) {
-      fail(unit, tableName(RegisterTable::kHolding) + std::to_string(address));
+      fail(unit, what);
     }
   }
 
@@ -114,6 +126,12 @@ class LibmodbusTransport final : public ModbusTransport {
                                           int read_address,
                                           int count) override {
     select(unit);
+    const std::string what = "function 23, " + tableName(RegisterTable::kHolding) +
+                             std::to_string(address) + " and " + std::to_string(read_address);
+    if (!is_serial_) {
+      const RegisterRequest wanted{unit, RegisterTable::kHolding, read_address, count};
+      return ask(TcpFrame::writeAndRead(++transaction_, address, words, wanted), unit, what);
+    }
     std::vector<std::uint16_t> answer(static_cast<std::size_t>(count));
     if (modbus_write_and_read_registers(context_.get(),
                                         address,
@@ -122,9 +140,7 @@ class LibmodbusTransport final : public ModbusTransport {
                                         read_address,
                                         count,
                                         answer.data()) != count) {
-      fail(unit,
-           "function 23, " + tableName(RegisterTable::kHolding) + std::to_string(address) +
-               " and " + std::to_string(read_address));
+      fail(unit, what);
     }
     return answer;
   }
@@ -164,15 +180,43 @@ class LibmodbusTransport final : public ModbusTransport {
         static_cast<std::uint32_t>((seconds - whole) * kMicrosecondsPerSecond));
   }
 
+  /// libmodbus takes any answer of the right transaction, of whatever unit, protocol and length.
+  std::vector<std::uint16_t> ask(const TcpFrame& frame, int unit, const std::string& what) {
+    const auto size = static_cast<ssize_t>(frame.bytes().size());
+    const int socket = modbus_get_socket(context_.get());
+    if (::send(socket, frame.bytes().data(), frame.bytes().size(), MSG_NOSIGNAL) != size) {
+      fail(unit, what);
+    }
+    std::vector<std::uint8_t> answer(MODBUS_TCP_MAX_ADU_LENGTH);
+    const int received = modbus_receive_confirmation(context_.get(), answer.data());
+    if (received < 0) {
+      fail(unit, what);
+    }
+    answer.resize(static_cast<std::size_t>(received));
+    const std::string defect = frame.defect(answer);
+    if (!defect.empty()) {
+      closeLink();
+      throw TransportError(TransportFailure::kGarbled,
+                           about(unit, what) + "the answer has " + defect + ".");
+    }
+    if (const std::optional<int> exception = frame.exception(answer)) {
+      errno = MODBUS_ENOBASE + *exception;
+      fail(unit, what);
+    }
+    return frame.words(answer);
+  }
+
+  std::string about(int unit, const std::string& what) const {
+    return name_ + ", unit " + std::to_string(unit) + ", " + what + ": ";
+  }
+
   [[noreturn]] void fail(int unit, const std::string& what) {
     const int error = errno;
     const TransportFailure failure = failureOf(error);
     if (failure != TransportFailure::kRefused) {
       closeLink();
     }
-    throw TransportError(failure,
-                         name_ + ", unit " + std::to_string(unit) + ", " + what + ": " +
-                             modbus_strerror(error) + ".");
+    throw TransportError(failure, about(unit, what) + modbus_strerror(error) + ".");
   }
 
   void closeLink() {
@@ -188,6 +232,7 @@ class LibmodbusTransport final : public ModbusTransport {
   std::string name_;
   double response_timeout_;  ///< [s]
   bool is_serial_;
+  std::uint16_t transaction_ = 0;  ///< of the last request, over TCP
   std::optional<Clock::time_point> deadline_;
   std::unique_ptr<modbus_t, ContextDeleter> context_;
   bool is_open_ = false;

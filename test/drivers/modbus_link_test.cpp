@@ -4,6 +4,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -153,14 +155,35 @@ TEST(ModbusLink, AnEndlessAnswerIsNoAnswer) {
   EXPECT_EQ(failureOf(*transport), std::nullopt);
 }
 
+struct WrongByte {
+  std::size_t place;
+  const char* name;
+};
+
 TEST(ModbusLink, AnAnswerToAnotherRequestIsNoAnswer) {
-  const RudeDevice device([&](int socket, const Bytes& request) {
-    Bytes answer = answerTo(request);
-    ++answer[1];
-    return sendAll(socket, answer);
-  });
-  const auto transport = linkTo(device, 30.0);
-  EXPECT_EQ(failureOf(*transport), TransportFailure::kGarbled);
+  for (const WrongByte& wrong : {WrongByte{0, "transaction id"},
+                                 {1, "transaction id"},
+                                 {2, "protocol id"},
+                                 {3, "protocol id"},
+                                 {4, "length"},
+                                 {5, "length"},
+                                 {6, "unit id"},
+                                 {7, "function"}}) {
+    const RudeDevice device([&](int socket, const Bytes& request) {
+      Bytes answer = answerTo(request);
+      ++answer[wrong.place];
+      return sendAll(socket, answer);
+    });
+    const auto transport = linkTo(device, 30.0);
+    try {
+      transport->read(1, RegisterTable::kHolding, 0, 1);
+      ADD_FAILURE() << "a wrong " << wrong.name << " is accepted";
+    } catch (const TransportError& error) {
+      EXPECT_EQ(error.failure(), TransportFailure::kGarbled) << wrong.name;
+      EXPECT_NE(std::string(error.what()).find(wrong.name), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(transport->isOpen()) << wrong.name;
+  }
 }
 
 }  // namespace

@@ -266,6 +266,9 @@ def faults_of(master):
         Fault("amplifier: dribble, commands stop", dribbling_to_the_end, amplifier, is_short=True),
         Fault("amplifier: resets", misbehaving("reset"), amplifier),
         Fault("amplifier: wrong ids", misbehaving("wrong id"), amplifier, is_short=True),
+        Fault("amplifier: wrong unit id", misbehaving("wrong unit"), amplifier, is_short=True),
+        Fault("amplifier: wrong protocol id", misbehaving("wrong protocol"), amplifier),
+        Fault("amplifier: wrong length", misbehaving("wrong length"), amplifier),
         Fault("amplifier: endless answers", misbehaving("endless"), amplifier),
         Fault("amplifier: link cut", misbehaving("cut"), (None, 0.7, None)),
         Fault("zero acknowledged, not applied", not_applied(zero), (None, 1.0, 0.5), is_short=True),
@@ -275,7 +278,7 @@ def faults_of(master):
         Fault("commands of 8 Hz, current stands still", standing_still, (None, 1.0, 0.5), is_short=True),
         *(
             Fault(f"joint sensor: {how}", sensor_fault(how), (None, None, 1.0), needs_laboratory=False)
-            for how in ("silence", "dribble", "reset", "wrong id", "endless")
+            for how in ("silence", "dribble", "reset", "wrong id", "wrong unit", "endless")
         ),
         Fault("master hangs, driver: SIGTERM", master_hangs(master), end),
         Fault("master gone, then commands stop", master_gone(master), stop, is_repeatable=False),

@@ -12,6 +12,7 @@ REGISTERS = 256
 HEADER = struct.Struct(">HHHB")  # transaction, protocol, length, unit
 READ_HOLDING, READ_INPUT, WRITE = 3, 4, 16
 RESET = struct.pack("ii", 1, 0)  # a link that is closed at once is reset
+WRONG_BYTES = {"wrong protocol": 3, "wrong length": 5, "wrong unit": 6}  # of an answer's header
 JUNK = b"\x55" * 4096
 BYTE_PAUSE = 0.09  # [s] of an answer that dribbles: just below a response timeout of 0.1 s
 SLOW = 0.09  # [s] of a slow answer
@@ -80,6 +81,9 @@ class FaultyDevice:
             raise EOFError
         if how == "wrong id":
             answer = struct.pack(">H", (transaction + 1) & 0xFFFF) + answer[2:]
+        if how in WRONG_BYTES:
+            place = WRONG_BYTES[how]
+            answer = answer[:place] + bytes([answer[place] ^ 1]) + answer[place + 1 :]
         if how == "slow":
             time.sleep(SLOW)
         if how == "dribble":
