@@ -14,8 +14,9 @@ namespace {
 /// More than clocks of a computer drift apart between two commands [s].
 constexpr double kClockJump = 0.05;
 
-/// An amplifier that deviated so often does so again: somebody must look at it.
+/// An amplifier that deviated so often, or again so soon [s], goes on: somebody must look at it.
 constexpr int kMostFaults = 3;
+constexpr double kDeviatesAgain = 60.0;
 
 /// Watchdogs of amplifiers take longer from the last heartbeat on [s].
 constexpr double kOwnZero = 0.2;
@@ -80,6 +81,7 @@ std::string CurrentSupervisor::offer(const CoilCommand& command, const Instant& 
   owner_heard_at_ = now.steady;
   last_stamp_ = command.stamp;
   zero_commanded_ = command.currents.isZero(0.0);
+  waits_for_current_ = waits_for_current_ && (zero_commanded_ || !fault_.empty());
   expires_at_ = now.steady + limits_.watchdog - age;
   return {};
 }
@@ -164,6 +166,9 @@ std::string CurrentSupervisor::zeroReason(double steady) const {
   if (isInForce(steady)) {
     return {};
   }
+  if (isFresh(steady)) {
+    return "nothing but zero was commanded since the error";
+  }
   return was_commanded_ ? "no fresh command" : "no command has come";
 }
 
@@ -206,8 +211,7 @@ void CurrentSupervisor::observe(const Eigen::VectorXd& measured, double begin, d
     deviating = stray;
   }
   if (deviating && (fault_.empty() || is_loss_)) {
-    ++faults_;
-    fail(deviation(*deviating, measured[static_cast<Eigen::Index>(*deviating)]));
+    failByDeviation(*deviating, end);
     return;
   }
   if (!fault_.empty()) {
@@ -294,7 +298,15 @@ void CurrentSupervisor::fail(const std::string& reason) {
   obeyed_ = false;
   zero_commanded_ = false;
   is_loss_ = false;
+  waits_for_current_ = true;
   fault_ = reason;
+}
+
+void CurrentSupervisor::failByDeviation(std::size_t coil, double steady) {
+  ++faults_;
+  is_repeated_ = failed_at_ && steady - *failed_at_ <= kDeviatesAgain;
+  failed_at_ = steady;
+  fail(deviation(coil, (*measured_)[static_cast<Eigen::Index>(coil)]));
 }
 
 std::string CurrentSupervisor::deviation(std::size_t coil, double measured) const {
@@ -318,7 +330,7 @@ void CurrentSupervisor::watchZero(double steady) {
 // Whoever wants current must first have seen that there is a fault, and say so by a zero: a command
 // that goes on through it may be given blindly.
 void CurrentSupervisor::endFault(double steady) {
-  const bool is_bearable = is_loss_ || (obeyed_ && faults_ < kMostFaults);
+  const bool is_bearable = is_loss_ || (obeyed_ && faults_ < kMostFaults && !is_repeated_);
   // Beats may come faster than they usually do: the time that these take counts, too, to half a
   // beat.
   const double least = (limits_.deviating_beats - 1.5) * limits_.beat_period;

@@ -98,7 +98,9 @@ class CurrentSupervisor {
   /// row and for the time that these take, the first of them within 0.2 s of the last heartbeat,
   /// and the last command that was accepted since it began is zero: then it was the amplifier that
   /// obeyed, and not its watchdog that acted, after which it would have current again with the next
-  /// heartbeat. The third one stays.
+  /// heartbeat. The second one within a minute stays, and the third one. After one has ended there
+  /// is no command in force until one wants current: those of zero would only switch the output
+  /// stages on again.
   std::string fault() const;
   /// Whether the amplifier may have its heartbeat: nothing is wrong, nor likely to be; and before
   /// anything was commanded nothing flows, so that a driver that starts revives no current which
@@ -120,7 +122,8 @@ class CurrentSupervisor {
 
  private:
   std::string refusal(const CoilCommand& command, const Instant& now) const;
-  bool isInForce(double steady) const { return command_.has_value() && steady <= expires_at_; }
+  bool isFresh(double steady) const { return command_.has_value() && steady <= expires_at_; }
+  bool isInForce(double steady) const { return isFresh(steady) && !waits_for_current_; }
   void noticeClockJump(const Instant& now);
   bool isOwnedByAnother(const CoilCommand& command, double steady) const;
   void countZeros(double steady);
@@ -131,6 +134,7 @@ class CurrentSupervisor {
     return command.caller == owner_ && command.connection == owner_connection_;
   }
   void fail(const std::string& reason);
+  void failByDeviation(std::size_t coil, double steady);
   std::string deviation(std::size_t coil, double measured) const;
   void watchZero(double steady);
   void endFault(double steady);
@@ -158,8 +162,11 @@ class CurrentSupervisor {
   bool was_set_ = false;               ///< anything but zero
   StrayCurrents strays_;
   std::string fault_;
-  bool is_loss_ = false;  ///< it is one of the link, or of trips
-  int faults_ = 0;        ///< others
+  bool is_loss_ = false;             ///< it is one of the link, or of trips
+  int faults_ = 0;                   ///< others
+  std::optional<double> failed_at_;  ///< the last one of these, by the steady clock [s]
+  bool is_repeated_ = false;         ///< it came soon after one before
+  bool waits_for_current_ = false;   ///< since a fault nothing but zero was commanded
   /// The last heartbeat, by the steady clock [s].
   double fed_at_ = -std::numeric_limits<double>::infinity();
   bool flowed_ = false;            ///< current was measured since the link was lost last
