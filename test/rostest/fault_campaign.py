@@ -30,13 +30,16 @@ from amplifier_faults import (
     standing_still,
     zero,
 )
+from calibration_client import NAMESPACE
 from fault_laboratory import CURRENT, Laboratory, Master, Outcome, command, outcome, status_of
 from links import free_port
 from sensor_faults import sensor_fault
 from spherical_actuator_calibration.command_line import parser
+from spherical_actuator_calibration.msg import CoilCurrents
 
 SIMULATED = rospy.Time(978307200)  # the year 2001
 JUMP = 3600  # [s] of the wall clock
+LARGEST = 200.0  # [MB] of the driver
 LEAVE = 6.0  # [s] for the driver to end, whether its master answers or not
 
 
@@ -160,15 +163,32 @@ def thrown(laboratory):
     return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
 
 
-def without_memory(laboratory):
-    """Connections say that they send more than the driver may have."""
+def lying_lengths(laboratory):
+    """Connections, and commanders, say that they send more than the driver may have."""
+    announced = struct.pack("<I", 900000000)
+
+    def greet_and_announce(publisher, link):
+        publisher.greet(link)
+        link.sendall(announced)
+
+    commanders = [
+        hostile_peer.HostilePublisher(f"{NAMESPACE}/coil_command", CoilCurrents, greet_and_announce) for _ in range(3)
+    ]
     with contextlib.ExitStack() as links:
-        for _ in range(3):
-            begin = time.monotonic()
+        for commander in commanders:
+            links.callback(commander.close)
+            commander.wait_for_visits(1)
+        for _ in range(4):
             link = links.enter_context(hostile_peer.connect(laboratory.driver.name))
-            link.sendall(struct.pack("<I", 900000000))
-        status = status_of(laboratory)
-    return outcome(laboratory, begin, defect="exit status 0" if status == 0 else "")
+            link.sendall(announced)
+        time.sleep(1.0)
+        defect = "" if laboratory.amplifier.is_on() else "the driver does not go on"
+    size = 0.0 if defect else hostile_peer.largest_memory(laboratory.driver.process.pid)
+    if size > LARGEST:
+        defect = f"it has {size:.0f} MB"
+    begin = laboratory.commander.change()
+    laboratory.watch(1.2)
+    return outcome(laboratory, begin, defect=defect)
 
 
 def clock_jump(seconds):
@@ -256,7 +276,7 @@ def faults_of(master):
         Fault("the same, watchdog of 0.3 s", ended_while_stuck(0.3), (None, None, None), is_short=True),
         Fault("driver: SIGTERM, current comes back", coming_back, (None, None, None), is_short=True),
         Fault("driver: exception", thrown, end, is_short=True, preload=True),
-        Fault("driver: no memory", without_memory, end),
+        Fault("lying lengths, then commands stop", lying_lengths, stop, is_short=True),
         Fault("driver's clock +1 h", clock_jump(JUMP), stop, preload=True),
         Fault("driver's clock -1 h", clock_jump(-JUMP), stop, preload=True),
         Fault("all clocks -1 h, then commands stop", common_clock_jump, stop, preload=True),
