@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
 namespace sac {
@@ -90,7 +91,7 @@ ActuatorDimensions readDimensions(const YamlMap& file) {
 }
 
 ActuatorDimensions loadDimensions(const std::string& path) {
-  return readWhole(YamlMap::load(path));
+  return readWhole(YamlMap::parse(readInputFile(path, kLargestConfiguration), path));
 }
 
 ActuatorDimensions parseDimensions(const std::string& text, const std::string& name) {

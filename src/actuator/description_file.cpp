@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
@@ -82,7 +83,8 @@ void readJoints(const YamlMap& map, CalibratedDescription& description) {
     const std::string name = item.nonEmptyText("name");
     const auto* const end = joints.begin() + k;
     if (std::any_of(joints.cbegin(), end, [&](const auto& other) { return other.name == name; })) {
-      item.fail("name", "\"" + name + "\" is another joint's name; each joint needs its own.");
+      item.fail("name",
+                "\"" + excerpt(name) + "\" is another joint's name; each joint needs its own.");
     }
     joints[k] = {name, readUnitAxis(item), item.number("offset", ValueRange::finite("rad"))};
     joints[k].correction = {readLinear(item).value_or(ReadingCorrection{}.linear),
@@ -154,7 +156,7 @@ std::string readDate(const YamlMap& map) {
     return expected == 'd' ? c >= '0' && c <= '9' : c == expected;
   };
   if (date.size() < form.size() || !std::equal(form.begin(), form.end(), date.begin(), fits)) {
-    map.fail("date", "\"" + date + "\" is not of the form 2024-05-31T12:00:00Z.");
+    map.fail("date", "\"" + excerpt(date) + "\" is not of the form 2024-05-31T12:00:00Z.");
   }
   return date;
 }

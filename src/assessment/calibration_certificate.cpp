@@ -10,7 +10,9 @@
 #include "spherical_actuator_calibration/assessment/covariance_file.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -334,7 +336,7 @@ void Certificate::measurementResults() {
 }  // namespace
 
 CertificateIssuer loadCertificateIssuer(const std::string& path) {
-  const YamlMap file = YamlMap::load(path);
+  const YamlMap file = YamlMap::parse(readInputFile(path, kLargestConfiguration), path);
   const YamlMap map = file.map("certificate");
   CertificateIssuer issuer;
   issuer.laboratory = map.text("laboratory", "");
@@ -347,7 +349,7 @@ CertificateIssuer loadCertificateIssuer(const std::string& path) {
   if (!issuer.country.empty() &&
       (issuer.country.size() != 2 ||
        !std::all_of(issuer.country.begin(), issuer.country.end(), is_letter))) {
-    map.fail("country", "\"" + issuer.country + "\" is not a country code like DE.");
+    map.fail("country", "\"" + excerpt(issuer.country) + "\" is not a country code like DE.");
   }
   file.finish();
   return issuer;

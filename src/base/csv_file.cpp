@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 
 namespace sac {
 namespace {
@@ -49,7 +50,8 @@ CsvRow readRow(const std::string& place, const std::vector<std::string>& cells) 
   for (const std::string& cell : cells) {
     const std::optional<double> number = parsedNumber(cell);
     if (!number || !std::isfinite(*number)) {
-      row.fail("\"" + cell + "\" is not a finite number; numbers are separated by commas.");
+      row.fail("\"" + excerpt(cell) +
+               "\" is not a finite number; numbers are separated by commas.");
     }
     row.values.push_back(*number);
   }

@@ -51,6 +51,11 @@ std::string kindOf(const struct stat& status) {
   throw ConfigError(path + ": cannot be read: " + std::generic_category().message(error) + ".");
 }
 
+[[noreturn]] void failLarge(const std::string& path, std::size_t largest) {
+  throw ConfigError(path + ": is larger than " + std::to_string(largest) +
+                    " bytes, the most that is read of such a file.");
+}
+
 }  // namespace
 
 std::string readInputFile(const std::string& path, std::size_t largest) {
@@ -64,6 +69,9 @@ std::string readInputFile(const std::string& path, std::size_t largest) {
   if (!kind.empty()) {
     throw ConfigError(path + ": is " + kind + ", not a file.");
   }
+  if (status.st_size > 0 && static_cast<std::size_t>(status.st_size) > largest) {
+    failLarge(path, largest);
+  }
   // Read as it comes: what /proc and /sys hold has no size before, and a file may grow.
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   std::string text;
@@ -76,8 +84,7 @@ std::string readInputFile(const std::string& path, std::size_t largest) {
     }
     text.resize(size + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (text.size() > largest) {
-      throw ConfigError(path + ": is larger than " + std::to_string(largest) +
-                        " bytes, the most that is read of such a file.");
+      failLarge(path, largest);
     }
     if (count == 0) {
       return text;

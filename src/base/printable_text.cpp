@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -40,6 +41,24 @@ constexpr std::array<Lead, 9> kLeads = {{{0xC2, 0xC2, 0xA0, 0xBF, 2},
                                          {0xF1, 0xF3, 0x80, 0xBF, 4},
                                          {0xF4, 0xF4, 0x80, 0x8F, 4}}};
 
+/// Characters of three bytes that a terminal obeys: marks of the direction of writing, separators
+/// of lines and paragraphs, and what embeds, overrides or isolates a direction.
+bool isObeyed(const std::string& text, std::size_t place) {
+  struct Range {
+    unsigned first, last;
+  };
+  constexpr std::array<Range, 3> kObeyed{{{0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069}}};
+  constexpr unsigned kFirstMask = 0x0F;
+  constexpr unsigned kMask = 0x3F;
+  constexpr unsigned kBits = 6;
+  const unsigned character = ((byteAt(text, place) & kFirstMask) << (2 * kBits)) |
+                             ((byteAt(text, place + 1) & kMask) << kBits) |
+                             (byteAt(text, place + 2) & kMask);
+  return std::any_of(kObeyed.begin(), kObeyed.end(), [character](const Range& range) {
+    return character >= range.first && character <= range.last;
+  });
+}
+
 /// Bytes of the character at `place` that can be shown as it is; 0 when it cannot.
 std::size_t shownLength(const std::string& text, std::size_t place) {
   constexpr Byte kFirstPrintable = 0x20;
@@ -57,31 +76,50 @@ std::size_t shownLength(const std::string& text, std::size_t place) {
     for (std::size_t n = 2; n < lead.length; ++n) {
       fits = fits && isContinuation(byteAt(text, place + n));
     }
+    fits = fits && (lead.length != 3 || !isObeyed(text, place));
     return fits ? lead.length : 0;
   }
   return 0;
 }
 
-}  // namespace
-
-std::string printable(const std::string& text) {
+/// Appends a character of so many bytes, or one byte as it is written where there are none, and
+/// goes on to the next.
+void appendShown(const std::string& text,
+                 std::size_t length,
+                 std::size_t& place,
+                 std::string& shown) {
   constexpr const char* kDigits = "0123456789abcdef";
   constexpr unsigned kDigitBits = 4;
   constexpr unsigned kDigitMask = 0xF;
+  if (length > 0) {
+    shown.append(text, place, length);
+    place += length;
+    return;
+  }
+  const Byte byte = byteAt(text, place++);
+  shown += {'\\', 'x', kDigits[byte >> kDigitBits], kDigits[byte & kDigitMask]};
+}
+
+}  // namespace
+
+std::string printable(const std::string& text) {
   std::string shown;
   shown.reserve(text.size());
-  std::size_t place = 0;
-  while (place < text.size()) {
-    const std::size_t length = shownLength(text, place);
-    if (length > 0) {
-      shown.append(text, place, length);
-      place += length;
-      continue;
-    }
-    const Byte byte = byteAt(text, place++);
-    shown += {'\\', 'x', kDigits[byte >> kDigitBits], kDigits[byte & kDigitMask]};
+  for (std::size_t place = 0; place < text.size();) {
+    appendShown(text, shownLength(text, place), place, shown);
   }
   return shown;
+}
+
+std::string excerpt(const std::string& text) {
+  constexpr std::size_t kLongest = 80;
+  std::string shown;
+  std::size_t place = 0;
+  for (std::size_t characters = 0; place < text.size() && characters < kLongest; ++characters) {
+    const bool is_space = text[place] == '\n' || text[place] == '\t';
+    appendShown(text, is_space ? 0 : shownLength(text, place), place, shown);
+  }
+  return place < text.size() ? shown + "..." : shown;
 }
 
 /// Keeps what is written until the end of a line or a flush, so that no character is cut.

@@ -9,11 +9,14 @@
 
 #include <yaml-cpp/eventhandler.h>
 
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+
 namespace sac {
 namespace {
 
 constexpr std::size_t kDeepest = 64;
 constexpr std::size_t kMostNodes = 1'000'000;
+constexpr std::size_t kMostKeys = 100'000;
 constexpr std::size_t kMostOpen = 1000;
 constexpr std::size_t kMostSigns = 2 * kMostNodes;
 
@@ -52,14 +55,14 @@ class Census : public YAML::EventHandler {
                        const std::string& /*tag*/,
                        YAML::anchor_t anchor,
                        YAML::EmitterStyle::value /*style*/) override {
-    begin(mark, anchor);
+    begin(mark, anchor, false);
   }
   void OnSequenceEnd() override { end(); }
   void OnMapStart(const YAML::Mark& mark,
                   const std::string& /*tag*/,
                   YAML::anchor_t anchor,
                   YAML::EmitterStyle::value /*style*/) override {
-    begin(mark, anchor);
+    begin(mark, anchor, true);
   }
   void OnMapEnd() override { end(); }
 
@@ -68,16 +71,19 @@ class Census : public YAML::EventHandler {
   struct Collection {
     YAML::anchor_t anchor;
     std::size_t nodes_before;
+    bool is_map;
+    bool awaits_key = true;
   };
 
-  void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
-    open_.push_back({anchor, nodes_});
+  void begin(const YAML::Mark& mark, YAML::anchor_t anchor, bool is_map) {
+    countKey(mark);
+    open_.push_back({anchor, nodes_, is_map});
     if (open_.size() > kDeepest) {
       throw YamlDefect(mark.line + 1,
                        "maps and lists stand more than " + std::to_string(kDeepest) +
                            " deep within each other.");
     }
-    count(mark, 1);
+    countNodes(mark, 1);
   }
 
   void end() {
@@ -86,6 +92,24 @@ class Census : public YAML::EventHandler {
   }
 
   void count(const YAML::Mark& mark, std::size_t nodes) {
+    countKey(mark);
+    countNodes(mark, nodes);
+  }
+
+  /// Keys and values of a map take turns.
+  void countKey(const YAML::Mark& mark) {
+    if (open_.empty() || !open_.back().is_map) {
+      return;
+    }
+    keys_ += open_.back().awaits_key ? 1 : 0;
+    open_.back().awaits_key = !open_.back().awaits_key;
+    if (keys_ > kMostKeys) {
+      throw YamlDefect(mark.line + 1,
+                       "more than " + std::to_string(kMostKeys) + " keys are not read.");
+    }
+  }
+
+  void countNodes(const YAML::Mark& mark, std::size_t nodes) {
     if (documents_ > 1) {
       throw YamlDefect(mark.line + 1, "only one YAML document is allowed in a file.");
     }
@@ -100,6 +124,7 @@ class Census : public YAML::EventHandler {
   std::size_t documents_ = 0;
   int begin_ = 0;  ///< where the last document began
   std::size_t nodes_ = 0;
+  std::size_t keys_ = 0;  ///< of all maps
   std::vector<Collection> open_;
   std::map<YAML::anchor_t, std::size_t> sizes_;  ///< of collections that have ended, in nodes
 };
@@ -172,7 +197,7 @@ YAML::Node parseSingleDocument(const std::string& text) {
     }
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw YamlDefect(error.mark.line + 1, "this is not valid YAML: " + error.msg + ".");
+    throw YamlDefect(error.mark.line + 1, "this is not valid YAML: " + excerpt(error.msg) + ".");
   }
 }
 

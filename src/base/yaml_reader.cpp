@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "yaml_document.hpp"
 
 namespace sac {
@@ -41,7 +42,7 @@ struct YamlMap::State {
   std::vector<std::shared_ptr<State>> children;
 
   std::string keyPath(const std::string& key) const {
-    return path.empty() ? key : path + "." + key;
+    return path.empty() ? excerpt(key) : path + "." + excerpt(key);
   }
 
   int lineOf(const YAML::Node& node) const {
@@ -76,7 +77,7 @@ std::string describe(const YAML::Node& node) {
   if (node.IsSequence()) {
     return "a list";
   }
-  return node.IsScalar() ? "\"" + node.Scalar() + "\"" : "an empty value";
+  return node.IsScalar() ? "\"" + excerpt(node.Scalar()) + "\"" : "an empty value";
 }
 
 /// A scalar that YAML may take for something else than a string.
@@ -138,7 +139,7 @@ std::string join(const std::vector<std::string>& words) {
 YamlMap::YamlMap(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
 YamlMap YamlMap::load(const std::string& path) {
-  return parse(readInputFile(path), path);
+  return parse(readInputFile(path, kLargestDescription), path);
 }
 
 YamlMap YamlMap::parse(const std::string& text, const std::string& name, LineNumbers line_numbers) {

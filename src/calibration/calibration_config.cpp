@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
@@ -330,7 +331,7 @@ CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& 
 }
 
 CalibrationConfig loadCalibrationConfig(const std::string& path) {
-  return readWholeConfig(YamlMap::load(path), path);
+  return readWholeConfig(YamlMap::parse(readInputFile(path, kLargestConfiguration), path), path);
 }
 
 CalibrationConfig parseCalibrationConfig(const std::string& text, const std::string& name) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 
@@ -63,7 +64,7 @@ Sample readSample(const YamlMap& map, const DefaultStddevs& defaults, bool has_j
 }  // namespace
 
 std::vector<Sample> loadSamples(const std::string& path, std::size_t coils, bool has_joints) {
-  const YamlMap file = YamlMap::load(path);
+  const YamlMap file = YamlMap::parse(readInputFile(path), path);
   const DefaultStddevs defaults{
       file.number("orientation_stddev", ValueRange::nonNegative("rad"), 0.0),
       file.number("torque_stddev", ValueRange::nonNegative("N m"), 0.0)};

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_record.hpp"
@@ -66,11 +68,11 @@ CoilPattern readPattern(const YamlMap& map, const std::string& text) {
     const bool has_sign = word.front() == '+' || word.front() == '-';
     if (!has_sign || error != std::errc{} || last != end || number == 0 ||
         number > kMostOfAnything) {
-      map.fail("patterns", "\"" + text + "\" is no pattern such as \"+1 -4\".");
+      map.fail("patterns", "\"" + excerpt(text) + "\" is no pattern such as \"+1 -4\".");
     }
     const std::size_t coil = indexOf(number).value();
     if (!pattern.empty() && coil <= pattern.back().coil) {
-      map.fail("patterns", "\"" + text + "\": coils ascend, each at most once.");
+      map.fail("patterns", "\"" + excerpt(text) + "\": coils ascend, each at most once.");
     }
     pattern.push_back({coil, word.front() == '-' ? -1 : 1});
   }
@@ -92,7 +94,8 @@ PlannedPose readPose(const YamlMap& map) {
       pose.patterns.push_back(readPattern(map, text));
       for (const SignedCoil& coil : pose.patterns.back()) {
         if (std::find(pose.coils.begin(), pose.coils.end(), coil.coil) == pose.coils.end()) {
-          map.fail("patterns", "\"" + text + "\" excites a coil that is not among the coils.");
+          map.fail("patterns",
+                   "\"" + excerpt(text) + "\" excites a coil that is not among the coils.");
         }
       }
     }
@@ -196,7 +199,7 @@ std::string renderSessionPlan(const SessionPlanRecord& record) {
 }
 
 SessionPlanRecord loadSessionPlan(const std::string& path) {
-  const YamlMap file = YamlMap::load(path);
+  const YamlMap file = YamlMap::parse(readInputFile(path, kLargestConfiguration), path);
   const YamlMap map = file.map("session_plan");
   SessionPlanRecord record;
   record.actuator = map.nonEmptyText("actuator");

@@ -12,7 +12,12 @@ import tempfile
 
 import yaml
 
-LARGEST = 64 << 20  # [bytes] of a text file
+LARGEST = 16 << 20  # [bytes] of a text file: the report of hundreds of coils
+LARGEST_DESCRIPTION = 8 << 20  # [bytes]: that of 400 coils with the covariance of all its parameters has 5.7 MB
+LARGEST_CONFIGURATION = 1 << 20  # [bytes]: of a plan, too
+MOST_KEYS = 100_000  # of all maps of a document
+LONGEST_EXCERPT = 80  # [characters]
+LONGEST_ERROR = 1000  # [characters]
 DEEPEST = 64  # maps and lists within each other
 MOST_NODES = 1_000_000  # of a document; an alias counts as much as what it stands for
 LONGEST_NUMBER = 1024  # [characters]; Python needs the square of it
@@ -28,7 +33,10 @@ KINDS = (
     (stat.S_ISLNK, "a symbolic link"),
 )
 # Obeyed by terminals, or no character at all: bytes of a file name that are no UTF-8 are surrogates.
-NOT_SHOWN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
+# So are marks that break lines or turn the direction of writing.
+OBEYED = "\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff"
+NOT_SHOWN = re.compile(f"[{OBEYED}]")
+NOT_IN_A_LINE = re.compile(f"[\t\n{OBEYED}]")
 
 
 class TextFileError(ValueError):
@@ -36,8 +44,15 @@ class TextFileError(ValueError):
 
 
 def printable(text):
-    """Text that a terminal shows and does not obey: control characters but line feed and tab become "\\x1b"."""
+    """Text that a terminal shows and does not obey: control characters but line feed and tab become "\\x1b", and so do
+    marks that break lines or turn the direction of writing."""
     return NOT_SHOWN.sub(_escaped, str(text))
+
+
+def excerpt(text, longest=LONGEST_EXCERPT):
+    """What a message quotes of a text from outside: printable, in one line, and so many characters at most."""
+    text = str(text)
+    return NOT_IN_A_LINE.sub(_escaped, text[:longest]) + ("..." if len(text) > longest else "")
 
 
 def _escaped(match):
@@ -46,22 +61,36 @@ def _escaped(match):
 
 
 def tell_error(program, sentence):
-    """Says on the standard error why a program ends."""
-    print(f"{program}: {printable(sentence)}", file=sys.stderr)
+    """Says on the standard error why a program ends, in one line."""
+    print(f"{program}: {excerpt(sentence, LONGEST_ERROR)}", file=sys.stderr)
 
 
 def read_bytes(path, largest=LARGEST):
     """Content of a regular file: a FIFO would wait for ever, a device never end. Raises TextFileError."""
     try:
         with open(path, "rb", opener=_opened) as file:
-            content = file.read(largest + 1)
+            is_large = os.fstat(file.fileno()).st_size > largest
+            content = b"" if is_large else file.read(largest + 1)
     except TextFileError:
         raise
     except (OSError, ValueError) as error:
         raise TextFileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}.") from error
-    if len(content) > largest:
+    if content is None:
+        raise TextFileError(f"{path}: cannot be read: nothing comes from it.")
+    if is_large or len(content) > largest:
         raise TextFileError(f"{path}: is larger than {largest} bytes, the most that is read of such a file.")
     return content
+
+
+def beginning_of(path, size):
+    """The first bytes of a regular file, fewer where it has no more. Raises TextFileError."""
+    try:
+        with open(path, "rb", buffering=0, opener=_opened) as file:
+            return file.read(size) or b""
+    except TextFileError:
+        raise
+    except (OSError, ValueError) as error:
+        raise TextFileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}.") from error
 
 
 def _opened(path, flags):
@@ -134,7 +163,9 @@ class _Census:
     def __init__(self, path):
         self._path = path
         self._nodes = 0
+        self._keys = 0
         self._open = []  # anchor and number of nodes before, of each map or list that has begun
+        self._awaits_key = []  # whether a key comes next, for each of these; None for a list
         self._sizes = {}  # by anchor
 
     def take(self, events):
@@ -142,17 +173,19 @@ class _Census:
         documents = 0
         for event in events:
             if isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent)) and event.tag not in TAGS:
-                self._fail(event, f"a tag, {event.tag[:40]}, is not read; write the value without it.")
+                self._fail(event, f"a tag, {excerpt(event.tag, 40)}, is not read; write the value without it.")
             if isinstance(event, yaml.ScalarEvent):
                 self._take_scalar(event)
             elif isinstance(event, yaml.CollectionStartEvent):
                 self._begin(event)
             elif isinstance(event, yaml.CollectionEndEvent):
                 anchor, before = self._open.pop()
+                self._awaits_key.pop()
                 self._sizes[anchor] = self._nodes - before
             elif isinstance(event, yaml.AliasEvent):
                 if any(anchor == event.anchor for anchor, _ in self._open):
                     self._fail(event, "an alias stands within what it is an alias of.")
+                self._take_turn(event)
                 self._count(event, self._sizes.get(event.anchor, 1))
             elif isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
@@ -160,6 +193,7 @@ class _Census:
                     self._fail(event, "a second document begins here; one file holds one.")
 
     def _take_scalar(self, event):
+        self._take_turn(event)
         self._count(event, 1)
         if event.implicit[0] and event.value[:1] in tuple("+-.0123456789"):
             self._take_number(event)
@@ -175,7 +209,18 @@ class _Census:
             if too_long or not -(1 << 63) <= _integer(event.value) < 1 << 64:
                 self._fail(event, "a whole number has more than 64 bit; write it as a text in quotes.")
 
+    def _take_turn(self, event):
+        """Keys and values of a map take turns."""
+        if not self._awaits_key or self._awaits_key[-1] is None:
+            return
+        self._keys += self._awaits_key[-1]
+        self._awaits_key[-1] = not self._awaits_key[-1]
+        if self._keys > MOST_KEYS:
+            self._fail(event, f"there are more than {MOST_KEYS} keys.")
+
     def _begin(self, event):
+        self._take_turn(event)
+        self._awaits_key.append(True if isinstance(event, yaml.MappingStartEvent) else None)
         self._open.append((event.anchor, self._nodes))
         if len(self._open) > DEEPEST:
             self._fail(event, f"maps and lists stand more than {DEEPEST} deep within each other.")

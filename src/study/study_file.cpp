@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 
@@ -112,7 +113,7 @@ std::string renderStudy(const StudyRecord& study) {
 }
 
 StudyRecord loadStudy(const std::string& path) {
-  const YamlMap file = YamlMap::load(path);
+  const YamlMap file = YamlMap::parse(readInputFile(path, kLargestConfiguration), path);
   const YamlMap map = file.map("study");
   StudyRecord study;
   for (const YamlMap& setting : map.maps("settings")) {

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
@@ -50,8 +51,50 @@ TEST(InputFile, ReadsNoMoreThanTheLimit) {
             path + ": is larger than 4 bytes, the most that is read of such a file.");
 }
 
+TEST(InputFile, ReadsNoMoreThanADescriptionMayHave) {
+  const TemporaryFolder folder;
+  const std::string comment(kLargestDescription, '#');
+  EXPECT_EQ(YamlMap::load(folder.write("f", "a: 1\n" + comment.substr(10))).number("a", {}), 1.0);
+  const std::string path = folder.write("g", "a: 1\n" + comment);
+  EXPECT_NE(errorMessage<ConfigError>([&] { YamlMap::load(path); }).find("larger than 8388608"),
+            std::string::npos);
+}
+
 std::string yamlRefusal(const std::string& text) {
   return errorMessage<ConfigError>([&] { YamlMap::parse(text, "f.yaml"); });
+}
+
+TEST(InputFile, AYamlTextOfManyKeysIsRefused) {
+  const auto maps = [](int count) {
+    std::string text = "a:\n";
+    for (int n = 0; n < count; ++n) {
+      text += "- {k: v, l: [1, 2, 3], m: {n: 1}}\n";
+    }
+    return text;
+  };
+  EXPECT_EQ(YamlMap::parse(maps(24'999), "f.yaml").maps("a").size(), 24'999U);
+  const std::string message = yamlRefusal(maps(25'001));
+  EXPECT_NE(message.find("f.yaml:25001: more than 100000 keys"), std::string::npos) << message;
+}
+
+// What a message quotes of a text is short, and in one line.
+TEST(InputFile, AMessageQuotesNoMoreThanALine) {
+  const std::string large(1'000'000, 'x');
+  const auto message = [](const std::string& text) {
+    return errorMessage<ConfigError>([&] {
+      const YamlMap map = YamlMap::parse(text, "f.yaml");
+      map.number("n", ValueRange::finite());
+      map.finish();
+    });
+  };
+  for (const std::string& text :
+       {"n: " + large, "n: 1\n? " + large + "\n: 1", large + ": 1", "n: *" + large}) {
+    EXPECT_LT(message(text).size(), 400U);
+  }
+  const std::string forged = message("n: \"a\\nFATAL: forged line\\n\"");
+  EXPECT_EQ(forged.find('\n'), std::string::npos) << forged;
+  EXPECT_NE(forged.find("\\x0aFATAL"), std::string::npos) << forged;
+  EXPECT_EQ(message("n: 1\n\u202eabc: 1").find("\u202e"), std::string::npos);
 }
 
 // Of "," yaml-cpp makes documents for ever.

@@ -31,6 +31,28 @@ TEST(PrintableText, ShowsBytesThatAreNoCharacter) {
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // half of a surrogate
 }
 
+TEST(PrintableText, ShowsWhatTurnsOrBreaksALine) {
+  EXPECT_EQ(printable("\u202egnp.exe"), "\\xe2\\x80\\xaegnp.exe");
+  for (const char* sign : {"\u200e", "\u200f", "\u2028", "\u2029", "\u202a", "\u2066", "\u2069"}) {
+    EXPECT_EQ(printable(sign).size(), 12U) << sign;
+  }
+  for (const char* sign : {"\u200d", "\u2010", "\u2027", "\u202f", "\u2065", "\u206a", "\u1028"}) {
+    EXPECT_EQ(printable(sign), sign);
+  }
+}
+
+TEST(PrintableText, QuotesOneShortLine) {
+  EXPECT_EQ(excerpt("coil 3: 2.5 µm"), "coil 3: 2.5 µm");
+  EXPECT_EQ(excerpt("a\nFATAL: forged\tline"), "a\\x0aFATAL: forged\\x09line");
+  EXPECT_EQ(excerpt(std::string(80, 'x')), std::string(80, 'x'));
+  EXPECT_EQ(excerpt(std::string(81, 'x')), std::string(80, 'x') + "...");
+  std::string wide;
+  for (int n = 0; n < 100; ++n) {
+    wide += "µ";
+  }
+  EXPECT_EQ(excerpt(wide), wide.substr(0, 160) + "...");
+}
+
 TEST(PrintableText, FiltersAStreamAsLongAsItLives) {
   std::ostringstream out;
   {

@@ -11,8 +11,10 @@ import unittest
 
 from spherical_actuator_calibration.text_files import (
     TextFileError,
+    excerpt,
     parsed_yaml,
     printable,
+    read_bytes,
     read_text,
     read_yaml,
     require_separate_files,
@@ -66,6 +68,21 @@ class TextFiles(Folder):
         path.write_bytes(b"a: 1\nb: \xff\n")
         self.assertIn("a.yaml:2: a byte 0xff is no text in UTF-8.", self.refusal(read_text, path))
 
+    def test_sparse_files_are_refused_by_their_size(self):
+        path = self.folder / "sparse"
+        with open(path, "wb") as file:
+            file.truncate(2 << 30)
+        begin = time.process_time()
+        self.assertIn("is larger than 1073741824 bytes", self.refusal(read_bytes, path, 1 << 30))
+        self.assertLess(time.process_time() - begin, 0.1)
+
+    def test_documents_of_many_keys_are_refused(self):
+        def maps(count):
+            return "".join(f"- {{k: v, l: [1, 2, 3], m: {{n{n}: 1}}}}\n" for n in range(count))
+
+        self.assertEqual(len(parsed_yaml(maps(24999), "a")), 24999)
+        self.assertIn("a:25001: there are more than 100000 keys", self.refusal(parsed_yaml, maps(25001), "a"))
+
     def test_documents_that_cost_more_than_their_text_are_refused(self):
         for name, text in HOSTILE.items():
             with self.subTest(name):
@@ -106,7 +123,17 @@ class TextFiles(Folder):
     def test_terminals_are_not_obeyed(self):
         self.assertEqual(printable("a\tb\nä €"), "a\tb\nä €")
         self.assertEqual(printable("\x1b[31m\r\x7f\x9b"), "\\x1b[31m\\x0d\\x7f\\xc2\\x9b")
+        self.assertEqual(printable("\u202egnp"), "\\xe2\\x80\\xaegnp")
+        for sign in "\u200e\u200f\u2028\u2029\u202a\u202e\u2066\u2069":
+            self.assertTrue(printable(sign).startswith("\\xe2"), sign)
+        for sign in "\u200d\u2010\u202f\u2065":
+            self.assertEqual(printable(sign), sign)
         self.assertEqual(printable(os.fsdecode(b"a\xff") + "\ud800"), "a\\xff\\xed\\xa0\\x80")
+
+    def test_excerpts_are_short_and_one_line(self):
+        self.assertEqual(excerpt("a\nFATAL: forged\t"), "a\\x0aFATAL: forged\\x09")
+        self.assertEqual(excerpt("ä" * 80), "ä" * 80)
+        self.assertEqual(excerpt("ä" * 81), "ä" * 80 + "...")
 
     def test_one_file_has_one_role(self):
         path = self.folder / "in.csv"
@@ -186,6 +213,43 @@ class Programs(Folder):
         self.expect_refusal("import_csv", "--actuator", ACTUATOR, "--output", "o.bag", "s.csv", part="\\x1b[31m")
         self.expect_refusal("render_report", "\x1b[31m.yaml", "o.html", part="\\x1b[31m")
         self.expect_refusal("export_session", "\x1b[31m.db", "o", part="\\x1b[31m")
+
+    def test_forged_lines_and_large_texts_of_files(self):
+        forged = 'streams: [{stream: "a\\nFATAL: forged\\n\\u2028", file: x}]\n'
+        (self.folder / "i.yaml").write_text(forged, encoding="utf-8")
+        arguments = ("--actuator", ACTUATOR, "--output", "o.bag", "--streams", "i.yaml")
+        self.expect_refusal("import_csv", *arguments, part="\\x0aFATAL: forged\\x0a\\xe2\\x80\\xa8")
+        (self.folder / "i.yaml").write_text("streams: [{stream: " + "x" * 900000 + ", file: x}]\n", encoding="utf-8")
+        self.expect_refusal("import_csv", *arguments, part="...")
+        (self.folder / "large").write_bytes(b"#" * (9 << 20))
+        arguments_of_large = ("--actuator", "large", "--output", "o.bag", "s.csv")
+        self.expect_refusal("import_csv", *arguments_of_large, part="larger than 8388608")
+        self.expect_refusal("import_csv", *arguments[:-1], "large", part="larger than 1048576")
+
+    def test_plans_are_read_before_anything_waits(self):
+        os.mkfifo(self.folder / "fifo")
+        (self.folder / "comma").write_text(",", encoding="utf-8")
+        (self.folder / "other").write_text("session_plan: {}", encoding="utf-8")
+        for plan, part in (
+            ("none", "none: cannot be read: No such file"),
+            ("fifo", "fifo: is a FIFO, not a file."),
+            ("/dev/zero", "is a device, not a file."),
+            ("comma", "comma:1: this is not valid YAML"),
+            ("other", "other: this is no plan of plan_motion: the key motion_plan is missing."),
+        ):
+            self.expect_refusal("run_motion", plan, part=part)
+            arguments = ("--actuator", ACTUATOR, "--directory", "new")
+            self.expect_refusal("calibrate_by_motion", *arguments, "--plan", plan, part=part)
+            self.assertFalse((self.folder / "new").exists())
+        arguments = ("--actuator", "none", "--directory", "new")
+        self.expect_refusal("calibrate_by_motion", *arguments, part="none: cannot be read")
+
+    def test_sessions_that_are_none_leave_no_folder(self):
+        (self.folder / "text").write_text("no database", encoding="utf-8")
+        for path in ("text", "none", "/dev/zero"):
+            self.expect_refusal("export_session", path, "new", part=f"{path}: ")
+            self.expect_refusal("list_revisions", path, part=f"{path}: ")
+            self.assertFalse((self.folder / "new").exists())
 
     def test_inputs_are_not_replaced(self):
         (self.folder / "s.csv").write_text("joint_1,joint_2,joint_3\n0,0,0\n", encoding="utf-8")

@@ -8,7 +8,7 @@ import statistics
 
 from ..session_tables.export import ExportError
 from ..session_tables.export import Session as StoredSession
-from ..text_files import TextFileError, read_yaml
+from ..text_files import LARGEST_CONFIGURATION, TextFileError, read_yaml
 from .progress import Pose, excited_coils, is_same_pattern, poses_of
 
 SIGNED_COIL = re.compile(r"[+-][1-9]\d{0,5}")
@@ -29,7 +29,7 @@ class Plan:
 def read_plan(path, actuator):
     """A plan of plan_session for an actuator, given as its description. Raises PlanError."""
     try:
-        content = read_yaml(path)
+        content = read_yaml(path, LARGEST_CONFIGURATION)
     except (OSError, TextFileError) as error:
         raise PlanError(str(error)) from error
     plan = content.get("session_plan") if isinstance(content, dict) else None

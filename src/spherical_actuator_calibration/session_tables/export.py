@@ -8,10 +8,11 @@ import os
 import pathlib
 import sqlite3
 
-from ..text_files import other_kind, write_text
+from ..text_files import TextFileError, beginning_of, other_kind, write_text
 from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
+MAGIC = b"SQLite format 3\0"
 FORMATS = (1, 2, 3, 4)
 FILES = ("samples.csv", "parameters.csv", "revisions.csv", "actuator.yaml")
 PARAMETER_HEADINGS = (
@@ -68,6 +69,12 @@ class Session:
             raise ExportError(f"{self.path}: is {kind}, not a file.")
         if not os.path.isfile(self.path):
             raise ExportError(f"{self.path}: there is no such file.")
+        try:
+            is_database = beginning_of(self.path, len(MAGIC)) == MAGIC
+        except TextFileError as error:
+            raise ExportError(str(error)) from error
+        if not is_database:
+            raise ExportError(f"{self.path}: cannot be read as a session: file is not a database.")
         for ending in ("-journal", "-wal", "-shm"):
             beside = os.path.realpath(self.path) + ending
             kind = other_kind(beside, follow=False)
@@ -189,7 +196,6 @@ def text_of(table):
 
 def export(path, folder, force):
     """Writes the files of FILES, and returns how many samples there are."""
-    os.makedirs(folder, exist_ok=True)
     for name in FILES:
         target = os.path.join(folder, name)
         if os.path.exists(target) and not force:
@@ -197,6 +203,7 @@ def export(path, folder, force):
     with Session(path) as session:
         samples = session.samples()
         texts = (text_of(samples), text_of(session.parameters()), text_of(session.revisions()), session.description())
+    os.makedirs(folder, exist_ok=True)
     for name, text in zip(FILES, texts):
         write_text(os.path.join(folder, name), text)
     return len(samples[1])

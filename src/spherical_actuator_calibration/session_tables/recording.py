@@ -7,13 +7,18 @@ import rosbag
 from std_msgs.msg import String
 
 from spherical_actuator_calibration.msg import ActuatorParameters
-from spherical_actuator_calibration.text_files import parsed_yaml, read_text, read_yaml, require_separate_files
+from spherical_actuator_calibration.text_files import (
+    LARGEST_CONFIGURATION,
+    LARGEST_DESCRIPTION,
+    parsed_yaml,
+    read_text,
+    read_yaml,
+    require_separate_files,
+)
 
 from .sample_messages import SPACING, SampleTable
 from .stream_messages import streams_of
 from .table import TableError
-
-LARGEST = 1 << 24  # [bytes] of a YAML file
 
 
 class Recording:
@@ -23,7 +28,7 @@ class Recording:
         self.path = path
         self._active = path + ".active"
         self._prefix = "/" + ns.strip("/") + "/" if ns.strip("/") else "/"
-        self._text = read_text(actuator_path, LARGEST)
+        self._text = read_text(actuator_path, LARGEST_DESCRIPTION)
         content = parsed_yaml(self._text, actuator_path)
         if not isinstance(content, dict) or not isinstance(content.get("actuator"), dict):
             raise TableError(f"{actuator_path}: it is no description: the key actuator is missing.")
@@ -86,7 +91,7 @@ def record_samples(recording, path):
 
 def record_streams(recording, path):
     """Writes the streams that a YAML file describes; returns what was written, in words."""
-    streams = streams_of(path, read_yaml(path, LARGEST), recording.actuator)
+    streams = streams_of(path, read_yaml(path, LARGEST_CONFIGURATION), recording.actuator)
     require_separate_files([(path, stream.path) for stream in streams], recording.files())
     lines = []
     with recording:

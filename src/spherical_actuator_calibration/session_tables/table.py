@@ -4,7 +4,7 @@ import csv
 import io
 import math
 
-from spherical_actuator_calibration.text_files import read_bytes
+from spherical_actuator_calibration.text_files import excerpt, read_bytes
 
 from .columns import UNITS
 
@@ -54,9 +54,9 @@ class Row:
         try:
             value = float(text) * factor
         except ValueError:
-            self.fail(f'"{text[:40]}" is not a number.', column)
+            self.fail(f'"{excerpt(text, 40)}" is not a number.', column)
         if not math.isfinite(value):
-            self.fail(f'"{text[:40]}" is not a finite number.', column)
+            self.fail(f'"{excerpt(text, 40)}" is not a finite number.', column)
         return value
 
     def integer(self, column, smallest=0, largest=(1 << 63) - 1):
@@ -65,7 +65,7 @@ class Row:
         try:
             value = int(text)
         except ValueError:
-            self.fail(f'"{text[:40]}" is not a whole number.', column)
+            self.fail(f'"{excerpt(text, 40)}" is not a whole number.', column)
         if not smallest <= value <= largest:
             self.fail(f"{value} is outside [{smallest}, {largest}].", column)
         return value
