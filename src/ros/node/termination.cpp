@@ -34,6 +34,24 @@ void requestTermination(int /*signal*/) {
   ::_exit(static_cast<int>(g_late_status));
 }
 
+// Somebody else may send it, too: then it is a signal as the others are.
+void endAfterAlarm(int signal, siginfo_t* info, void* /*context*/) {
+  const bool is_sent = info->si_code <= 0;  // by a process, and not by the kernel's timer
+  if (is_sent) {
+    requestTermination(signal);
+  } else {
+    endLate(signal);
+  }
+}
+
+void handleAlarm() {
+  struct sigaction action = {};
+  action.sa_sigaction = endAfterAlarm;
+  action.sa_flags = SA_SIGINFO;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGALRM, &action, nullptr);
+}
+
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
@@ -66,7 +84,8 @@ constexpr double kPatience = 0.02;
 }  // namespace
 
 void handleTerminationSignals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) {
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGQUIT, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ, SIGVTALRM, SIGPROF, SIGPWR}) {
     handle(signal, requestTermination);
   }
   // A terminal that is closed, such as that of ssh, sends this one; nohup lets a node outlive it.
@@ -75,10 +94,10 @@ void handleTerminationSignals() {
   if (inherited.sa_handler != SIG_IGN) {
     handle(SIGHUP, requestTermination);
   }
+  handleAlarm();
 }
 
 void endStartAfterSignal() {
-  handle(SIGALRM, endLate);
   g_is_starting = 1;
 }
 
@@ -97,7 +116,7 @@ bool failedFatally() {
 void endWithin(unsigned seconds, int status) {
   g_is_starting = 0;
   g_late_status = status;
-  handle(SIGALRM, endLate);
+  handleAlarm();
   ::alarm(seconds);
 }
 

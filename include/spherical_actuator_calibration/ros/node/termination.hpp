@@ -3,9 +3,10 @@
 namespace sac {
 
 /// Makes SIGINT, SIGTERM, SIGHUP and SIGQUIT end spinUntilTermination() instead of the process, so
-/// that a node's objects are destroyed in order. roscpp by itself dies on all but SIGINT without
-/// any clean-up. SIGHUP stays ignored where it is, as nohup wants it. Call after ros::init() with
-/// ros::init_options::NoSigintHandler.
+/// that a node's objects are destroyed in order; and so do SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU and
+/// others that end a process which does not expect them. roscpp by itself dies on all but SIGINT
+/// without any clean-up. SIGHUP stays ignored where it is, as nohup wants it. Call after
+/// ros::init() with ros::init_options::NoSigintHandler.
 void handleTerminationSignals();
 
 /// Until the loops below begin, two seconds after such a signal end the program with status 1: it
