@@ -1,13 +1,14 @@
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <random>
-
-#include <Eigen/Cholesky>
+#include <utility>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
-#include "motion_terms.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/motion/live_motion.hpp"
 #include "support/moving_rotor.hpp"
 #include "support/resident_memory.hpp"
 
@@ -51,39 +52,48 @@ MotionRecording noisyMotion(const MovingRotor& moving) {
   return recording;
 }
 
-/// One more window of a motion, as it comes: linearised where the estimate is, with the noise of
-/// its residuals, and what all of them tell after it, with its covariance.
+/// All windows of a recording, as they come.
+std::vector<MotionSlice> slicesOf(const MotionRecording& recording) {
+  const MotionStreams& streams = recording.spans.front();
+  std::vector<MotionSlice> slices;
+  MotionSlicer slicer(static_cast<std::size_t>(streams.currents.cols()), MotionOptions());
+  std::size_t orientation = 0;
+  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
+    const auto row = streams.currents.row(static_cast<Eigen::Index>(n));
+    slicer.add(CurrentMeasurement{streams.current_stamps[n], row.transpose().cast<double>()});
+    for (; orientation < streams.orientation_stamps.size() &&
+           streams.orientation_stamps[orientation] <= streams.joint_stamps[n];
+         ++orientation) {
+      slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
+                                        streams.orientations[orientation]});
+    }
+    slicer.add(JointMeasurement{streams.joint_stamps[n], streams.joints[n]});
+    while (auto slice = slicer.take()) {
+      slices.push_back(std::move(*slice));
+    }
+  }
+  return slices;
+}
+
+/// One more window of a motion that has gone on for a minute, as it comes: what all of them tell
+/// after it, with its covariance. What looks at old windows now and then is part of it.
 void takeOneWindow(benchmark::State& state) {
-  constexpr double kCurrentStddev = 1e-3;  // [A]
-  const MotionRecording recording = noisyMotion(movingUnit(6.0));
+  constexpr std::size_t kMinute = 240;
+  const std::vector<MotionSlice> slices = slicesOf(noisyMotion(movingUnit(15.0)));
   const CalibrationModel model(
       ParameterSpace(scenarios::paperNominal(), withMotionEffects(EffectSelection())));
-  const ParameterBelief prior = nominalState(model.space(), {}).belief;
-  const MotionPlaces places(model.space());
-  const MotionOptions options;
-  const std::vector<MotionSpan> spans(1, MotionSpan(recording.spans.front()));
-  std::vector<WindowsLeftOut> left_out;
-  const std::vector<MotionWindow> windows = cutWindows(spans, options, left_out);
-  BalanceEvaluator evaluator(options, Eigen::Vector3d::Constant(2e-5));
-  WindowBalance balance;
-  InformationSum sum(Eigen::MatrixXd(prior.covariance.diagonal().cwiseInverse().asDiagonal()));
-  Eigen::MatrixXd covariance;
-  Eigen::VectorXd x;
+  std::vector<Eigen::Index> free(static_cast<std::size_t>(model.space().size()));
+  std::iota(free.begin(), free.end(), 0);
+  LiveMotion live(model, nominalState(model.space(), {}).belief, free, EstimationOptions());
   std::size_t next = 0;
-  for (auto _ : state) {
-    const MotionPoint point(model, places, prior.x);
-    evaluator.evaluate(spans.front(), windows[next], point, {true, 1}, balance);
-    const Eigen::MatrixXd whitening =
-        whiteningOfMany(balance.by_joints + kCurrentStddev * kCurrentStddev * balance.by_currents);
-    const auto W = whitening.triangularView<Eigen::Lower>();
-    sum.addDense(W * balance.jacobian, W * balance.residual);
-    const Eigen::LLT<Eigen::MatrixXd> factor(sum.information());
-    covariance = factor.solve(Eigen::MatrixXd::Identity(prior.x.size(), prior.x.size()));
-    x = prior.x - covariance * sum.gradient();
-    benchmark::DoNotOptimize(x.data());
-    next = (next + 1) % windows.size();
+  const auto take = [&] { live.add(slices[next++ % slices.size()]); };
+  while (next < kMinute) {
+    take();
   }
-  if (!x.allFinite() || windows.empty()) {
+  for (auto _ : state) {
+    take();
+  }
+  if (!live.estimate().is_told || live.estimate().left_out > 0) {
     state.SkipWithError("nothing was found");
   }
   state.counters["parameters"] = static_cast<double>(model.space().size());

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <thread>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
-#include "live_window.hpp"
-#include "noise_factors.hpp"
+#include "live_motion_work.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -29,80 +27,6 @@ std::vector<Eigen::Index> uncertain(std::vector<Eigen::Index> coordinates,
 }
 
 }  // namespace
-
-class LiveMotion::Work {
- public:
-  Work(const CalibrationModel& model,
-       ParameterBelief prior,
-       std::vector<Eigen::Index> free,
-       const EstimationOptions& estimation,
-       const MotionOptions& options,
-       const LiveMotionOptions& live);
-
-  void add(MotionSlice slice);
-  const LiveEstimate& estimate() const { return estimate_; }
-
- private:
-  void begin();
-  void take(LiveWindow& window);
-  void freezeOldest();
-  void linearizeAnew(bool with_noise);
-  double linearizeKept(bool with_covariance);
-  void takeNoise();
-  void findNoise();
-  double scaleOf(const std::vector<double>& squares) const;
-  double limitFor(std::size_t windows) const;
-  void judgeKept();
-  void sumUp();
-  bool misleads();
-  Eigen::VectorXd residualOf(const LiveWindow& window) const { return window.residualAt(x_); }
-  bool contradicts(const LiveWindow& window) const;
-  void addTo(InformationSum& balance, InformationSum& orientation, const LiveWindow& window) const;
-  Eigen::MatrixXd information() const;
-  void solve();
-  void tell(const Eigen::MatrixXd& inverse);
-  double chiSquare() const;
-  double orientationChiSquare() const;
-  void countServing();
-
-  const CalibrationModel* model_;
-  ParameterBelief prior_;
-  std::vector<Eigen::Index> free_;
-  EstimationOptions estimation_;
-  MotionOptions options_;
-  LiveMotionOptions live_;
-  MotionPlaces places_;
-  std::vector<Eigen::Index> orienting_;
-  Eigen::MatrixXd prior_information_;  ///< zero where a coordinate is held
-  bool holds_uncertain_ = false;       ///< some coordinate that is not free is uncertain
-
-  StreamNoise noise_;
-  NoiseFactors factors_;
-  std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
-  WindowBalance probe_;
-  double scale_ = 1.0;  ///< squared misfit of usual windows, over that of noise
-
-  std::deque<LiveWindow> kept_;  ///< oldest first
-  std::size_t next_probe_ = 0;
-  std::size_t next_begin_;
-  std::size_t next_noise_ = 0;
-
-  // At `anchor_`.
-  Eigen::VectorXd anchor_;
-  InformationSum balance_;
-  InformationSum orientation_;
-  // Of windows that are not kept any more, at `frozen_at_`.
-  InformationSum frozen_balance_;
-  InformationSum frozen_orientation_;
-  Eigen::VectorXd frozen_at_;
-  std::size_t frozen_serving_ = 0;
-  double frozen_duration_ = 0.0;
-  std::size_t frozen_orientations_ = 0;
-
-  Eigen::VectorXd x_;
-  std::size_t lately_left_out_ = 0;
-  LiveEstimate estimate_;
-};
 
 LiveMotion::Work::Work(const CalibrationModel& model,
                        ParameterBelief prior,
@@ -291,10 +215,11 @@ void LiveMotion::Work::linearizeAnew(bool with_noise) {
   for (int round = 0; round < kMostRounds; ++round) {
     const double wrong = linearizeKept(with_noise && round == 0);
     ++estimate_.linearizations;
+    judgeKept();
     if (with_noise && round == 0) {
       findNoise();
+      judgeKept();
     }
-    judgeKept();
     sumUp();
     solve();
     if (!(wrong > live_.tolerance * live_.tolerance)) {
@@ -356,108 +281,6 @@ void LiveMotion::Work::freezeOldest() {
     frozen_orientations_ += oldest.orientations;
   }
   kept_.pop_front();
-}
-
-Eigen::MatrixXd LiveMotion::Work::information() const {
-  InformationSum sum = balance_;
-  sum.addAt(orienting_, orientation_);
-  return sum.information();
-}
-
-void LiveMotion::Work::solve() {
-  const Eigen::MatrixXd told = information();
-  const Eigen::MatrixXd all = (told + prior_information_)(free_, free_);
-  Eigen::VectorXd slope = balance_.gradient() + prior_information_ * (anchor_ - prior_.x);
-  slope(orienting_) += orientation_.gradient();
-  const Eigen::LLT<Eigen::MatrixXd> factor(all);
-  const Eigen::VectorXd step = factor.solve(slope(free_));
-  if (factor.info() != Eigen::Success || !step.allFinite()) {
-    return;
-  }
-  x_ = anchor_;
-  x_(free_) -= step;
-  const auto count = static_cast<Eigen::Index>(free_.size());
-  Eigen::MatrixXd root = Eigen::MatrixXd::Identity(count, count);
-  factor.matrixLLT().triangularView<Eigen::Lower>().solveInPlace(root);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
-  inverse.selfadjointView<Eigen::Lower>().rankUpdate(root.transpose());
-  tell(Eigen::MatrixXd(inverse.selfadjointView<Eigen::Lower>()));
-}
-
-double LiveMotion::Work::chiSquare() const {
-  const std::size_t serving = estimate_.windows - estimate_.left_out;
-  const double freedom = 3.0 * options_.test_functions * static_cast<double>(serving) -
-                         static_cast<double>(free_.size());
-  InformationSum here = balance_;
-  here.moveBy(x_ - anchor_);
-  return freedom > 0.0 ? here.squaredMisfit() / freedom : 0.0;
-}
-
-/// Reduced, of the tracker's means over the windows that are kept.
-double LiveMotion::Work::orientationChiSquare() const {
-  const Eigen::VectorXd x = x_(orienting_);
-  double squares = 0.0;
-  double freedom = -static_cast<double>(model_->space().pole(0));
-  for (const LiveWindow& window : kept_) {
-    squares += window.meanSquare(x);
-    freedom += window.orientations > 0 ? 3.0 : 0.0;
-  }
-  return freedom > 2.0 ? squares / freedom : 0.0;
-}
-
-void LiveMotion::Work::countServing() {
-  estimate_.duration = frozen_duration_;
-  estimate_.orientations = frozen_orientations_;
-  std::size_t serving = frozen_serving_;
-  for (const LiveWindow& window : kept_) {
-    estimate_.duration += window.term.active ? window.duration() : 0.0;
-    estimate_.orientations += window.orientations;
-    serving += window.term.active ? 1 : 0;
-  }
-  estimate_.left_out = estimate_.windows - serving;
-}
-
-/// What is known now, with noise as large as both kinds of residuals say. `inverse`: of the
-/// information of what is free.
-void LiveMotion::Work::tell(const Eigen::MatrixXd& inverse) {
-  constexpr double kSignificance = 1e-3;
-  countServing();
-  estimate_.chi_square = chiSquare();
-  const double freedom =
-      3.0 * options_.test_functions * static_cast<double>(estimate_.windows - estimate_.left_out);
-  const bool is_misfit = estimate_.chi_square * freedom > chiSquareLimit(freedom, kSignificance);
-  const double windows = is_misfit ? estimate_.chi_square : 1.0;
-  const double orientations = std::max(1.0, orientationChiSquare());
-  Eigen::MatrixXd own = windows * inverse;
-  Eigen::MatrixXd by_orientations =
-      Eigen::MatrixXd::Zero(inverse.rows(), orientation_.gradient().size());
-  for (std::size_t n = 0; n < orienting_.size(); ++n) {
-    const auto place = std::lower_bound(free_.begin(), free_.end(), orienting_[n]);
-    if (place != free_.end() && *place == orienting_[n]) {
-      by_orientations.col(static_cast<Eigen::Index>(n)) = inverse.col(place - free_.begin());
-    }
-  }
-  own += (orientations - windows) *
-         (by_orientations * orientation_.information() * by_orientations.transpose());
-  ParameterBelief& belief = estimate_.belief;
-  belief.x = x_;
-  belief.covariance = prior_.covariance;
-  for (const Eigen::Index p : free_) {
-    belief.covariance.row(p).setZero();
-    belief.covariance.col(p).setZero();
-  }
-  if (!holds_uncertain_) {
-    belief.covariance(free_, free_) = own;
-    return;
-  }
-  // What is held is as uncertain as before, and what is estimated because of it, too.
-  Eigen::MatrixXd others = information()(free_, Eigen::all);
-  others(Eigen::all, free_).setZero();
-  const Eigen::MatrixXd gain = -inverse * others;
-  const Eigen::MatrixXd with_held = gain * belief.covariance;
-  belief.covariance(free_, Eigen::all) += with_held;
-  belief.covariance(Eigen::all, free_) += with_held.transpose();
-  belief.covariance(free_, free_) = own + with_held * gain.transpose();
 }
 
 void LiveMotion::Work::add(MotionSlice slice) {

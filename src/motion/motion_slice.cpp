@@ -33,6 +33,12 @@ std::size_t placeOf(const Stream& stream, Stamp stamp) {
   return static_cast<std::size_t>(place - stream.begin());
 }
 
+/// A rotor that a hand or a fixture turns tells nothing here.
+bool isDriven(const MotionStreams& streams) {
+  return streams.currents.size() > 0 &&
+         streams.currents.cwiseAbs().maxCoeff() > kExcitationThreshold;
+}
+
 template <typename Stream>
 void dropFront(Stream& stream, std::size_t count) {
   stream.erase(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(count));
@@ -154,10 +160,13 @@ std::optional<MotionSlice> MotionSlicer::take() {
     MotionSlice slice = cut(*at);
     advance(*at);
     const MotionSpan span(slice.streams);
-    const std::string reason =
+    std::string reason =
         span.current_times.empty()
             ? "currents are missing"
             : refusalOf(span, {0, slice.window.first, slice.window.last}, options_);
+    if (reason.empty() && !isDriven(slice.streams)) {
+      reason = "no coil is on";
+    }
     if (reason.empty()) {
       return slice;
     }

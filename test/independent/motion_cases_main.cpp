@@ -109,6 +109,30 @@ void followLive(const MotionProblem& problem, MotionEstimate& found) {
   found.summary.window_chi_square = last.chi_square;
 }
 
+void printParameters(const ParameterSpace& space, const Estimate& estimate) {
+  const Eigen::VectorXd values = space.reportedValues(estimate.belief.x);
+  const Eigen::VectorXd stddevs =
+      space.reportedStddevs(estimate.belief.x, estimate.belief.covariance);
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    const bool is_open =
+        std::count(estimate.unobservable.begin(), estimate.unobservable.end(), p) != 0;
+    std::printf("parameter %s %.17g %.17g %s\n",
+                space.name(p).c_str(),
+                values[p],
+                stddevs[p],
+                is_open ? "open" : "identified");
+  }
+  const Eigen::MatrixXd jacobian = reportedJacobian(space, estimate.belief.x);
+  const Eigen::MatrixXd covariance = jacobian * estimate.belief.covariance * jacobian.transpose();
+  for (const auto& row : covariance.rowwise()) {
+    std::printf("covariance");
+    for (const double value : row) {
+      std::printf(" %.17g", value);
+    }
+    std::printf("\n");
+  }
+}
+
 void calibrate(const Actuator& nominal,
                const EffectSelection& effects,
                bool is_live,
@@ -151,27 +175,7 @@ void calibrate(const Actuator& nominal,
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
   }
-  const Eigen::VectorXd values = model.space().reportedValues(estimate.belief.x);
-  const Eigen::VectorXd stddevs =
-      model.space().reportedStddevs(estimate.belief.x, estimate.belief.covariance);
-  for (Eigen::Index p = 0; p < model.space().size(); ++p) {
-    const bool is_open =
-        std::count(estimate.unobservable.begin(), estimate.unobservable.end(), p) != 0;
-    std::printf("parameter %s %.17g %.17g %s\n",
-                model.space().name(p).c_str(),
-                values[p],
-                stddevs[p],
-                is_open ? "open" : "identified");
-  }
-  const Eigen::MatrixXd jacobian = reportedJacobian(model.space(), estimate.belief.x);
-  const Eigen::MatrixXd covariance = jacobian * estimate.belief.covariance * jacobian.transpose();
-  for (const auto& row : covariance.rowwise()) {
-    std::printf("covariance");
-    for (const double value : row) {
-      std::printf(" %.17g", value);
-    }
-    std::printf("\n");
-  }
+  printParameters(model.space(), estimate);
 }
 
 }  // namespace

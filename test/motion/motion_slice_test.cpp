@@ -16,14 +16,14 @@ constexpr double kRate = 200.0;  // [Hz]
 class MotionSlicerTest : public ::testing::Test {
  protected:
   /// So many seconds of a turning rotor, or of a resting one.
-  void pass(double seconds, double speed = 0.5, bool has_currents = true) {
+  void pass(double seconds, double speed = 0.5, bool has_currents = true, double current = 0.5) {
     for (int n = 0; n < static_cast<int>(seconds * kRate); ++n) {
       now_ += 1.0 / kRate;
       spin_ += speed / kRate;
       const auto stamp = static_cast<Stamp>(std::llround(now_ * 1e9));
       slicer_.add(JointMeasurement{stamp, Eigen::Vector3d(0.1, 0.0, spin_)});
       if (has_currents) {
-        slicer_.add(CurrentMeasurement{stamp, Eigen::Vector2d::Constant(0.5)});
+        slicer_.add(CurrentMeasurement{stamp, Eigen::Vector2d::Constant(current)});
       }
       slicer_.add(OrientationMeasurement{stamp + 1, Eigen::Quaterniond::Identity()});
       while (auto slice = slicer_.take()) {
@@ -78,10 +78,14 @@ TEST_F(MotionSlicerTest, NeedsCurrentsWithinTheirLargestDelay) {
   EXPECT_LE(countLeftOut("currents are missing"), 9U);
 }
 
-TEST_F(MotionSlicerTest, LeavesOutRestsAndHoles) {
+TEST_F(MotionSlicerTest, LeavesOutRestsHolesAndHands) {
   pass(5.0, 0.0);
   EXPECT_TRUE(slices_.empty());
   EXPECT_GE(countLeftOut("the rotor rests"), 17U);
+  pass(5.0, 0.5, true, 0.0);
+  // The currents of before are within the largest delay of two windows.
+  EXPECT_LE(slices_.size(), 2U);
+  EXPECT_GE(countLeftOut("no coil is on"), 17U);
   pass(1.0);
   now_ += 0.1;
   pass(1.0);

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "live_window.hpp"
+#include "noise_factors.hpp"
+#include "spherical_actuator_calibration/motion/live_motion.hpp"
+
+namespace sac {
+
+/// What LiveMotion does and keeps.
+class LiveMotion::Work {
+ public:
+  Work(const CalibrationModel& model,
+       ParameterBelief prior,
+       std::vector<Eigen::Index> free,
+       const EstimationOptions& estimation,
+       const MotionOptions& options,
+       const LiveMotionOptions& live);
+
+  void add(MotionSlice slice);
+  const LiveEstimate& estimate() const { return estimate_; }
+
+ private:
+  void begin();
+  void take(LiveWindow& window);
+  void freezeOldest();
+  void linearizeAnew(bool with_noise);
+  double linearizeKept(bool with_covariance);
+  void takeNoise();
+  void findNoise();
+  double scaleOf(const std::vector<double>& squares) const;
+  double limitFor(std::size_t windows) const;
+  void judgeKept();
+  void sumUp();
+  bool misleads();
+  Eigen::VectorXd residualOf(const LiveWindow& window) const { return window.residualAt(x_); }
+  bool contradicts(const LiveWindow& window) const;
+  void addTo(InformationSum& balance, InformationSum& orientation, const LiveWindow& window) const;
+  Eigen::MatrixXd information() const;
+  void solve();
+  void tell(const Eigen::MatrixXd& inverse);
+  double chiSquare() const;
+  double orientationChiSquare() const;
+  void countServing();
+
+  const CalibrationModel* model_;
+  ParameterBelief prior_;
+  std::vector<Eigen::Index> free_;
+  EstimationOptions estimation_;
+  MotionOptions options_;
+  LiveMotionOptions live_;
+  MotionPlaces places_;
+  std::vector<Eigen::Index> orienting_;
+  Eigen::MatrixXd prior_information_;  ///< zero where a coordinate is held
+  bool holds_uncertain_ = false;       ///< some coordinate that is not free is uncertain
+
+  StreamNoise noise_;
+  NoiseFactors factors_;
+  std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
+  WindowBalance probe_;
+  double scale_ = 1.0;  ///< squared misfit of usual windows, over that of noise
+
+  std::deque<LiveWindow> kept_;  ///< oldest first
+  std::size_t next_probe_ = 0;
+  std::size_t next_begin_;
+  std::size_t next_noise_ = 0;
+
+  // At `anchor_`.
+  Eigen::VectorXd anchor_;
+  InformationSum balance_;
+  InformationSum orientation_;
+  // Of windows that are not kept any more, at `frozen_at_`.
+  InformationSum frozen_balance_;
+  InformationSum frozen_orientation_;
+  Eigen::VectorXd frozen_at_;
+  std::size_t frozen_serving_ = 0;
+  double frozen_duration_ = 0.0;
+  std::size_t frozen_orientations_ = 0;
+
+  Eigen::VectorXd x_;
+  std::size_t lately_left_out_ = 0;
+  LiveEstimate estimate_;
+};
+
+}  // namespace sac

@@ -1,0 +1,114 @@
+// What a LiveMotion knows from its sums.
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "live_motion_work.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+
+namespace sac {
+
+Eigen::MatrixXd LiveMotion::Work::information() const {
+  InformationSum sum = balance_;
+  sum.addAt(orienting_, orientation_);
+  return sum.information();
+}
+
+void LiveMotion::Work::solve() {
+  const Eigen::MatrixXd told = information();
+  const Eigen::MatrixXd all = (told + prior_information_)(free_, free_);
+  Eigen::VectorXd slope = balance_.gradient() + prior_information_ * (anchor_ - prior_.x);
+  slope(orienting_) += orientation_.gradient();
+  const Eigen::LLT<Eigen::MatrixXd> factor(all);
+  const Eigen::VectorXd step = factor.solve(slope(free_));
+  if (factor.info() != Eigen::Success || !step.allFinite()) {
+    return;
+  }
+  x_ = anchor_;
+  x_(free_) -= step;
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  Eigen::MatrixXd root = Eigen::MatrixXd::Identity(count, count);
+  factor.matrixLLT().triangularView<Eigen::Lower>().solveInPlace(root);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
+  inverse.selfadjointView<Eigen::Lower>().rankUpdate(root.transpose());
+  tell(Eigen::MatrixXd(inverse.selfadjointView<Eigen::Lower>()));
+}
+
+double LiveMotion::Work::chiSquare() const {
+  const std::size_t serving = estimate_.windows - estimate_.left_out;
+  const double freedom = 3.0 * options_.test_functions * static_cast<double>(serving) -
+                         static_cast<double>(free_.size());
+  InformationSum here = balance_;
+  here.moveBy(x_ - anchor_);
+  return freedom > 0.0 ? here.squaredMisfit() / freedom : 0.0;
+}
+
+/// Reduced, of the tracker's means over the windows that are kept.
+double LiveMotion::Work::orientationChiSquare() const {
+  const Eigen::VectorXd x = x_(orienting_);
+  double squares = 0.0;
+  double freedom = -static_cast<double>(model_->space().pole(0));
+  for (const LiveWindow& window : kept_) {
+    squares += window.meanSquare(x);
+    freedom += window.orientations > 0 ? 3.0 : 0.0;
+  }
+  return freedom > 2.0 ? squares / freedom : 0.0;
+}
+
+void LiveMotion::Work::countServing() {
+  estimate_.duration = frozen_duration_;
+  estimate_.orientations = frozen_orientations_;
+  std::size_t serving = frozen_serving_;
+  for (const LiveWindow& window : kept_) {
+    estimate_.duration += window.term.active ? window.duration() : 0.0;
+    estimate_.orientations += window.orientations;
+    serving += window.term.active ? 1 : 0;
+  }
+  estimate_.left_out = estimate_.windows - serving;
+}
+
+/// What is known now, with noise as large as both kinds of residuals say. `inverse`: of the
+/// information of what is free.
+void LiveMotion::Work::tell(const Eigen::MatrixXd& inverse) {
+  constexpr double kSignificance = 1e-3;
+  countServing();
+  estimate_.chi_square = chiSquare();
+  const double freedom =
+      3.0 * options_.test_functions * static_cast<double>(estimate_.windows - estimate_.left_out);
+  const bool is_misfit = estimate_.chi_square * freedom > chiSquareLimit(freedom, kSignificance);
+  const double windows = is_misfit ? estimate_.chi_square : 1.0;
+  const double orientations = std::max(1.0, orientationChiSquare());
+  Eigen::MatrixXd own = windows * inverse;
+  Eigen::MatrixXd by_orientations =
+      Eigen::MatrixXd::Zero(inverse.rows(), orientation_.gradient().size());
+  for (std::size_t n = 0; n < orienting_.size(); ++n) {
+    const auto place = std::lower_bound(free_.begin(), free_.end(), orienting_[n]);
+    if (place != free_.end() && *place == orienting_[n]) {
+      by_orientations.col(static_cast<Eigen::Index>(n)) = inverse.col(place - free_.begin());
+    }
+  }
+  own += (orientations - windows) *
+         (by_orientations * orientation_.information() * by_orientations.transpose());
+  ParameterBelief& belief = estimate_.belief;
+  belief.x = x_;
+  belief.covariance = prior_.covariance;
+  for (const Eigen::Index p : free_) {
+    belief.covariance.row(p).setZero();
+    belief.covariance.col(p).setZero();
+  }
+  if (!holds_uncertain_) {
+    belief.covariance(free_, free_) = own;
+    return;
+  }
+  // What is held is as uncertain as before, and what is estimated because of it, too.
+  Eigen::MatrixXd others = information()(free_, Eigen::all);
+  others(Eigen::all, free_).setZero();
+  const Eigen::MatrixXd gain = -inverse * others;
+  const Eigen::MatrixXd with_held = gain * belief.covariance;
+  belief.covariance(free_, Eigen::all) += with_held;
+  belief.covariance(Eigen::all, free_) += with_held.transpose();
+  belief.covariance(free_, free_) = own + with_held * gain.transpose();
+}
+
+}  // namespace sac
