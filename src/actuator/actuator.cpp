@@ -70,6 +70,21 @@ void validateWithoutJoints(const Actuator& actuator) {
   }
 }
 
+/// Uncertain as it is, the inertia may be that of no body.
+void validateDynamics(const Actuator& actuator) {
+  if (!actuator.unbalance.allFinite()) {
+    throw ConfigError("rotor_unbalance: it is not finite.");
+  }
+  if (actuator.inertia &&
+      (!actuator.inertia->allFinite() || *actuator.inertia != actuator.inertia->transpose())) {
+    throw ConfigError("rotor_inertia: it is not finite and symmetric.");
+  }
+  if (actuator.friction &&
+      !(std::isfinite(actuator.friction->viscous) && std::isfinite(actuator.friction->coulomb))) {
+    throw ConfigError("rotor_friction: it is not finite.");
+  }
+}
+
 }  // namespace
 
 std::array<JointAxis, kJoints> freeRotorJoints() {
@@ -105,9 +120,7 @@ void validate(const Actuator& actuator) {
   for (std::size_t k = 0; k < kJoints; ++k) {
     validateCorrection(entryKey("joints", k), actuator.joints[k].correction);
   }
-  if (!actuator.unbalance.allFinite()) {
-    throw ConfigError("rotor_unbalance: it is not finite.");
-  }
+  validateDynamics(actuator);
   if (actuator.torque_curve) {
     validate(*actuator.torque_curve);
   }

@@ -222,6 +222,34 @@ CalibrationRecord readCalibration(const YamlMap& map) {
   return record;
 }
 
+/// What moves the rotor beside its coils.
+void readDynamics(const YamlMap& map, Actuator& actuator) {
+  if (map.has("rotor_unbalance")) {
+    const std::vector<double> c =
+        map.numbers("rotor_unbalance", ValueRange::finite("N*m"), kJoints);
+    actuator.unbalance << c[0], c[1], c[2];
+  }
+  if (map.has("rotor_inertia")) {
+    const YamlMap inertia = map.map("rotor_inertia");
+    const auto moment = [&](const char* key) {
+      return inertia.number(key, ValueRange::finite("kg*m^2"));
+    };
+    Eigen::Matrix3d J;
+    J(0, 0) = moment("xx");
+    J(1, 1) = moment("yy");
+    J(2, 2) = moment("zz");
+    J(0, 1) = J(1, 0) = moment("xy");
+    J(0, 2) = J(2, 0) = moment("xz");
+    J(1, 2) = J(2, 1) = moment("yz");
+    actuator.inertia = J;
+  }
+  if (map.has("rotor_friction")) {
+    const YamlMap friction = map.map("rotor_friction");
+    actuator.friction = {friction.number("viscous", ValueRange::finite("N*m*s/rad")),
+                         friction.number("coulomb", ValueRange::finite("N*m"))};
+  }
+}
+
 }  // namespace
 
 CalibratedDescription readDescription(const YamlMap& file) {
@@ -241,11 +269,7 @@ CalibratedDescription readDescription(const YamlMap& file) {
     actuator.torque_curve = readTorqueCurve(map);
   }
   actuator.workspace = readWorkspace(map);
-  if (map.has("rotor_unbalance")) {
-    const std::vector<double> c =
-        map.numbers("rotor_unbalance", ValueRange::finite("N*m"), kJoints);
-    actuator.unbalance << c[0], c[1], c[2];
-  }
+  readDynamics(map, actuator);
   actuator.orientation_map = readOrientationMap(map);
   try {
     validate(actuator);

@@ -179,6 +179,28 @@ void writeCalibration(YamlWriter& writer, const CalibrationRecord& record) {
   }
 }
 
+std::string inertiaLine(const Eigen::Matrix3d& J) {
+  YamlLine line;
+  line.add("xx", yamlNumber(J(0, 0))).add("yy", yamlNumber(J(1, 1))).add("zz", yamlNumber(J(2, 2)));
+  line.add("xy", yamlNumber(J(0, 1))).add("xz", yamlNumber(J(0, 2))).add("yz", yamlNumber(J(1, 2)));
+  return line.text();
+}
+
+void writeDynamics(YamlWriter& writer, const Actuator& actuator) {
+  if (!actuator.unbalance.isZero(0.0)) {
+    writer.entry(1, "rotor_unbalance", yamlNumbers(actuator.unbalance));
+  }
+  if (actuator.inertia) {
+    writer.entry(1, "rotor_inertia", inertiaLine(*actuator.inertia));
+  }
+  if (actuator.friction) {
+    YamlLine friction;
+    friction.add("viscous", yamlNumber(actuator.friction->viscous));
+    friction.add("coulomb", yamlNumber(actuator.friction->coulomb));
+    writer.entry(1, "rotor_friction", friction.text());
+  }
+}
+
 }  // namespace
 
 std::string renderDescription(const CalibratedDescription& description, const std::string& name) {
@@ -202,9 +224,7 @@ std::string renderDescription(const CalibratedDescription& description, const st
   YamlLine workspace;
   workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));
   writer.entry(1, "workspace", workspace.text());
-  if (!actuator.unbalance.isZero(0.0)) {
-    writer.entry(1, "rotor_unbalance", yamlNumbers(actuator.unbalance));
-  }
+  writeDynamics(writer, actuator);
   if (actuator.orientation_map) {
     writeOrientationMap(writer, *actuator.orientation_map);
   }

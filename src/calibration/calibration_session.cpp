@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "motion_cycle.hpp"
+#include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
@@ -322,6 +323,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   result.actuator.torque_curve = calibrated.torque_curve;
   result.actuator.unbalance = calibrated.unbalance;
   result.actuator.orientation_map = calibrated.orientation_map;
+  takeDynamics(reports_, result.actuator);
   result.calibration = record(origin);
   return result;
 }

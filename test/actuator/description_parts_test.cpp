@@ -19,6 +19,10 @@ constexpr char kMap[] =
     "      - {reading: [0.1, 0.2, 0.3], rotation: [1.0e-3, 0.0, -1.0e-3]}\n"
     "      - {reading: [0.4, 0.2, 0.3], rotation: [5.0e-4, 0.0, 2.0e-4]}\n";
 
+constexpr char kDynamics[] =
+    "  rotor_inertia: {xx: 8.0e-4, yy: 7.0e-4, zz: 1.3e-3, xy: 1.0e-6, xz: 2.0e-6, yz: -3.0e-6}\n"
+    "  rotor_friction: {viscous: 6.0e-4, coulomb: 4.0e-4}\n";
+
 /// The example with everything that may be identified.
 std::string identified() {
   std::string text = spoilt(
@@ -28,7 +32,7 @@ std::string identified() {
   const std::string workspace = "  workspace: {tilt_limit: 0.6}\n";
   text.replace(text.find(workspace),
                workspace.size(),
-               workspace + "  rotor_unbalance: [1.0e-3, 0.0, 2.0e-3]\n" + kMap);
+               workspace + "  rotor_unbalance: [1.0e-3, 0.0, 2.0e-3]\n" + kDynamics + kMap);
   return text +
          "    orientation_map: {regions: 8, axes_rms: 1.0e-3, map_rms: 6.0e-4, inside: 0.94}\n"
          "    covariance: {effects: [tilt_cross_axis], names: [a, b], lower: [1.0, 0.5, 2.0]}\n";
@@ -51,6 +55,13 @@ TEST(IdentifiedDescription, IsReadWhole) {
   EXPECT_EQ((*description.stddevs.joints[1].harmonics)[3], 4e-5);
   EXPECT_EQ(description.actuator.joints[0].correction.harmonics, (std::array<double, 4>{}));
   EXPECT_EQ(description.actuator.unbalance, Eigen::Vector3d(1e-3, 0.0, 2e-3));
+  const Eigen::Matrix3d& J = description.actuator.inertia.value();
+  EXPECT_EQ(J.diagonal(), Eigen::Vector3d(8e-4, 7e-4, 1.3e-3));
+  EXPECT_EQ(J(0, 1), 1e-6);
+  EXPECT_EQ(J(2, 0), 2e-6);
+  EXPECT_EQ(J(1, 2), -3e-6);
+  EXPECT_EQ(description.actuator.friction.value().viscous, 6e-4);
+  EXPECT_EQ(description.actuator.friction.value().coulomb, 4e-4);
   ASSERT_TRUE(description.actuator.orientation_map);
   EXPECT_EQ(description.actuator.orientation_map->description().rotations[1],
             Eigen::Vector3d(5e-4, 0.0, 2e-4));
@@ -71,6 +82,8 @@ TEST(IdentifiedDescription, IsWrittenAsItWasRead) {
     EXPECT_EQ(back.stddevs.joints[k].harmonics, read.stddevs.joints[k].harmonics);
   }
   EXPECT_EQ(back.actuator.unbalance, read.actuator.unbalance);
+  EXPECT_EQ(back.actuator.inertia, read.actuator.inertia);
+  EXPECT_EQ(back.actuator.friction.value().coulomb, read.actuator.friction.value().coulomb);
   const Eigen::Vector3d q(0.2, 0.2, 0.3);
   EXPECT_EQ(back.actuator.orientation_map->mean(q), read.actuator.orientation_map->mean(q));
   EXPECT_EQ(back.calibration->covariance->lower, read.calibration->covariance->lower);
@@ -85,6 +98,9 @@ TEST(IdentifiedDescription, NamesThePlaceOfWhatIsWrong) {
                 "joints[1].harmonics");
   expectRefused(
       "rotor_unbalance: [1.0e-3, 0.0, 2.0e-3]", "rotor_unbalance: [1]", "rotor_unbalance");
+  expectRefused("yz: -3.0e-6", "zy: -3.0e-6", "rotor_inertia");
+  expectRefused("xx: 8.0e-4", "xx: .inf", "rotor_inertia.xx");
+  expectRefused("coulomb: 4.0e-4", "coulomb: much", "rotor_friction.coulomb");
   expectRefused("amplitude: [1.0e-3", "amplitude: [-1.0e-3", "orientation_map.amplitude");
   expectRefused("length: [0.3, 0.5, 0.8]", "length: [0.3, 0.5]", "orientation_map.length");
   expectRefused("rotation: [5.0e-4, ", "rotation: [.nan, ", "orientation_map.points[1].rotation");

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "support/moving_rotor.hpp"
 
@@ -45,6 +46,27 @@ TEST_F(MotionCycleTest, NeedsNoModelOfWhatOnlyMotionTells) {
   EXPECT_TRUE(isTold(report, "tracker_delay"));
   EXPECT_NEAR(session_.expectedErrors().orientation, report.orientation_uncertainty, 1e-15);
   EXPECT_NEAR(session_.expectedErrors().torque, report.torque_uncertainty, 1e-15);
+}
+
+TEST_F(MotionCycleTest, KeepsInertiaFrictionAndUnbalanceInTheDescription) {
+  moving_.rotor.inertia(0, 0) *= 1.1;
+  moving_.rotor.inertia(0, 1) = moving_.rotor.inertia(1, 0) = 2e-5;
+  moving_.rotor.unbalance = Eigen::Vector3d(1e-3, -5e-4, 2e-3);
+  session_.setMotion(std::make_shared<const MotionRecording>(moving_.record()));
+  ASSERT_TRUE(session_.run({Cycle::kMotion}).success);
+  CalibrationOrigin origin;
+  origin.date = "2026-01-31T12:00:00Z";
+  origin.software = "0.2.0";
+  const CalibratedDescription kept = session_.description(origin);
+  ASSERT_TRUE(kept.actuator.inertia && kept.actuator.friction);
+  EXPECT_LT((*kept.actuator.inertia - moving_.rotor.inertia).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LT((kept.actuator.unbalance - moving_.rotor.unbalance).cwiseAbs().maxCoeff(), 4e-5);
+  EXPECT_NEAR(kept.actuator.friction->viscous, 0.0, 1e-4);
+  // Who calibrates on from there keeps them.
+  const CalibratedDescription read = parseDescription(renderDescription(kept, "kept"), "kept");
+  const Actuator again = CalibrationSession(read, {}, CalibrationConfig{}).description({}).actuator;
+  EXPECT_TRUE(again.inertia->isApprox(*kept.actuator.inertia, 1e-12));
+  EXPECT_NEAR(again.friction->coulomb, kept.actuator.friction->coulomb, 1e-12);
 }
 
 TEST_F(MotionCycleTest, WithoutMotionChangesNothing) {

@@ -56,6 +56,12 @@ struct Workspace {
   double tilt_limit = 0.6;
 };
 
+/// Torque −(b + c/√(ω² + v²)) ω on a rotor that turns with ω, v = 0.05 rad/s.
+struct RotorFriction {
+  double viscous = 0.0;  ///< b [N·m·s/rad]
+  double coulomb = 0.0;  ///< c [N·m]
+};
+
 /// One actuator: geometry, torque curve, workspace. Poles, coils and curve may be absent; then only
 /// the joint can be calibrated.
 struct Actuator {
@@ -74,6 +80,9 @@ struct Actuator {
   std::shared_ptr<const OrientationMap> orientation_map = nullptr;
   /// Weight of the rotor times its centre of gravity, rotor frame [N·m]; zero unless identified.
   Eigen::Vector3d unbalance = Eigen::Vector3d::Zero();
+  // Unless a motion has identified them, they are not known.
+  std::optional<Eigen::Matrix3d> inertia;  ///< about the centre, rotor frame, symmetric [kg·m²]
+  std::optional<RotorFriction> friction;
 
   /// True when poles, coils and torque curve are all present, so that torque can be modelled.
   bool hasTorqueModel() const {

@@ -3,7 +3,7 @@
 import math
 
 from . import figures
-from .motion import motion_of
+from .motion import told_by
 from .numbers import change_of, plus_minus, signed, significant, with_unit
 
 GRADES = {
@@ -368,7 +368,8 @@ class Report:
 
     def motion(self):
         """What the last motion told; None without one."""
-        return motion_of(self._cycles)
+        cycle = next((one for one in reversed(self._cycles) if one["success"] and "motion" in one), None)
+        return told_by(cycle, cycle["motion"]) if cycle else None
 
     def linearity(self):
         """Whether torque is proportional to current: sentence, and rows where it is told; None without torque."""

@@ -13,16 +13,13 @@ TABLES = (
 )
 
 
-def motion_of(cycles):
-    """Of the last motion that succeeded; None without one."""
-    cycle = next((one for one in reversed(cycles) if one["success"] and "motion" in one), None)
-    if cycle is None:
-        return None
+def told_by(cycle, motion):
+    """Of a cycle, and of what became of its recording."""
     return {
-        "windows": _windows(cycle["motion"]),
-        "noise": _noise(cycle["motion"]),
+        "windows": _windows(motion),
+        "noise": _noise(motion),
         "tables": [(title, rows) for title, begins in TABLES if (rows := _rows(cycle["estimates"], begins))],
-        "picture": figures.residuals_over_time(_times(cycle)) if cycle["residuals"] else None,
+        "picture": figures.residuals_over_time(_times(cycle, motion)) if cycle["residuals"] else None,
     }
 
 
@@ -69,7 +66,7 @@ def _rows(estimates, begins):
     return rows
 
 
-def _times(cycle):
+def _times(cycle, motion):
     """Residuals with the middle of their windows, on a clock that stands still between stretches of motion [s]."""
-    length = cycle["motion"]["duration"] / max(cycle["motion"]["windows_used"], 1)
+    length = motion["duration"] / max(motion["windows_used"], 1)
     return [dict(item, time=length * (item["id"] - 0.5)) for item in cycle["residuals"]]
