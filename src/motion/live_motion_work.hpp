@@ -8,19 +8,19 @@
 
 #include "live_window.hpp"
 #include "noise_factors.hpp"
-#include "spherical_actuator_calibration/motion/live_motion.hpp"
+#include "spherical_actuator_calibration/motion/live_estimate.hpp"
 
 namespace sac {
 
 /// What LiveMotion does and keeps.
-class LiveMotion::Work {
+class LiveMotionWork {
  public:
-  Work(const CalibrationModel& model,
-       ParameterBelief prior,
-       std::vector<Eigen::Index> free,
-       const EstimationOptions& estimation,
-       const MotionOptions& options,
-       const LiveMotionOptions& live);
+  LiveMotionWork(const CalibrationModel& model,
+                 ParameterBelief prior,
+                 std::vector<Eigen::Index> free,
+                 const EstimationOptions& estimation,
+                 const MotionOptions& options,
+                 const LiveMotionOptions& live);
 
   void add(MotionSlice slice);
   const LiveEstimate& estimate() const { return estimate_; }

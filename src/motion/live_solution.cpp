@@ -9,13 +9,13 @@
 
 namespace sac {
 
-Eigen::MatrixXd LiveMotion::Work::information() const {
+Eigen::MatrixXd LiveMotionWork::information() const {
   InformationSum sum = balance_;
   sum.addAt(orienting_, orientation_);
   return sum.information();
 }
 
-void LiveMotion::Work::solve() {
+void LiveMotionWork::solve() {
   const Eigen::MatrixXd told = information();
   const Eigen::MatrixXd all = (told + prior_information_)(free_, free_);
   Eigen::VectorXd slope = balance_.gradient() + prior_information_ * (anchor_ - prior_.x);
@@ -35,7 +35,7 @@ void LiveMotion::Work::solve() {
   tell(Eigen::MatrixXd(inverse.selfadjointView<Eigen::Lower>()));
 }
 
-double LiveMotion::Work::chiSquare() const {
+double LiveMotionWork::chiSquare() const {
   const std::size_t serving = estimate_.windows - estimate_.left_out;
   const double freedom = 3.0 * options_.test_functions * static_cast<double>(serving) -
                          static_cast<double>(free_.size());
@@ -45,7 +45,7 @@ double LiveMotion::Work::chiSquare() const {
 }
 
 /// Reduced, of the tracker's means over the windows that are kept.
-double LiveMotion::Work::orientationChiSquare() const {
+double LiveMotionWork::orientationChiSquare() const {
   const Eigen::VectorXd x = x_(orienting_);
   double squares = 0.0;
   double freedom = -static_cast<double>(model_->space().pole(0));
@@ -56,7 +56,7 @@ double LiveMotion::Work::orientationChiSquare() const {
   return freedom > 2.0 ? squares / freedom : 0.0;
 }
 
-void LiveMotion::Work::countServing() {
+void LiveMotionWork::countServing() {
   estimate_.duration = frozen_duration_;
   estimate_.orientations = frozen_orientations_;
   std::size_t serving = frozen_serving_;
@@ -70,7 +70,7 @@ void LiveMotion::Work::countServing() {
 
 /// What is known now, with noise as large as both kinds of residuals say. `inverse`: of the
 /// information of what is free.
-void LiveMotion::Work::tell(const Eigen::MatrixXd& inverse) {
+void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
   constexpr double kSignificance = 1e-3;
   countServing();
   estimate_.chi_square = chiSquare();

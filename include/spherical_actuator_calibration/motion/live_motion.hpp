@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -8,31 +7,13 @@
 
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/motion/live_estimate.hpp"
 #include "spherical_actuator_calibration/motion/motion_options.hpp"
 #include "spherical_actuator_calibration/motion/motion_slice.hpp"
 
 namespace sac {
 
-/// When an estimate begins, and what is kept for it.
-struct LiveMotionOptions {
-  std::size_t first_windows = 24;  ///< nothing is told before
-  /// The newest ones can be linearised anew. What older ones told stays as it was.
-  std::size_t kept_windows = 200;
-  /// By so many standard deviations the derivatives of old places may mislead the estimate.
-  double tolerance = 0.1;
-};
-
-/// What is known after the last window.
-struct LiveEstimate {
-  bool is_told = false;  ///< else `belief` is the prior
-  ParameterBelief belief;
-  std::size_t windows = 0;   ///< that came
-  std::size_t left_out = 0;  ///< of them: they contradict the others
-  double duration = 0.0;     ///< of those that serve [s]
-  std::size_t orientations = 0;
-  double chi_square = 0.0;  ///< reduced, of the windows that serve; 0: not known
-  int linearizations = 0;   ///< of all windows that are kept
-};
+class LiveMotionWork;
 
 /// The estimate from motion while it goes on (doc/motion.md): each window adds its information, and
 /// estimate and covariance follow from the sum. Where the estimate has moved so far that the
@@ -59,8 +40,7 @@ class LiveMotion {
   const LiveEstimate& estimate() const;
 
  private:
-  class Work;
-  std::unique_ptr<Work> work_;
+  std::unique_ptr<LiveMotionWork> work_;
 };
 
 }  // namespace sac
