@@ -99,7 +99,7 @@ OrientationMap::Uncertainty OrientationMap::uncertainty(const Eigen::Vector3d& r
   for (std::size_t c = 0; c < factor_.size(); ++c) {
     const auto component = static_cast<Eigen::Index>(c);
     const double square = description_.amplitude[c] * description_.amplitude[c];
-    const double explained = std::clamp(k.dot(factor_[c].solve(k)), 0.0, 1.0);
+    const double explained = std::clamp(factor_[c].matrixL().solve(k).squaredNorm(), 0.0, 1.0);
     result.variance[component] = square * (1.0 - explained);
     result.noise[component] = description_.noise[c] * description_.noise[c];
     prior += square;

@@ -89,6 +89,8 @@ ModelFit fitWith(const std::string& name,
                  const EffectSelection& effects) {
   const bool is_predicted = concernsOrientations(config.effects, start.actuator);
   config.effects = effects;
+  // A map would take up what an effect explains.
+  config.orientation_map = MapUse::kNever;
   // A model that lacks an effect must neither be refused for its misfit, nor be spared the samples
   // that show it.
   config.estimation.max_reduced_chi_square = 1e9;

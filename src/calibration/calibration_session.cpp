@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <set>
 #include <utility>
 
 #include "motion_cycle.hpp"
-#include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
-#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "start_state.hpp"
 
@@ -46,29 +45,9 @@ std::vector<Sample> prepared(std::vector<Sample> samples,
   return samples;
 }
 
-CycleRecord cycleRecord(const CycleReport& report) {
-  CycleRecord record;
-  record.cycle = cycleName(report.cycle);
-  record.coil = report.coil;
-  record.samples_used = report.samples_used;
-  record.samples_rejected = report.samples_rejected;
-  record.error_before = report.error_history.front();
-  record.error_after = report.error_history.back();
-  record.unit = unitOf(report.error_measure);
-  record.reduced_chi_square = report.reduced_chi_square;
-  return record;
-}
-
-ValidationRecord validationRecord(const HeldOutValidation& validation) {
-  ValidationRecord record;
-  record.samples = static_cast<std::uint32_t>(validation.samples);
-  if (validation.orientations > 0) {
-    record.orientation_rms = validation.orientation_rms;
-  }
-  if (validation.torques > 0) {
-    record.torque_rms = validation.torque_rms;
-  }
-  return record;
+/// Cycles that orientations take part in, and so what a map is found in.
+bool tellsTheMap(Cycle cycle) {
+  return cycle == Cycle::kJoint || cycle == Cycle::kRefine;
 }
 
 /// Of two that may both have a verdict the one with the less probable misfit.
@@ -116,6 +95,7 @@ bool CalibrationSession::remove(std::uint32_t id) {
     return false;
   }
   samples_.erase(place);
+  map_of_samples_.reset();
   return true;
 }
 
@@ -136,13 +116,16 @@ void CalibrationSession::resume(CalibrationState state,
   state_ = std::move(state);
   reports_ = std::move(reports);
   motion_evidence_ = std::move(motion_evidence);
-  map_choice_.reset();
-  expected_errors_.reset();
+  putInForce(mapOfReports());
 }
 
 const CycleReport& CalibrationSession::run(const CycleRequest& request) {
   const bool is_motion = request.cycle == Cycle::kMotion;
   const bool joins_motion = request.cycle == Cycle::kRefine && motion_evidence_.has_value();
+  const OrientationMapChoice before = map_;
+  if (tellsTheMap(request.cycle)) {
+    putInForce(mapOfSamples());
+  }
   CycleOutcome outcome = is_motion ? runMotionCycle(model_, motion(), state_, config_)
                                    : runCycle(model_,
                                               samples_,
@@ -151,12 +134,13 @@ const CycleReport& CalibrationSession::run(const CycleRequest& request) {
                                               config_.estimation,
                                               joins_motion ? &*motion_evidence_ : nullptr);
   state_ = std::move(outcome.state);
+  expected_errors_.reset();
   reports_.push_back(std::move(outcome.report));
-  if (is_motion && reports_.back().success) {
+  if (!reports_.back().success) {
+    putInForce(before);
+  } else if (is_motion) {
     motion_evidence_ = sac::motionEvidence(model_.space(), reports_.back(), state_, startState());
   }
-  map_choice_.reset();
-  expected_errors_.reset();
   return reports_.back();
 }
 
@@ -209,22 +193,52 @@ std::vector<ParameterEstimate> CalibrationSession::parameters() const {
   return parameters;
 }
 
-const OrientationMapChoice& CalibrationSession::orientationMap() const {
-  if (map_choice_) {
-    return *map_choice_;
+/// The map that all orientations in use tell; searched anew where samples came or went.
+const OrientationMapChoice& CalibrationSession::mapOfSamples() {
+  if (!map_of_samples_) {
+    map_of_samples_ = chosenMap(samples_);
   }
-  map_choice_.emplace();
-  std::optional<Cycle> last;
-  for (const CycleReport& report : reports_) {
-    if (report.success && (report.cycle == Cycle::kJoint || report.cycle == Cycle::kRefine)) {
-      last = report.cycle;
-    }
+  return *map_of_samples_;
+}
+
+/// The map that was in force with parameters that are taken up again: of the samples that their
+/// last cycle took.
+OrientationMapChoice CalibrationSession::mapOfReports() const {
+  const auto last = std::find_if(reports_.rbegin(), reports_.rend(), [](const CycleReport& one) {
+    return one.success && tellsTheMap(one.cycle);
+  });
+  if (last == reports_.rend()) {
+    return {};
   }
-  if (last) {
-    *map_choice_ = chooseOrientationMap(
-        model_, samples_, state_, {*last}, config_.estimation, config_.orientation_map);
+  std::set<std::uint32_t> taken;
+  for (const SampleResidual& residual : last->residuals) {
+    taken.insert(residual.id);
   }
-  return *map_choice_;
+  std::vector<Sample> samples;
+  std::copy_if(samples_.begin(), samples_.end(), std::back_inserter(samples), [&](const Sample& s) {
+    return taken.count(s.id) > 0;
+  });
+  return chosenMap(samples);
+}
+
+OrientationMapChoice CalibrationSession::chosenMap(const std::vector<Sample>& samples) const {
+  return chooseOrientationMap(
+      modelWith(nullptr), samples, startState(), config_.estimation, config_.orientation_map);
+}
+
+/// The model of the start, with another map where there is one.
+CalibrationModel CalibrationSession::modelWith(std::shared_ptr<const OrientationMap> map) const {
+  Actuator nominal = start_.actuator;
+  if (map) {
+    nominal.orientation_map = std::move(map);
+  }
+  return CalibrationModel(ParameterSpace(std::move(nominal), config_.effects));
+}
+
+void CalibrationSession::putInForce(OrientationMapChoice choice) {
+  map_ = std::move(choice);
+  model_ = modelWith(map_.map);
+  expected_errors_.reset();
 }
 
 const WorkspaceUncertainty& CalibrationSession::expectedErrors() const {
@@ -234,19 +248,8 @@ const WorkspaceUncertainty& CalibrationSession::expectedErrors() const {
   return *expected_errors_;
 }
 
-/// The model with the orientation map that is in force.
-CalibrationModel CalibrationSession::mappedModel() const {
-  Actuator mapped = model_.space().nominal();
-  mapped.orientation_map = orientationMap().map;
-  return CalibrationModel(ParameterSpace(mapped, config_.effects));
-}
-
 Actuator CalibrationSession::actuator() const {
-  Actuator actuator = model_.space().actuatorAt(state_.belief.x);
-  if (orientationMap().map) {
-    actuator.orientation_map = orientationMap().map;
-  }
-  return actuator;
+  return model_.space().actuatorAt(state_.belief.x);
 }
 
 std::optional<HeldOutValidation> CalibrationSession::validation() const {
@@ -258,7 +261,7 @@ std::optional<HeldOutValidation> CalibrationSession::validation() const {
   HeldOutValidation result;
   if (!is_motion) {
     result = validateHeldOut(
-        orientationMap().map ? mappedModel() : model_,
+        model_,
         samples_,
         state_,
         config_.estimation,
@@ -272,104 +275,6 @@ std::optional<HeldOutValidation> CalibrationSession::validation() const {
     }
   }
   return result.samples == 0 ? std::nullopt : std::optional(result);
-}
-
-CalibratedDescription CalibrationSession::description(const CalibrationOrigin& origin) const {
-  const ParameterSpace& space = model_.space();
-  const Actuator calibrated = actuator();
-  const std::vector<ParameterEstimate> values = parameters();
-  const ParameterStddevs identified = identifiedStddevs(space, state_);
-  const auto moved = [this](Eigen::Index first, Eigen::Index count) {
-    return !state_.belief.x.segment(first, count).isZero(0.0);
-  };
-  // A value that moved has its uncertainty beside it, be it identified or only within an open
-  // direction.
-  const auto stddev = [&](Eigen::Index at) {
-    const ParameterEstimate& estimate = values[static_cast<std::size_t>(at)];
-    return estimate.observable || moved(at, 1) ? std::optional(estimate.stddev) : std::nullopt;
-  };
-
-  CalibratedDescription result = start_;
-  for (std::size_t k = 0; k < space.joints(); ++k) {
-    const Eigen::Index at = space.joint(k);
-    result.actuator.joints[k].offset = calibrated.joints[k].offset;
-    if (moved(at + 1, 2)) {
-      result.actuator.joints[k].axis = calibrated.joints[k].axis;
-    }
-    result.actuator.joints[k].correction = calibrated.joints[k].correction;
-    result.stddevs.joints[k] = identified.joints[k];
-    result.stddevs.joints[k].offset = stddev(at);
-    result.stddevs.joints[k].axis_u = stddev(at + 1);
-    result.stddevs.joints[k].axis_v = stddev(at + 2);
-  }
-  result.stddevs.poles.resize(space.poles());
-  for (std::size_t i = 0; i < space.poles(); ++i) {
-    const Eigen::Index at = space.pole(i);
-    if (moved(at, 2)) {
-      result.actuator.poles[i] = calibrated.poles[i];
-    }
-    result.actuator.poles[i].gain = calibrated.poles[i].gain;
-    result.stddevs.poles[i] = {stddev(at), stddev(at + 1), identified.poles[i].gain};
-  }
-  result.stddevs.coils.resize(space.coils());
-  for (std::size_t j = 0; j < space.coils(); ++j) {
-    const Eigen::Index at = space.coil(j);
-    if (moved(at, 2)) {
-      result.actuator.coils[j] = calibrated.coils[j];
-    }
-    result.actuator.coils[j].gain = calibrated.coils[j].gain;
-    result.stddevs.coils[j] = {stddev(at), stddev(at + 1), identified.coils[j].gain};
-  }
-  result.actuator.torque_curve = calibrated.torque_curve;
-  result.actuator.unbalance = calibrated.unbalance;
-  result.actuator.orientation_map = calibrated.orientation_map;
-  takeDynamics(reports_, result.actuator);
-  result.calibration = record(origin);
-  return result;
-}
-
-CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) const {
-  CalibrationRecord record;
-  record.date = origin.date;
-  record.revision =
-      origin.revision.value_or(start_.calibration ? start_.calibration->revision + 1 : 1);
-  record.source = origin.recordings;
-  record.software = origin.software;
-  for (const CycleReport& report : reports_) {
-    if (report.success) {
-      record.cycles.push_back(cycleRecord(report));
-    }
-  }
-  if (!record.cycles.empty() && model_.space().joints() > 0) {
-    record.orientation_uncertainty = expectedErrors().orientation;
-  }
-  if (!record.cycles.empty() && model_.hasTorqueModel()) {
-    record.torque_uncertainty = expectedErrors().torque;
-  }
-  const std::vector<ParameterEstimate> estimates = parameters();
-  for (const ParameterEstimate& parameter : estimates) {
-    if (!parameter.observable) {
-      record.unidentified.push_back(parameter.name);
-    }
-  }
-  const ParameterSpace& space = model_.space();
-  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
-    if (state_.identified[static_cast<std::size_t>(p)]) {
-      const ParameterEstimate& effect = estimates[static_cast<std::size_t>(p)];
-      record.effects.push_back({effect.name, effect.value, effect.stddev});
-    }
-  }
-  if (std::find(state_.identified.begin(), state_.identified.end(), true) !=
-      state_.identified.end()) {
-    record.covariance = covarianceRecord(space, state_.belief);
-  }
-  if (orientationMap().map) {
-    record.orientation_map = orientationMap().record;
-  }
-  if (const auto validation = this->validation()) {
-    record.validation = validationRecord(*validation);
-  }
-  return record;
 }
 
 }  // namespace sac

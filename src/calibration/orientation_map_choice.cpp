@@ -79,15 +79,33 @@ struct HeldOutErrors {
   double map = 0.0;
 };
 
+/// What orientations tell by themselves. `samples`: without torques.
+CycleOutcome fromOrientations(const CalibrationModel& model,
+                              const std::vector<Sample>& samples,
+                              const CalibrationState& state,
+                              const EstimationOptions& options) {
+  return runCycle(model, samples, state, withoutExpectedErrors({Cycle::kRefine}), options);
+}
+
+std::vector<Sample> orientationsOf(const std::vector<Sample>& samples) {
+  std::vector<Sample> oriented;
+  for (const Sample& sample : samples) {
+    if (serves(sample)) {
+      oriented.push_back(sample);
+      oriented.back().has_torque = false;
+    }
+  }
+  return oriented;
+}
+
 /// Predicts regions from the samples of all others.
 class RegionJudge {
  public:
   RegionJudge(const CalibrationModel& model,
               const std::vector<Sample>& samples,
               const CalibrationState& state,
-              const CycleRequest& cycle,
               const EstimationOptions& options)
-      : model_(model), samples_(samples), state_(state), cycle_(cycle), options_(options) {
+      : model_(model), samples_(samples), state_(state), options_(options) {
     std::vector<Eigen::Vector3d> readings;
     for (std::size_t n = 0; n < samples.size(); ++n) {
       if (!samples[n].validation) {
@@ -110,8 +128,7 @@ class RegionJudge {
           held.push_back(samples_[places_[n]]);
         }
       }
-      const CycleOutcome outcome =
-          runCycle(model_, others, state_, withoutExpectedErrors(cycle_), options_);
+      const CycleOutcome outcome = fromOrientations(model_, others, state_, options_);
       const UnexplainedRotations known =
           mergedPoses(unexplained(model_, others, outcome.state.belief.x));
       const UnexplainedRotations tested =
@@ -140,9 +157,8 @@ class RegionJudge {
   }
 
   const CalibrationModel& model_;
-  const std::vector<Sample>& samples_;
+  const std::vector<Sample>& samples_;  ///< without torques
   const CalibrationState& state_;
-  const CycleRequest& cycle_;
   const EstimationOptions& options_;
   std::vector<std::size_t> places_;   ///< of samples that serve
   std::vector<std::size_t> regions_;  ///< of each of them
@@ -176,6 +192,12 @@ double significance(const std::vector<HeldOutErrors>& regions) {
     variance += std::pow(region.axes - region.map - mean, 2) / (count * (count - 1.0));
   }
   return mean / std::sqrt(std::max(variance, 1e-300));
+}
+
+std::string tooFew(std::size_t poses) {
+  return format("Orientation map: none; %zu poses with an orientation are too few, %zu are needed.",
+                poses,
+                kFewestPoses);
 }
 
 std::string inWords(const MapRecord& record, bool is_chosen) {
@@ -231,20 +253,29 @@ std::vector<std::size_t> regionsOf(const std::vector<Eigen::Vector3d>& readings,
 
 OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
                                           const std::vector<Sample>& samples,
-                                          const CalibrationState& state,
-                                          const CycleRequest& cycle,
+                                          const CalibrationState& start,
                                           const EstimationOptions& options,
                                           MapUse use) {
   OrientationMapChoice choice;
   if (use == MapUse::kNever || model.space().joints() == 0) {
     return choice;
   }
-  const UnexplainedRotations poses = mergedPoses(unexplained(model, samples, state.belief.x));
+  const std::vector<Sample> oriented = orientationsOf(samples);
+  if (oriented.empty()) {
+    return choice;
+  }
+  if (oriented.size() < kFewestPoses) {
+    choice.sentence = tooFew(oriented.size());
+    return choice;
+  }
+  const CycleOutcome outcome = fromOrientations(model, oriented, start, options);
+  if (!outcome.report.success) {
+    return choice;
+  }
+  const UnexplainedRotations poses =
+      mergedPoses(unexplained(model, oriented, outcome.state.belief.x));
   if (poses.readings.size() < kFewestPoses) {
-    choice.sentence =
-        format("Orientation map: none; %zu poses with an orientation are too few, %zu are needed.",
-               poses.readings.size(),
-               kFewestPoses);
+    choice.sentence = tooFew(poses.readings.size());
     return choice;
   }
   const OrientationMapFit fit = fitOrientationMap(poses);
@@ -255,7 +286,7 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
     return choice;
   }
   const std::vector<HeldOutErrors> regions =
-      RegionJudge(model, samples, state, cycle, options).judge(fit.map);
+      RegionJudge(model, oriented, start, options).judge(fit.map);
   const MapRecord record = recordOf(regions);
   const bool is_better = regions.size() > 2 && record.map_rms < kLargestShare * record.axes_rms &&
                          significance(regions) > kLeastSignificance;

@@ -51,6 +51,13 @@ std::vector<CycleRequest> cyclesOf(const CalibrationSession& session, Calibratio
   return {{Cycle::kMotion}};
 }
 
+/// The start with the orientation map in force: no trial searches its own.
+CalibratedDescription mappedStart(const CalibrationSession& session) {
+  CalibratedDescription start = session.start();
+  start.actuator.orientation_map = session.model().space().nominal().orientation_map;
+  return start;
+}
+
 RefinedFit refined(const CalibrationSession& session, const EffectSelection& effects) {
   CalibrationConfig config = session.config();
   config.effects = effects;
@@ -59,7 +66,8 @@ RefinedFit refined(const CalibrationSession& session, const EffectSelection& eff
   config.estimation.max_reduced_chi_square = 1e9;
   config.estimation.max_rejected_fraction = 0.49;
   config.estimation.false_alarm_probability = 1e-200;
-  CalibrationSession trial(session.start(), session.samples(), config);
+  config.orientation_map = MapUse::kNever;
+  CalibrationSession trial(mappedStart(session), session.samples(), config);
   RefinedFit fit;
   for (const CycleRequest& request : cyclesOf(session, trial)) {
     const CycleReport& report = trial.run(withoutExpectedErrors(request));
@@ -154,7 +162,7 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session) {
   if (unchanged.converged && !unchanged.isBeyondChance() && unchanged.rejected < kManyRejected) {
     return diagnoses;
   }
-  return singleExplanations({session.start().actuator, session.samples()}, session.config());
+  return singleExplanations({mappedStart(session).actuator, session.samples()}, session.config());
 }
 
 std::string inWords(const std::vector<Diagnosis>& diagnoses) {

@@ -54,7 +54,7 @@ void IncrementalEstimate::add(const Sample& sample) {
     problem.observations.push_back({0, Quantity::kTorque});
   }
   checkProblem(problem);
-  const bool shares = options_.shared_errors && hasSharedErrors(sample);
+  const bool shares = options_.shared_errors && hasSharedErrors(sample, model_);
   if (!shares || !dwell_ || !isSameDwell(*dwell_, sample)) {
     forgetDwell();
     dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;

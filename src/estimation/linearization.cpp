@@ -6,6 +6,14 @@
 #include <boost/container/small_vector.hpp>
 
 namespace sac {
+namespace {
+
+double orientationStddev(const Sample& sample, const EstimationOptions& options) {
+  return sample.orientation_stddev > 0.0 ? sample.orientation_stddev
+                                         : options.default_orientation_stddev;
+}
+
+}  // namespace
 
 ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
                                            const CalibrationModel& model,
@@ -30,6 +38,37 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
     first_excitation_.push_back(static_cast<std::uint32_t>(excitations_.size()));
   }
   excitations_.shrink_to_fit();
+  if (model.hasOrientationMap()) {
+    joints_ = jointGeometry(model.space().nominal().joints);
+    lookUpMap(*model.space().nominal().orientation_map);
+  }
+}
+
+/// A map's noise is what poses differ by beside the smooth part, as the tracker told it: its own
+/// noise is none of the rotor.
+void ObservationEvaluator::lookUpMap(const OrientationMap& map) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Sample& sample : *problem_.samples) {
+    if (sample.has_orientation) {
+      sum += std::pow(orientationStddev(sample, options_), 2);
+      count += 1.0;
+    }
+  }
+  const double of_tracker = count > 0.0 ? sum / count : 0.0;
+  left_open_.reserve(problem_.observations.size());
+  const Sample* before = nullptr;
+  for (const Observation& observation : problem_.observations) {
+    const Sample& sample = (*problem_.samples)[observation.sample];
+    if (before != nullptr && before->joint_position == sample.joint_position) {
+      left_open_.push_back(left_open_.back());
+    } else {
+      const OrientationMap::Uncertainty uncertainty = map.uncertainty(sample.joint_position);
+      left_open_.push_back(uncertainty.variance +
+                           (uncertainty.noise.array() - of_tracker).max(0.0).matrix());
+    }
+    before = &sample;
+  }
 }
 
 Eigen::Vector3d ObservationEvaluator::residual(std::size_t observation,
@@ -43,17 +82,11 @@ Eigen::Vector3d ObservationEvaluator::evaluate(std::size_t observation,
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   ResidualJacobian* const jacobian = linear == nullptr ? nullptr : &linear->jacobian;
+  PoseDerivatives* const d_pose = linear == nullptr ? nullptr : &linear->d_pose;
   if (what.quantity == Quantity::kTorque) {
-    Eigen::Matrix3d* const d_reading = linear == nullptr ? nullptr : &linear->d_reading;
-    return point.torqueResidual(sample, excitations(observation), jacobian, d_reading);
+    return point.torqueResidual(sample, excitations(observation), jacobian, d_pose);
   }
-  Eigen::Vector3d residual = point.orientationResidual(sample, jacobian);
-  for (std::size_t k = 0; linear != nullptr && k < kJoints; ++k) {
-    // A joint sensor's error acts as an offset of that joint does.
-    linear->d_reading.col(static_cast<Eigen::Index>(k)) =
-        linear->jacobian.col(model_.space().joint(k));
-  }
-  return residual;
+  return point.orientationResidual(sample, jacobian, d_pose);
 }
 
 void ObservationEvaluator::linearize(std::size_t observation,
@@ -83,11 +116,10 @@ void ObservationEvaluator::linearize(std::size_t observation,
 double ObservationEvaluator::stddev(std::size_t observation) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
-  const bool is_orientation = what.quantity == Quantity::kOrientation;
-  const double stated = is_orientation ? sample.orientation_stddev : sample.torque_stddev;
-  const double fallback =
-      is_orientation ? options_.default_orientation_stddev : options_.default_torque_stddev;
-  return stated > 0.0 ? stated : fallback;
+  if (what.quantity == Quantity::kOrientation) {
+    return orientationStddev(sample, options_);
+  }
+  return sample.torque_stddev > 0.0 ? sample.torque_stddev : options_.default_torque_stddev;
 }
 
 Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
@@ -95,8 +127,12 @@ Eigen::Matrix3d ObservationEvaluator::noise(std::size_t observation,
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   const double stddev = this->stddev(observation);
-  const Eigen::Matrix3d of_reading = linear.d_reading * sample.joint_stddev.asDiagonal();
+  const Eigen::Matrix3d of_reading = linear.d_pose.reading * sample.joint_stddev.asDiagonal();
   Eigen::Matrix3d noise = of_reading * of_reading.transpose();
+  if (!left_open_.empty()) {
+    const Eigen::Matrix3d& d_rotation = linear.d_pose.rotation;
+    noise += d_rotation * left_open_[observation].asDiagonal() * d_rotation.transpose();
+  }
   noise.diagonal().array() += stddev * stddev;
   return noise;
 }
@@ -120,7 +156,7 @@ Eigen::Matrix3d ObservationEvaluator::ownReadingErrors(std::size_t observation,
   const Eigen::Vector3d shared = sharedJointStddev(sample);
   const Eigen::Vector3d own =
       (sample.joint_stddev.cwiseAbs2() - shared.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  return linear.d_reading * own.asDiagonal();
+  return linear.d_pose.reading * own.asDiagonal();
 }
 
 Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation,
@@ -131,12 +167,29 @@ Eigen::Matrix3d ObservationEvaluator::ownNoise(std::size_t observation,
   return noise;
 }
 
+/// L with LLᵀ the covariance of ξ by errors of a reading, `stddevs`, and by what a map leaves open.
+/// The readings of a dwell agree, so that its observations share ξ.
+Eigen::Matrix3d ObservationEvaluator::rootOfPose(const Eigen::Vector3d& reading,
+                                                 const Eigen::Vector3d& stddevs,
+                                                 const Eigen::Vector3d& left_open) const {
+  const Eigen::Matrix3d of_reading =
+      linearizeRotorOrientation(joints_, reading).d_offset * stddevs.asDiagonal();
+  Eigen::Matrix3d covariance = of_reading * of_reading.transpose();
+  covariance.diagonal() += left_open;
+  return covariance.llt().matrixL();
+}
+
 Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(
     std::size_t observation, const LinearizedObservation& linear) const {
   const Observation& what = problem_.observations[observation];
   const Sample& sample = (*problem_.samples)[what.sample];
   Eigen::Matrix<double, 3, 6> result = Eigen::Matrix<double, 3, 6>::Zero();
-  result.leftCols<3>() = linear.d_reading * sharedJointStddev(sample).asDiagonal();
+  const Eigen::Vector3d shared = sharedJointStddev(sample);
+  result.leftCols<3>() =
+      left_open_.empty()
+          ? Eigen::Matrix3d(linear.d_pose.reading * shared.asDiagonal())
+          : Eigen::Matrix3d(linear.d_pose.rotation *
+                            rootOfPose(sample.joint_position, shared, left_open_[observation]));
   if (what.quantity == Quantity::kTorque) {
     result.rightCols<3>() = sample.torque_shared_stddev * Eigen::Matrix3d::Identity();
   }

@@ -233,7 +233,8 @@ ModelPoint::ModelPoint(const CalibrationModel& model, const Eigen::VectorXd& x)
     : parts_(std::make_shared<const Parts>(model, x)) {}
 
 Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
-                                                ResidualJacobian* jacobian) const {
+                                                ResidualJacobian* jacobian,
+                                                PoseDerivatives* d_pose) const {
   const Parts& at = *parts_;
   const Eigen::Matrix3Xd d_reading = at.effects.readingColumns(sample.joint_position);
   const Eigen::Vector3d q = at.corrected(sample.joint_position, d_reading);
@@ -250,6 +251,10 @@ Eigen::Vector3d ModelPoint::orientationResidual(const Sample& sample,
   const Eigen::Matrix3d d_rotation = d_stator * R_left;
   jacobian->setZero(3, at.space.size());
   jacobian->leftCols<JointPoint::kCoordinates>() = d_rotation * linear.d_coordinates;
+  if (d_pose != nullptr) {
+    // A joint sensor's error acts as an offset of that joint does.
+    *d_pose = {offsetColumns(linear, d_rotation), d_stator * at.tracker.rotation};
+  }
   if (!at.effects.empty()) {
     const Eigen::Matrix3d d_rotor =
         d_rotation * linear.R_stator_rotor * leftJacobian(at.marker.vector);
@@ -274,7 +279,7 @@ Eigen::Matrix3d ModelPoint::orientation(const Sample& sample) const {
 Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
                                            Excitations excitations,
                                            ResidualJacobian* jacobian,
-                                           Eigen::Matrix3d* d_reading) const {
+                                           PoseDerivatives* d_pose) const {
   const Parts& at = *parts_;
   if (jacobian == nullptr) {
     const Eigen::Matrix3d R_rotor_stator = orientation(sample).transpose();
@@ -311,8 +316,9 @@ Eigen::Vector3d ModelPoint::torqueResidual(const Sample& sample,
   if (at.hasJoints()) {
     jacobian->leftCols<JointPoint::kCoordinates>() = d_left * linear.d_coordinates;
   }
-  if (d_reading != nullptr) {
-    *d_reading = d_offsets;
+  if (d_pose != nullptr) {
+    d_pose->reading = d_offsets;
+    d_pose->rotation = at.hasJoints() ? d_rotation : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
   }
   if (!at.effects.empty()) {
     at.addReadingColumns(d_rotation, d_offsets, R_stator_rotor, d_corrections, *jacobian);

@@ -26,8 +26,8 @@ bool isSameDwell(const Sample& one, const Sample& other) {
   return (apart.array() <= limit.array()).all();
 }
 
-bool hasSharedErrors(const Sample& sample) {
-  return !sharedJointStddev(sample).isZero(0.0) ||
+bool hasSharedErrors(const Sample& sample, const CalibrationModel& model) {
+  return model.hasOrientationMap() || !sharedJointStddev(sample).isZero(0.0) ||
          (sample.has_torque && sample.torque_shared_stddev > 0);
 }
 
@@ -55,7 +55,7 @@ SharedErrorModel groupByDwell(const EstimationProblem& problem, const Estimation
         !isSameDwell(samples[problem.observations[dwell.front()].sample], sample)) {
       close();
     }
-    if (hasSharedErrors(sample)) {
+    if (hasSharedErrors(sample, *problem.model)) {
       dwell.push_back(n);
     } else {
       close();

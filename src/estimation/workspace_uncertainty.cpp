@@ -95,7 +95,12 @@ class PoseUncertainty {
     point_.orientationResidual(pose, &jacobian_);
     const Eigen::Matrix<double, 3, 9> J = jacobian_.leftCols<9>();
     const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
-    const Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
+    Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
+    if (model_.hasOrientationMap()) {
+      const OrientationMap::Uncertainty map =
+          space().nominal().orientation_map->uncertainty(pose.joint_position);
+      own.diagonal() += map.variance + map.noise;
+    }
     moved_covariance_.topLeftCorner<3, 3>() = own;
     moved_covariance_.topRightCorner(3, axes) = with_all.rightCols(axes);
     moved_covariance_.bottomLeftCorner(axes, 3) = with_all.rightCols(axes).transpose();

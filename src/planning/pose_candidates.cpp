@@ -51,7 +51,7 @@ class Linearizer {
     WhitenedObservation result = inUnits(Eigen::Matrix3d::Identity() / stddev);
     const Sample& sample = samples_[observations()[last_].sample];
     const Eigen::Matrix3d of_readings =
-        linear_.d_reading * sample.joint_stddev.asDiagonal() / stddev;
+        linear_.d_pose.reading * sample.joint_stddev.asDiagonal() / stddev;
     if (of_readings.isZero(0.0)) {
       return result;
     }

@@ -105,6 +105,8 @@ StudyTrial runTrial(const StudyOptions& options, std::uint64_t seed) {
       simulateSamples(made, options.plan, options.tracker, options.noise, seed);
   CalibrationConfig config;
   config.estimation = options.estimation;
+  // Its bound is that of a rotor without one.
+  config.orientation_map = MapUse::kNever;
   CalibrationSession session({options.nominal}, samples, config);
   const CalibrationModel& model = session.model();
   const Eigen::VectorXd truth = model.space().coordinatesOf(made);

@@ -37,13 +37,9 @@ CalibrationConfig modelling(const std::vector<std::string>& effects, MapUse map)
   return config;
 }
 
-/// What the session's model says of a sample; the map beside it.
+/// What the session's model says of a sample.
 Sample predicted(const CalibrationSession& session, Sample sample) {
   predictMeasurements({session.model(), session.state().belief.x}, sample);
-  if (session.orientationMap().map) {
-    sample.R_stator_rotor = rotationExp(session.orientationMap().map->mean(sample.joint_position)) *
-                            sample.R_stator_rotor;
-  }
   return sample;
 }
 

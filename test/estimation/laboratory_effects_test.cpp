@@ -113,8 +113,8 @@ TEST_F(LevitatedEffects, ErrorsOfTheReadingTurnTheMeasuredOrientation) {
   for (const Sample& sample : samples_) {
     const std::vector<Excitation> excitations = excitedCoils(sample, 0.05);
     ResidualJacobian jacobian;
-    Eigen::Matrix3d d_reading;
-    point.torqueResidual(sample, excitations, &jacobian, &d_reading);
+    PoseDerivatives d_pose;
+    point.torqueResidual(sample, excitations, &jacobian, &d_pose);
     const Eigen::MatrixXd numeric = numericJacobian(
         [&](const Eigen::VectorXd& error) {
           Sample turned = sample;
@@ -123,7 +123,7 @@ TEST_F(LevitatedEffects, ErrorsOfTheReadingTurnTheMeasuredOrientation) {
         },
         Eigen::Vector3d::Zero(),
         kShort);
-    EXPECT_LT((d_reading - numeric).cwiseAbs().maxCoeff(), 2e-7);
+    EXPECT_LT((d_pose.reading - numeric).cwiseAbs().maxCoeff(), 2e-7);
   }
 }
 

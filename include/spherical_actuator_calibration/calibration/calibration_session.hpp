@@ -52,6 +52,7 @@ class CalibrationSession {
                      std::vector<CycleReport> reports);
 
   const CalibratedDescription& start() const { return start_; }
+  /// With the orientation map in force.
   const CalibrationModel& model() const { return model_; }
   const CalibrationConfig& config() const { return config_; }
   const std::vector<Sample>& samples() const { return samples_; }
@@ -61,10 +62,16 @@ class CalibrationSession {
   /// (CalibrationConfig::hold_out_every). Throws DataError when it cannot be used.
   Sample prepared(Sample sample) const;
   /// Takes a prepared sample.
-  void add(Sample sample) { samples_.push_back(std::move(sample)); }
+  void add(Sample sample) {
+    samples_.push_back(std::move(sample));
+    map_of_samples_.reset();
+  }
   /// False when there is no sample with this id.
   bool remove(std::uint32_t id);
-  void clearSamples() { samples_.clear(); }
+  void clearSamples() {
+    samples_.clear();
+    map_of_samples_.reset();
+  }
   /// What the cycle motion takes; nothing where no motion was recorded.
   void setMotion(std::shared_ptr<const MotionRecording> motion) { motion_ = std::move(motion); }
   const MotionRecording* motion() const { return motion_.get(); }
@@ -95,10 +102,11 @@ class CalibrationSession {
   /// is the nominal value.
   std::vector<ParameterEstimate> parameters() const;
 
-  /// The map of what the last joint or refine cycle left of the orientations, or why there is none
-  /// (CalibrationConfig::orientation_map). Found when it is first asked for, from the samples then
-  /// held, and kept until the parameters change.
-  const OrientationMapChoice& orientationMap() const;
+  /// The map of what axes and corrections leave of the orientations, or why there is none
+  /// (CalibrationConfig::orientation_map). A joint or refine cycle finds it before it begins, from
+  /// the orientations in use alone, and takes orientations and torques with it; so do the cycles
+  /// after it.
+  const OrientationMapChoice& orientationMap() const { return map_; }
 
   /// What errors the parameters in force let expect over the workspace, whether the reports tell or
   /// not. Found when it is first asked for, and kept until the parameters change.
@@ -116,20 +124,24 @@ class CalibrationSession {
   CalibratedDescription description(const CalibrationOrigin& origin) const;
 
  private:
-  CalibrationModel mappedModel() const;
+  const OrientationMapChoice& mapOfSamples();
+  OrientationMapChoice mapOfReports() const;
+  OrientationMapChoice chosenMap(const std::vector<Sample>& samples) const;
+  CalibrationModel modelWith(std::shared_ptr<const OrientationMap> map) const;
+  void putInForce(OrientationMapChoice choice);
   CalibrationRecord record(const CalibrationOrigin& origin) const;
 
   CalibratedDescription start_;
   std::vector<Sample> samples_;
   std::shared_ptr<const MotionRecording> motion_;
   CalibrationConfig config_;
-  CalibrationModel model_;
+  CalibrationModel model_;  ///< with the map in force
   CalibrationState state_;
   std::vector<CycleReport> reports_;
   std::optional<MotionEvidence> motion_evidence_;
-  // Nothing: not asked for yet.
-  mutable std::optional<OrientationMapChoice> map_choice_;
-  mutable std::optional<WorkspaceUncertainty> expected_errors_;
+  OrientationMapChoice map_;                                     ///< in force
+  std::optional<OrientationMapChoice> map_of_samples_;           ///< nothing: not searched yet
+  mutable std::optional<WorkspaceUncertainty> expected_errors_;  ///< nothing: not asked for yet
 };
 
 }  // namespace sac

@@ -8,7 +8,6 @@
 
 #include "spherical_actuator_calibration/actuator/calibration_record.hpp"
 #include "spherical_actuator_calibration/actuator/orientation_map.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/calibration/map_use.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -28,14 +27,13 @@ struct OrientationMapChoice {
 /// widest spread relative to that of all. Returns the region of each pose.
 std::vector<std::size_t> regionsOf(const std::vector<Eigen::Vector3d>& readings, int depth);
 
-/// Fits a map to what the state leaves of the orientations, and judges it by regions of the joint
-/// space (doc/method.md, Residual map): for each, parameters (by the cycle) and map are estimated
-/// from the samples of all others, and predict it. With kAuto a map is chosen that predicts better
-/// beyond chance.
+/// Fits a map to what axes and corrections leave of the orientations, and judges it by regions of
+/// the joint space (doc/method.md, Residual map): for each, parameters and map are estimated from
+/// the orientations of all others, and predict it. With kAuto a map is chosen that predicts better
+/// beyond chance. Torques take no part.
 OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
                                           const std::vector<Sample>& samples,
-                                          const CalibrationState& state,
-                                          const CycleRequest& cycle,
+                                          const CalibrationState& start,
                                           const EstimationOptions& options,
                                           MapUse use);
 

@@ -31,6 +31,9 @@ class CalibrationModel {
 
   const ParameterSpace& space() const { return space_; }
   bool hasTorqueModel() const { return curve_.has_value(); }
+  bool hasOrientationMap() const {
+    return space_.joints() > 0 && space_.nominal().orientation_map != nullptr;
+  }
   /// Precondition: hasTorqueModel().
   const TorqueCurve& curve() const { return *curve_; }
 

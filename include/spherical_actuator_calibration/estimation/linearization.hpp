@@ -15,8 +15,7 @@ struct LinearizedObservation {
   Eigen::Vector3d residual;
   ResidualJacobian jacobian;          ///< 3×P, zero where unused
   std::vector<Eigen::Index> columns;  ///< those that are not zero, ascending
-  /// Column k: by the error of the sample's reading whose standard deviation is joint_stddev[k].
-  Eigen::Matrix3d d_reading;
+  PoseDerivatives d_pose;
 };
 
 /// Evaluates the observations of one problem: residuals, Jacobians and covariances.
@@ -45,7 +44,8 @@ class ObservationEvaluator {
                  const ModelPoint& point,
                  LinearizedObservation& out) const;
 
-  /// Covariance of an observation from the sensors' noise alone, joint sensors included.
+  /// Covariance of an observation from the sensors' noise alone, joint sensors included, and what
+  /// an orientation map leaves open of where the rotor is.
   Eigen::Matrix3d noise(std::size_t observation, const LinearizedObservation& linear) const;
 
   /// Of noise() what the observations of a dwell do not share: of the measured vector itself, per
@@ -54,7 +54,8 @@ class ObservationEvaluator {
   Eigen::Matrix3d ownReadingErrors(std::size_t observation,
                                    const LinearizedObservation& linear) const;
   Eigen::Matrix3d ownNoise(std::size_t observation, const LinearizedObservation& linear) const;
-  /// ∂residual/∂u for the errors that they share, in standard deviations: joints, then torque.
+  /// ∂residual/∂u for the errors that they share, in standard deviations: where the rotor is (by
+  /// the joints' readings and an orientation map), then torque.
   Eigen::Matrix<double, 3, 6> sharedErrors(std::size_t observation,
                                            const LinearizedObservation& linear) const;
 
@@ -72,6 +73,10 @@ class ObservationEvaluator {
                            const ModelPoint& point,
                            LinearizedObservation* linear) const;
   double stddev(std::size_t observation) const;
+  void lookUpMap(const OrientationMap& map);
+  Eigen::Matrix3d rootOfPose(const Eigen::Vector3d& reading,
+                             const Eigen::Vector3d& stddevs,
+                             const Eigen::Vector3d& left_open) const;
 
   const EstimationProblem& problem_;
   const CalibrationModel& model_;
@@ -79,6 +84,9 @@ class ObservationEvaluator {
   std::vector<Excitation> excitations_;          ///< of all observations, one after the other
   std::vector<std::uint32_t> first_excitation_;  ///< per observation, and where the last one ends
   std::vector<bool> uncertain_;                  ///< per coordinate: its prior variance is not zero
+  /// Per observation: variance of ξ that an orientation map leaves open [rad²]; empty without one.
+  std::vector<Eigen::Vector3d> left_open_;
+  JointGeometry joints_;  ///< as drawn, without the map; set where there is one
 };
 
 }  // namespace sac

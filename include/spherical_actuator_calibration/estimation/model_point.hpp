@@ -27,6 +27,14 @@ class Excitations {
   std::size_t count_;
 };
 
+/// ∂residual/∂errors of where the rotor is at a sample.
+struct PoseDerivatives {
+  /// Column k: by the error of the reading whose standard deviation is joint_stddev[k].
+  Eigen::Matrix3d reading = Eigen::Matrix3d::Zero();
+  /// By ξ, R → e^{ξ̂}R in the stator frame, as an orientation map turns it; without joints zero.
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+};
+
 /// A model at one point x of its coordinates: what depends on them alone (joint axes, poles and
 /// coils with their derivatives, effects, the torque curve) is worked out once for all samples.
 class ModelPoint {
@@ -38,16 +46,16 @@ class ModelPoint {
   /// the rotor is at exp(t)ᵀ R_a exp(m)ᵀ, see LaboratoryEffect.
   Eigen::Matrix3d orientation(const Sample& sample) const;
 
-  /// See CalibrationModel::orientationResidual(), with its precondition.
+  /// See CalibrationModel::orientationResidual(), with its precondition. `d_pose` is written where
+  /// `jacobian` is.
   Eigen::Vector3d orientationResidual(const Sample& sample,
-                                      ResidualJacobian* jacobian = nullptr) const;
-  /// See CalibrationModel::torqueResidual(), with its precondition. `d_reading`, written where
-  /// `jacobian` is: ∂residual/∂errors of the sample's reading, each in the sense of its
-  /// joint_stddev.
+                                      ResidualJacobian* jacobian = nullptr,
+                                      PoseDerivatives* d_pose = nullptr) const;
+  /// See CalibrationModel::torqueResidual(), with its precondition. `d_pose` as above.
   Eigen::Vector3d torqueResidual(const Sample& sample,
                                  Excitations excitations,
                                  ResidualJacobian* jacobian = nullptr,
-                                 Eigen::Matrix3d* d_reading = nullptr) const;
+                                 PoseDerivatives* d_pose = nullptr) const;
 
  private:
   struct Parts;
