@@ -85,6 +85,11 @@ void conclude(const CalibrationModel& model,
   for (const Eigen::Index p : in_directions) {
     state.identified[static_cast<std::size_t>(p)] = false;
   }
+  // Also those that an earlier cycle took for identified: it saw no other place.
+  for (const Eigen::Index first : estimate.ambiguous) {
+    state.identified[static_cast<std::size_t>(first)] = false;
+    state.identified[static_cast<std::size_t>(first) + 1] = false;
+  }
   if (expected_errors == ExpectedErrors::kReported) {
     const WorkspaceUncertainty uncertainty = workspaceUncertainty(model, state.belief);
     report.orientation_uncertainty = uncertainty.orientation;

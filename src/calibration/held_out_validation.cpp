@@ -93,18 +93,28 @@ SampleResidual residualOf(const Sample& sample,
   return result;
 }
 
-/// Whether the test counts an observation: not with coils that nothing has identified.
+/// Whether a torque is close to linear over the uncertainty of a coil's axis: its angles are
+/// identified, and known to a small part of the width of the torque curve's peak.
+bool isLinear(const CalibrationState& state, Eigen::Index coil) {
+  constexpr double kMostStddev = 0.01;  // [rad]
+  const auto first = static_cast<std::size_t>(coil);
+  const double variance = state.belief.covariance.block<2, 2>(coil, coil).trace();
+  return state.identified[first] && state.identified[first + 1] &&
+         variance < kMostStddev * kMostStddev;
+}
+
+/// Whether the test counts an observation.
 bool isJudged(const Observation& observation,
               const Sample& sample,
               const ParameterSpace& space,
-              const std::vector<bool>& identified,
+              const CalibrationState& state,
               double current_threshold) {
   if (observation.quantity == Quantity::kOrientation) {
     return true;
   }
   const std::vector<Excitation> excitations = excitedCoils(sample, current_threshold);
   return std::all_of(excitations.begin(), excitations.end(), [&](const Excitation& excitation) {
-    return identified[static_cast<std::size_t>(space.coil(excitation.coil))];
+    return isLinear(state, space.coil(excitation.coil));
   });
 }
 
@@ -189,7 +199,7 @@ class HeldOutJudge {
     const bool counts = isJudged(problem_.observations[n],
                                  sample,
                                  problem_.model->space(),
-                                 state_.identified,
+                                 state_,
                                  options_.current_threshold);
     result.unjudged_torques += counts ? 0U : 1U;
     judged_.push_back({n, result.residuals.size(), counts});

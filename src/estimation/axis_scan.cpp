@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 
@@ -17,6 +18,8 @@ constexpr int kSteps = 4;
 /// Few torques fit in many places, on both sides of the curve's peak: looked for more closely.
 constexpr std::size_t kFewTorques = 3;
 constexpr int kFineSteps = 18;
+/// What an axis's torques leave open of it, in χ²: six standard deviations.
+constexpr double kWithin = 36.0;
 
 }  // namespace
 
@@ -110,17 +113,17 @@ AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
   return normal;
 }
 
-/// The minimum below a place of the scan.
-Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place) const {
+/// The minimum below a place of the scan, among those that the projection `allowed` leads to.
+Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place, const Eigen::Matrix2d& allowed) const {
   constexpr int kMaxIterations = 20;
   constexpr double kNothing = 1e-5;  // [rad]: the estimator goes on from there
   double damping = 1e-3;
   Normal here = linearized(place);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Eigen::Matrix2d damped = here.sum.information();
+    Eigen::Matrix2d damped = allowed * here.sum.information() * allowed;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-6;
-    Eigen::Vector2d step = -damped.ldlt().solve(Eigen::Vector2d(here.sum.gradient()));
+    Eigen::Vector2d step = -damped.ldlt().solve(allowed * here.sum.gradient());
     // Beyond one step of the scan is another place of it.
     step *= std::min(1.0, step_ / std::max(step.norm(), kNothing));
     const Normal there = linearized(place + step);
@@ -179,10 +182,30 @@ std::vector<Eigen::Vector2d> AxisScan::localMinima() const {
   return places;
 }
 
+/// Places along the direction in which the torques tell least of an axis, beyond what they leave
+/// open of it, each the best one across. Where torques are few they lie in a valley that is thinner
+/// than a step of the scan, and bent, as the torque curve is nearly the same on both sides of its
+/// peak.
+std::vector<Eigen::Vector2d> AxisScan::alongValley(const Eigen::Vector2d& present,
+                                                   const Eigen::Matrix2d& information) const {
+  std::vector<Eigen::Vector2d> places;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spectrum(information);
+  const double weakest = spectrum.eigenvalues()[0];
+  if (weakest <= 0.0) {
+    return places;
+  }
+  const Eigen::Vector2d along = spectrum.eigenvectors().col(0);
+  const Eigen::Vector2d across = spectrum.eigenvectors().col(1);
+  for (double far = std::sqrt(kWithin / weakest); far < range_; far *= 2.0) {
+    places.push_back(descended(present + far * along, across * across.transpose()));
+    places.push_back(descended(present - far * along, across * across.transpose()));
+  }
+  return places;
+}
+
 std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const {
   constexpr std::size_t kMostStarts = 4;
   constexpr std::size_t kMostFineStarts = 64;
-  constexpr double kWithin = 36.0;     // of χ²: six standard deviations
   constexpr double kFarBetter = 16.0;  // of χ²
   constexpr double kSamePlace = 1e-3;  // [rad]
   std::vector<ScannedPlace> found;
@@ -199,13 +222,22 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
              return (other.place - there.place).norm() < kSamePlace;
            });
   };
-  std::vector<Eigen::Vector2d> starts = localMinima();
-  starts.resize(std::min(starts.size(), steps_ == kSteps ? kMostStarts : kMostFineStarts));
-  for (const Eigen::Vector2d& start : starts) {
-    const Eigen::Vector2d place = descended(start);
+  const auto add = [&](const Eigen::Vector2d& place) {
     const ScannedPlace there{place, here.misfit - linearized(place).misfit};
     if (isWithin(place) && !is_known(there)) {
       found.push_back(there);
+    }
+  };
+  const Eigen::Matrix2d all = Eigen::Matrix2d::Identity();
+  std::vector<Eigen::Vector2d> starts = localMinima();
+  starts.resize(std::min(starts.size(), steps_ == kSteps ? kMostStarts : kMostFineStarts));
+  for (const Eigen::Vector2d& start : starts) {
+    add(descended(start, all));
+  }
+  if (steps_ == kFineSteps) {
+    for (const Eigen::Vector2d& place : alongValley(present, information)) {
+      add(descended(place, all));
+      add(place);
     }
   }
   for (ScannedPlace& there : found) {

@@ -64,7 +64,8 @@ class AxisScan {
            double range,
            double transition);
 
-  /// Minima that are not the one of `present`: beyond what its torques leave open of it.
+  /// Minima that are not the one of `present`: beyond what its torques leave open of it. Of few
+  /// torques also places in the valley of `present` that are no minima.
   std::vector<ScannedPlace> others(const Eigen::Vector2d& present) const;
 
   /// How far from the nominal axis a scan of this range looks [rad].
@@ -78,11 +79,13 @@ class AxisScan {
 
   double coarseMisfit(const Eigen::Vector2d& place) const;
   Normal linearized(const Eigen::Vector2d& place) const;
-  Eigen::Vector2d descended(Eigen::Vector2d place) const;
+  Eigen::Vector2d descended(Eigen::Vector2d place, const Eigen::Matrix2d& allowed) const;
   bool isWithin(const Eigen::Vector2d& place) const {
     return place.cwiseAbs().maxCoeff() <= range_ + step_;
   }
   std::vector<Eigen::Vector2d> localMinima() const;
+  std::vector<Eigen::Vector2d> alongValley(const Eigen::Vector2d& present,
+                                           const Eigen::Matrix2d& information) const;
 
   const TorqueCurve& curve_;
   const CoarseCurve& coarse_curve_;

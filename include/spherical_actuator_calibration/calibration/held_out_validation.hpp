@@ -20,7 +20,8 @@ struct HeldOutValidation {
   double orientation_rms = 0.0;  ///< root mean square norm of the rotation error [rad]
   std::size_t torques = 0;
   double torque_rms = 0.0;  ///< root mean square norm of the torque error [N·m]
-  /// Torques of coils that are not identified: too far from linear in tolerances to be judged.
+  /// Torques of coils that are not identified, or to more than 10 mrad only: too far from linear
+  /// in such uncertainties to be judged.
   std::size_t unjudged_torques = 0;
   /// That repeat another measurement bit for bit, in use or held out: they tell nothing, and have
   /// no residual.
