@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "stream_noise.hpp"
+#include "table_coverage.hpp"
 
 namespace sac {
 namespace {
@@ -186,6 +187,10 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
                                   const EstimationOptions& options,
                                   const Estimate& estimate) {
   std::vector<std::string> words = doubts(problem, estimate);
+  if (const std::string beyond_table = tableCoverageInWords(problem, estimate, options);
+      !beyond_table.empty()) {
+    words.push_back(beyond_table);
+  }
   // Poles and coils by themselves have few samples; the refinement judges them with all others.
   if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
     if (const auto effect = findSingleEffect(problem, estimate, options)) {

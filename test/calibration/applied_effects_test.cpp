@@ -339,6 +339,38 @@ TEST(TorqueTable, OfFortyPointsCalibratesAsItsPolynomialDoes) {
   }
 }
 
+// Where a table ends before the torque does, and samples go beyond, the curve is a guess.
+TEST(TorqueTable, ThatEndsBeforeTheTorqueIsTold) {
+  scenarios::Generator generator(9);
+  const std::vector<Sample> samples = scenarios::paperSession(
+      scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator);
+  const Actuator whole = scenarios::paperNominal();
+  for (const double end : {29.0, whole.torque_curve->support_end}) {
+    Actuator tabulated = whole;
+    TorqueCurveDescription table = tableOf(whole, 40);
+    while (table.table.angles.back() > end) {
+      table.table.angles.pop_back();
+      table.table.torques.pop_back();
+    }
+    table.blend_start = 0.0;
+    table.support_begin = 0.0;
+    completeFromTable(table);
+    tabulated.torque_curve = table;
+    CalibrationSession session({tabulated}, samples, {});
+    session.run({Cycle::kJoint});
+    session.run({Cycle::kPoles, 0});
+    const CycleReport& report = session.run({Cycle::kRefine});
+    ASSERT_TRUE(report.success) << report.message;
+    std::string told;
+    for (const std::string& doubt : report.doubts) {
+      told += doubt;
+    }
+    const bool is_told =
+        told.find("beyond the last point of torque_curve.table") != std::string::npos;
+    EXPECT_EQ(is_told, end == 29.0) << end << ": " << told;
+  }
+}
+
 TEST(TorqueTable, ItsStatedUncertaintyIsInThatOfTheParameters) {
   scenarios::Generator generator(9);
   const std::vector<Sample> samples = scenarios::paperSession(
