@@ -9,8 +9,10 @@
 namespace sac {
 namespace {
 
-/// Exponent of the norm of variances that stands for the largest one.
-constexpr double kExponent = 60.0;
+/// Exponents of the norm of variances that stands for the largest one, from the first look to the
+/// last: a low one approaches quickly, a high one ends nearer to the largest.
+constexpr double kFirstExponent = 30.0;
+constexpr double kLastExponent = 66.0;
 /// Steps see the most promising candidates; all of them are looked at between, each time for a new
 /// bound.
 constexpr std::size_t kLooks = 8;
@@ -19,19 +21,20 @@ constexpr std::size_t kActive = 200;
 /// Visits that one step mixes in, at different poses: a single one would rarely be worth a step.
 constexpr std::size_t kTogether = 10;
 
-double normAt(const DesignTask& task, const Eigen::MatrixXd& information) {
-  return steepNorm(reportedVariances(task, covarianceOf(information)), kExponent);
+double normAt(const DesignTask& task, const Eigen::MatrixXd& information, double exponent) {
+  return steepNorm(reportedVariances(task, covarianceOf(information)), exponent);
 }
 
 /// The share of `other` in a mixture of two designs that makes the norm least, by golden section.
 double bestShare(const DesignTask& task,
                  const Eigen::MatrixXd& information,
-                 const Eigen::MatrixXd& other) {
+                 const Eigen::MatrixXd& other,
+                 double exponent) {
   constexpr double kMostShare = 0.5;
   constexpr double kSection = 0.382;
   constexpr int kSections = 10;
   const auto norm = [&](double share) {
-    return normAt(task, (1.0 - share) * information + share * other);
+    return normAt(task, (1.0 - share) * information + share * other, exponent);
   };
   double low = 0.0;
   double high = kMostShare;
@@ -76,6 +79,8 @@ void DesignBound::improve(const std::function<bool()>& is_time_up) {
   std::iota(all.begin(), all.end(), 0);
   const auto visits = static_cast<double>(visits_);
   for (std::size_t look = 0; look < kLooks; ++look) {
+    exponent_ = kFirstExponent + (kLastExponent - kFirstExponent) * static_cast<double>(look) /
+                                     static_cast<double>(kLooks - 1);
     for (std::size_t step = 0; look > 0 && step < kStepsPerLook; ++step) {
       mixIn(bestVisits(certificateHere().sensitivity, active_, kTogether));
     }
@@ -98,7 +103,7 @@ void DesignBound::improve(const std::function<bool()>& is_time_up) {
 DesignBound::Certificate DesignBound::certificateHere() const {
   const Eigen::MatrixXd covariance = covarianceOf(information_);
   const Eigen::VectorXd variances = reportedVariances(task_, covariance);
-  const Eigen::VectorXd weights = steepWeights(variances, kExponent);
+  const Eigen::VectorXd weights = steepWeights(variances, exponent_);
   Certificate here;
   here.sensitivity = sensitivityOf(task_, covariance, weights);
   here.variance = weights.dot(variances);
@@ -139,7 +144,7 @@ void DesignBound::mixIn(const std::vector<RankedVisit>& visits) {
   const double share_of_one = static_cast<double>(visits_) / static_cast<double>(poses.size());
   const Eigen::MatrixXd other =
       task_.known + share_of_one * (designInformation(task_, candidates_, poses) - task_.known);
-  const double share = bestShare(task_, information_, other);
+  const double share = bestShare(task_, information_, other, exponent_);
   information_ = (1.0 - share) * information_ + share * other;
 }
 

@@ -66,6 +66,7 @@ class DesignBound {
   const std::vector<PoseCandidate>& candidates_;
   std::size_t visits_;
   Eigen::MatrixXd information_;
+  double exponent_ = 0.0;  ///< of the norm that steps make less
   Certificate best_;
   std::vector<Eigen::MatrixXd> eliminations_;  ///< per candidate, of the errors of its readings
   std::vector<std::size_t> active_;  ///< candidates that steps between looks at all of them see
