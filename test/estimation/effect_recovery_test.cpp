@@ -12,7 +12,11 @@ namespace {
 /// Many sessions on different units in one kind of laboratory.
 class EffectTrials {
  public:
-  explicit EffectTrials(const EffectSelection& modelled) { config_.effects = modelled; }
+  explicit EffectTrials(const EffectSelection& modelled) {
+    config_.effects = modelled;
+    // A map takes up an effect of the joints that is ignored, as far as it is smooth.
+    config_.orientation_map = MapUse::kNever;
+  }
 
   /// `truth` as made; `values` of the modelled effects, in the order of their layout.
   void add(const Actuator& geometry,

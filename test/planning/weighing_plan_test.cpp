@@ -202,7 +202,7 @@ Eigen::MatrixXd denseInformation(const CalibrationModel& model,
       evaluator.linearize(static_cast<std::size_t>(n), evaluator.at(x), linear);
       J.middleRows<3>(3 * n) = linear.jacobian;
       of_readings.middleRows<3>(3 * n) =
-          linear.d_reading * samples.front().joint_stddev.asDiagonal();
+          linear.d_pose.reading * samples.front().joint_stddev.asDiagonal();
       covariance.diagonal().segment<3>(3 * n).setConstant(
           evaluator.ownVariance(static_cast<std::size_t>(n)));
     }
