@@ -186,18 +186,22 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
                                   const CycleRequest& request,
                                   const EstimationOptions& options,
                                   const Estimate& estimate) {
-  std::vector<std::string> words = doubts(problem, estimate);
+  std::vector<std::string> words = doubts(problem, estimate, options);
   if (const std::string beyond_table = tableCoverageInWords(problem, estimate, options);
       !beyond_table.empty()) {
     words.push_back(beyond_table);
   }
   // Poles and coils by themselves have few samples; the refinement judges them with all others.
   if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
-    if (const auto effect = findSingleEffect(problem, estimate, options)) {
-      words.push_back(effect->sentence);
+    const EffectEvidence evidence = effectEvidence(problem, estimate, options);
+    if (evidence.found) {
+      words.push_back(evidence.found->sentence);
     } else {
       const std::vector<std::string> noise = noiseInWords(streamNoise(problem, estimate, options));
       words.insert(words.end(), noise.begin(), noise.end());
+    }
+    if (!evidence.untold.empty()) {
+      words.push_back(evidence.untold);
     }
   }
   return words;

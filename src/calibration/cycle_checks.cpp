@@ -268,6 +268,49 @@ std::vector<std::string> frequentOutliers(const Estimate& estimate) {
   return words;
 }
 
+/// Coils that lose half of their torques or more to outliers, which come by accident elsewhere: the
+/// few that are left fit wherever the coil then lies.
+std::vector<std::string> lostCoils(const EstimationProblem& problem,
+                                   const Estimate& estimate,
+                                   const EstimationOptions& options) {
+  constexpr double kChanceOfOne = 1e-3;
+  std::vector<Group> coils(problem.model->space().coils());
+  Group all;
+  for (const ObservationResidual& residual : estimate.residuals) {
+    if (residual.observation.quantity == Quantity::kOrientation) {
+      continue;
+    }
+    count(residual, all);
+    const Sample& sample = (*problem.samples)[residual.observation.sample];
+    for (const Excitation& excitation : excitedCoils(sample, options.current_threshold)) {
+      count(residual, coils[excitation.coil]);
+    }
+  }
+  std::vector<std::string> words;
+  for (std::size_t j = 0; j < coils.size(); ++j) {
+    const Group& coil = coils[j];
+    const std::size_t kept = coil.count - coil.rejected;
+    if (coil.rejected == 0 || kept == 0 || coil.rejected < kept) {
+      continue;
+    }
+    const double rate = static_cast<double>(all.rejected - coil.rejected + 1) /
+                        static_cast<double>(all.count - coil.count + 1);
+    const boost::math::binomial_distribution<double> accident(static_cast<double>(coil.count),
+                                                              std::min(1.0, rate));
+    // Of two that contradict each other nobody can tell which is wrong, whatever the rate.
+    if (kept == 1 || boost::math::cdf(boost::math::complement(
+                         accident, static_cast<double>(coil.rejected) - 1.0)) < kChanceOfOne) {
+      words.push_back(
+          format("%zu of %zu torques of coil %zu were left out as outliers, and the rest fits "
+                 "wherever it then lies: check its current and its strength, and measure it again.",
+                 coil.rejected,
+                 coil.count,
+                 numberOf(j)));
+    }
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string deviation(const ParameterSpace& space,
@@ -321,12 +364,16 @@ std::string contradiction(const EstimationProblem& problem,
   return {};
 }
 
-std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate& estimate) {
+std::vector<std::string> doubts(const EstimationProblem& problem,
+                                const Estimate& estimate,
+                                const EstimationOptions& options) {
   constexpr double kLarge = 2.25;
   constexpr double kSmall = 0.25;
   constexpr double kLeastFreedom = 30.0;
   constexpr double kExact = 1e-12;  // without noise nothing is told of it
   std::vector<std::string> words = frequentOutliers(estimate);
+  const std::vector<std::string> lost = lostCoils(problem, estimate, options);
+  words.insert(words.end(), lost.begin(), lost.end());
   const double chi_square = estimate.reduced_chi_square;
   if (estimate.covariance_scale > 1.0 && chi_square > kLarge) {
     words.push_back(

@@ -24,6 +24,8 @@ std::string deviation(const ParameterSpace& space,
                       const EstimationOptions& options);
 
 /// What keeps an estimate that is taken from being good, a sentence each.
-std::vector<std::string> doubts(const EstimationProblem& problem, const Estimate& estimate);
+std::vector<std::string> doubts(const EstimationProblem& problem,
+                                const Estimate& estimate,
+                                const EstimationOptions& options);
 
 }  // namespace sac

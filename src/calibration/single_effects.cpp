@@ -16,6 +16,7 @@
 #include "score_sums.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "untold_effect.hpp"
 
 namespace sac {
 namespace {
@@ -32,15 +33,21 @@ struct Score {
   Eigen::MatrixXd covariance;
 };
 
+/// Below which information is rounding, or tells nothing. `before`: of columns, before the
+/// coordinates made up for what they can.
+double leastInformation(const Eigen::VectorXd& before, double unobservable_stddev) {
+  constexpr double kLeastShare = 1e-5;  // less is left by rounding
+  return std::max(kLeastShare * before.maxCoeff(),
+                  1.0 / (unobservable_stddev * unobservable_stddev));
+}
+
 /// `information` and `gradient` of k columns after the coordinates were eliminated; `before`: their
 /// information without that.
 Score scoreOf(const Eigen::MatrixXd& information,
               const Eigen::VectorXd& gradient,
               const Eigen::VectorXd& before,
               double unobservable_stddev) {
-  constexpr double kLeastShare = 1e-5;  // less is left by rounding
-  const double least =
-      std::max(kLeastShare * before.maxCoeff(), 1.0 / (unobservable_stddev * unobservable_stddev));
+  const double least = leastInformation(before, unobservable_stddev);
   Score score;
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() == Eigen::Success) {
@@ -166,6 +173,9 @@ class Tests {
     return SingleEffect{best.name, sentence(best, probability), probability};
   }
 
+  /// The usual mistake that would do most without being told, among what strongest() tried.
+  std::string untold() const { return most_untold_ > kToldFrom ? untold_ : std::string(); }
+
  private:
   void tryEffects() {
     for (const EffectCandidate& candidate : effects_) {
@@ -184,11 +194,41 @@ class Tests {
       Finding finding{candidate.name, candidate.unit, candidate.advice, candidate.scales};
       finding.score = scoreAfter(halves, information, gradient);
       judge(finding);
+      if (candidate.first >= columns_.space().size()) {  // not modelled, so within no stated size
+        notePower({candidate,
+                   information - halves.transpose() * halves,
+                   leastInformation(information.diagonal(), options_.unobservable_stddev)},
+                  crossed);
+      }
       if (finding.score.freedom > 0) {
         finding.crossed = crossed * finding.score.value;
         findings_.push_back(std::move(finding));
       }
     }
+  }
+
+  void notePower(const TestedEffect& effect, const Eigen::MatrixXd& crossed) {
+    const std::optional<UntoldEffect> one = untoldEffect(effect);
+    if (!one) {
+      return;
+    }
+    const double shift = mostShift(elimination_.covarianceTimes(crossed * one->value));
+    if (shift <= most_untold_) {
+      return;
+    }
+    most_untold_ = shift;
+    const bool is_ratio = effect.candidate.unit == "1";
+    untold_ = format(
+        "%s of %.3g %s would not show in so few samples (%.1f standard deviations, told from %.0f "
+        "on), and shift parameters by up to %.0f of theirs: take %.1f times as many, or %s.",
+        effect.candidate.name.c_str(),
+        (is_ratio ? 1e2 : 1e3) * one->size,
+        is_ratio ? "%" : "mrad",
+        one->told,
+        kToldFrom,
+        shift,
+        std::pow(kToldFrom / one->told, 2),
+        effect.candidate.advice.c_str());
   }
 
   /// Of k columns once the coordinates have made up for what they can. `halves`: of the columns;
@@ -308,15 +348,21 @@ class Tests {
   CoordinateElimination elimination_;
   std::array<Stream, 3> streams_;
   std::vector<Finding> findings_;
+  std::string untold_;
+  double most_untold_ = 0.0;  ///< standard deviations by which it shifts a parameter
   std::size_t tests_ = 0;
 };
 
 }  // namespace
 
-std::optional<SingleEffect> findSingleEffect(const EstimationProblem& problem,
-                                             const Estimate& estimate,
-                                             const EstimationOptions& options) {
-  return Tests(problem, estimate, options).strongest();
+EffectEvidence effectEvidence(const EstimationProblem& problem,
+                              const Estimate& estimate,
+                              const EstimationOptions& options) {
+  Tests tests(problem, estimate, options);
+  EffectEvidence evidence;
+  evidence.found = tests.strongest();
+  evidence.untold = tests.untold();
+  return evidence;
 }
 
 }  // namespace sac

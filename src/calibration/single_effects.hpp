@@ -17,11 +17,19 @@ struct SingleEffect {
   double probability = 1.0;  ///< that chance alone shows anything as strong, whatever it is
 };
 
-/// The most significant one, by score tests: no fit is repeated. Nothing where all that is found
-/// may be chance, of which a sound session shows more in less than one of 3000 times.
+/// What score tests tell of an estimate: no fit is repeated.
+struct EffectEvidence {
+  /// The most significant one. Nothing where all that is found may be chance, of which a sound
+  /// session shows more in less than one of 3000 times.
+  std::optional<SingleEffect> found;
+  /// In a sentence: a usual mistake that too few samples would not have shown, though it shifts
+  /// parameters far beyond their intervals. Empty: none.
+  std::string untold;
+};
+
 /// Precondition: the estimate converged, and nothing contradicts it.
-std::optional<SingleEffect> findSingleEffect(const EstimationProblem& problem,
-                                             const Estimate& estimate,
-                                             const EstimationOptions& options);
+EffectEvidence effectEvidence(const EstimationProblem& problem,
+                              const Estimate& estimate,
+                              const EstimationOptions& options);
 
 }  // namespace sac

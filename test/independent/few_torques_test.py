@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Sound sessions in which a coil has a single torque, or two: what they leave open is told, nothing is called identified
-that is far off, and held-out samples do not contradict what they cannot judge. The seeds are those of 600 sessions where
-this went wrong once."""
+"""Sessions in which a coil has a single torque, or two: what they leave open is told, nothing is called identified that is
+far off, and held-out samples do not contradict what they cannot judge. And sessions of few poses: none is called good
+whose samples would not show a usual mistake. The seeds are those where this went wrong once."""
 
 import unittest
 
@@ -32,6 +32,22 @@ class FewTorques(unittest.TestCase):
 
     def test_a_bent_valley_without_a_second_minimum_is_told(self):
         self.assertLess(self.outcome(38)[1], 4.5)
+
+    def test_a_weak_coil_that_loses_all_torques_but_one_is_not_good(self):
+        for seed in (6, 16):
+            (reason,) = grade_study.study("coil_20", [seed]).reasons
+            self.assertIn("were left out as outliers, and the rest fits", reason)
+
+
+class FewPoses(unittest.TestCase):
+    def test_ten_poses_do_not_show_a_turned_torque_frame(self):
+        for seed in (0, 1):
+            (reason,) = grade_study.study("sound", [seed], 10, 12).reasons
+            self.assertIn("torque_registration of 1 mrad would not show in so few samples", reason)
+
+    def test_twenty_four_do(self):
+        result = grade_study.study("sound", range(3), 24, 9)
+        self.assertEqual(result.good(), 3, result.reasons)
 
 
 if __name__ == "__main__":
