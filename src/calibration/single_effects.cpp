@@ -16,6 +16,7 @@
 #include "score_sums.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 #include "untold_effect.hpp"
 
 namespace sac {
@@ -132,6 +133,20 @@ std::array<Stream, 3> streamsOf(const Estimate& estimate) {
   return streams;
 }
 
+/// Poses at which torques were measured.
+std::size_t torquePoses(const EstimationProblem& problem) {
+  std::size_t poses = 0;
+  const Sample* last = nullptr;
+  for (const Observation& observation : problem.observations) {
+    const Sample& sample = (*problem.samples)[observation.sample];
+    if (observation.quantity == Quantity::kTorque) {
+      poses += last == nullptr || !isSameDwell(*last, sample) ? 1U : 0U;
+      last = &sample;
+    }
+  }
+  return poses;
+}
+
 /// All score tests of one estimate.
 class Tests {
  public:
@@ -146,7 +161,8 @@ class Tests {
         steps_(stepCandidates(columns_)),
         sums_(scoreSums(problem, estimate, options, columns_, effects_, steps_)),
         elimination_(problem, estimate, options, sums_.all),
-        streams_(streamsOf(estimate)) {}
+        streams_(streamsOf(estimate)),
+        poses_(torquePoses(problem)) {}
 
   std::optional<SingleEffect> strongest() {
     tryEffects();
@@ -197,7 +213,8 @@ class Tests {
       if (candidate.first >= columns_.space().size()) {  // not modelled, so within no stated size
         notePower({candidate,
                    information - halves.transpose() * halves,
-                   leastInformation(information.diagonal(), options_.unobservable_stddev)},
+                   leastInformation(information.diagonal(), options_.unobservable_stddev),
+                   poses_},
                   crossed);
       }
       if (finding.score.freedom > 0) {
@@ -347,6 +364,7 @@ class Tests {
   ScoreSums sums_;
   CoordinateElimination elimination_;
   std::array<Stream, 3> streams_;
+  std::size_t poses_;
   std::vector<Finding> findings_;
   std::string untold_;
   double most_untold_ = 0.0;  ///< standard deviations by which it shifts a parameter

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
@@ -13,6 +14,7 @@ struct TestedEffect {
   const EffectCandidate& candidate;
   Eigen::MatrixXd information;  ///< of its columns, once the coordinates made up for what they can
   double least;                 ///< information below it is rounding
+  std::size_t poses;            ///< at which torques were measured
 };
 
 /// What of an effect a session would not have told: nothing says that it is not there.
