@@ -20,7 +20,7 @@ const Actuator& withTorqueModel(const Actuator& truth) {
 FreeRotor::FreeRotor(const Actuator& truth,
                      const RigidRotor& rotor,
                      double stop_tilt,
-                     const RotorFriction& friction)
+                     const BearingFriction& friction)
     : joints_(jointGeometry(withTorqueModel(truth))),
       torques_(torqueGeometry(truth)),
       curve_(*truth.torque_curve),

@@ -10,26 +10,26 @@ namespace sac {
 namespace {
 
 /// Friction torque per angular velocity [N·m·s].
-double damping(const RotorFriction& friction, const Eigen::Vector3d& w) {
+double damping(const BearingFriction& friction, const Eigen::Vector3d& w) {
   return friction.viscous + friction.coulomb / std::hypot(w.norm(), friction.transition);
 }
 
 }  // namespace
 
-void validate(const RotorFriction& friction) {
+void validate(const BearingFriction& friction) {
   requireInRange("viscous friction", friction.viscous, ValueRange::nonNegative("N m s"));
   requireInRange("coulomb friction", friction.coulomb, ValueRange::nonNegative("N m"));
   requireInRange("transition of friction", friction.transition, ValueRange::positive("rad/s"));
 }
 
-Eigen::Vector3d frictionTorque(const RotorFriction& friction,
+Eigen::Vector3d frictionTorque(const BearingFriction& friction,
                                const Eigen::Vector3d& angular_velocity) {
   return -damping(friction, angular_velocity) * angular_velocity;
 }
 
 // Implicit, so that friction never turns the rotor around; with the damping of the middle of the
 // step, so that it is good to second order.
-Eigen::Vector3d slowedBy(const RotorFriction& friction,
+Eigen::Vector3d slowedBy(const BearingFriction& friction,
                          const Eigen::Matrix3d& inertia,
                          const Eigen::Vector3d& angular_velocity,
                          double step) {

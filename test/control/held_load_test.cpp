@@ -36,7 +36,7 @@ class HeldLoadTest : public ::testing::Test {
   void start(const Actuator& truth,
              const Actuator& model,
              const Loop& loop = {},
-             const RotorFriction& friction = {}) {
+             const BearingFriction& friction = {}) {
     loop_ = loop;
     RigidRotor body;
     body.unbalance = exampleLoad();

@@ -42,7 +42,7 @@ class MotionFollowingTest : public ::testing::Test {
   void start(const Actuator& truth) {
     RigidRotor body;
     body.unbalance = Eigen::Vector3d(0.003, -0.004, 0.002);
-    rotor_.emplace(truth, body, 0.9, RotorFriction{1e-4, 5e-4, 0.05});
+    rotor_.emplace(truth, body, 0.9, BearingFriction{{1e-4, 5e-4}, 0.05});
     rotor_->release({0.1, 0.0, 0.3});
     controller_.emplace(scenarios::paperNominal(), options_);
     controller_->setParameters(scenarios::paperNominal());

@@ -15,8 +15,8 @@ Eigen::Vector3d moments() {
   return {0.7e-3, 0.8e-3, 1.3e-3};
 }
 
-TEST(RotorFriction, ViscousFrictionSlowsExponentially) {
-  const RotorFriction friction{2e-3, 0.0, 0.05};
+TEST(BearingFriction, ViscousFrictionSlowsExponentially) {
+  const BearingFriction friction{{2e-3, 0.0}, 0.05};
   const Eigen::Matrix3d inertia = moments().asDiagonal();
   const Eigen::Vector3d begin(1.0, -2.0, 0.5);
   Eigen::Vector3d w = begin;
@@ -28,8 +28,8 @@ TEST(RotorFriction, ViscousFrictionSlowsExponentially) {
   }
 }
 
-TEST(RotorFriction, DryFrictionBringsToRestAndNoFurther) {
-  const RotorFriction friction{0.0, 2e-3, 1e-3};
+TEST(BearingFriction, DryFrictionBringsToRestAndNoFurther) {
+  const BearingFriction friction{{0.0, 2e-3}, 1e-3};
   const Eigen::Matrix3d inertia = 1e-3 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d w(0.0, 0.0, 1.0);
   // 2 rad/s² less every second, until 0.5 s have passed.
@@ -47,14 +47,14 @@ TEST(RotorFriction, DryFrictionBringsToRestAndNoFurther) {
   EXPECT_GE(slowedBy({0.1, 0.0, 0.05}, inertia, begin, 0.1).z(), 0.0);
 }
 
-TEST(RotorFriction, IsTheTorqueOfItsEquation) {
-  const RotorFriction friction{1e-3, 2e-3, 0.3};
+TEST(BearingFriction, IsTheTorqueOfItsEquation) {
+  const BearingFriction friction{{1e-3, 2e-3}, 0.3};
   const Eigen::Vector3d w(0.0, 0.4, 0.0);
   EXPECT_NEAR(frictionTorque(friction, w).y(), -(1e-3 + 2e-3 / 0.5) * 0.4, 1e-15);
 }
 
-TEST(RotorFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
-  const auto speed_after_a_second = [](const RotorFriction& friction) {
+TEST(BearingFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
+  const auto speed_after_a_second = [](const BearingFriction& friction) {
     FreeRotor rotor(scenarios::paperNominal(), {}, 0.9, friction);
     rotor.release(Eigen::Vector3d::Zero());
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(24);
@@ -72,7 +72,7 @@ TEST(RotorFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
   EXPECT_NEAR(slowed, 0.02 / 1e-3 * (1.0 - std::exp(-0.1 * rate)) * std::exp(-0.9 * rate), 1e-5);
 }
 
-TEST(RotorFriction, APushDoesNotTurnWithTheRotor) {
+TEST(BearingFriction, APushDoesNotTurnWithTheRotor) {
   FreeRotor rotor(scenarios::paperNominal(), {}, 0.9);
   rotor.release({0.0, 0.0, 1.5707963});
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(24);
@@ -84,9 +84,9 @@ TEST(RotorFriction, APushDoesNotTurnWithTheRotor) {
   EXPECT_LT(std::abs(w_stator.y()), 0.01 * w_stator.x());
 }
 
-TEST(RotorFriction, NamesWhatCannotBe) {
-  EXPECT_THROW(validate(RotorFriction{-1e-3, 0.0, 0.05}), ConfigError);
-  EXPECT_THROW(validate(RotorFriction{0.0, 0.0, 0.0}), ConfigError);
+TEST(BearingFriction, NamesWhatCannotBe) {
+  EXPECT_THROW(validate(BearingFriction{{-1e-3, 0.0}, 0.05}), ConfigError);
+  EXPECT_THROW(validate(BearingFriction{{0.0, 0.0}, 0.0}), ConfigError);
 }
 
 }  // namespace

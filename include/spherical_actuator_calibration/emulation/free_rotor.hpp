@@ -20,7 +20,7 @@ class FreeRotor {
   FreeRotor(const Actuator& truth,
             const RigidRotor& rotor,
             double stop_tilt,
-            const RotorFriction& friction = {});
+            const BearingFriction& friction = {});
 
   /// Lets go of the rotor, at rest where the joint sensors read q [rad].
   void release(const Eigen::Vector3d& q);
@@ -41,7 +41,7 @@ class FreeRotor {
   TorqueCurve curve_;
   RigidRotor rotor_;
   double stop_tilt_;
-  RotorFriction friction_;
+  BearingFriction friction_;
   Eigen::Vector3d q_ = Eigen::Vector3d::Zero();
   RotorState state_;
   bool is_at_stop_ = false;

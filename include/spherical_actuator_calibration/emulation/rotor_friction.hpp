@@ -2,25 +2,25 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+
 namespace sac {
 
 /// Friction of a rotor in its bearing: T = −(b + c / √(‖ω‖² + v²)) ω.
-struct RotorFriction {
-  double viscous = 0.0;      ///< b [N·m·s]
-  double coulomb = 0.0;      ///< c [N·m]
+struct BearingFriction : RotorFriction {
   double transition = 0.05;  ///< v, below which dry friction fades [rad/s]
 };
 
 /// Throws ConfigError that names the key, its value and the allowed range.
-void validate(const RotorFriction& friction);
+void validate(const BearingFriction& friction);
 
 /// Torque at an angular velocity [rad/s], in the same frame [N·m].
-Eigen::Vector3d frictionTorque(const RotorFriction& friction,
+Eigen::Vector3d frictionTorque(const BearingFriction& friction,
                                const Eigen::Vector3d& angular_velocity);
 
 /// Angular velocity after `step` [s] in which friction alone acts on a body of this inertia
 /// [kg·m²]: to second order of the step, and never beyond rest, however long it is.
-Eigen::Vector3d slowedBy(const RotorFriction& friction,
+Eigen::Vector3d slowedBy(const BearingFriction& friction,
                          const Eigen::Matrix3d& inertia,
                          const Eigen::Vector3d& angular_velocity,
                          double step);

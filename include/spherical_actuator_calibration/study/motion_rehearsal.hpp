@@ -15,7 +15,7 @@ namespace sac {
 struct RehearsalOptions {
   OrientationControllerOptions controller;
   RigidRotor rotor;  ///< the true one
-  RotorFriction friction;
+  BearingFriction friction;
   double joint_rate = 200.0;    ///< of joint angles [Hz]
   double joint_noise = 2e-5;    ///< their standard deviation [rad]
   double current_rate = 200.0;  ///< of setpoints [Hz]

@@ -93,8 +93,8 @@ WrenchSensorOptions readForceTorqueSensor(const YamlMap& map) {
   return sensor;
 }
 
-RotorFriction readFriction(const YamlMap& map) {
-  RotorFriction friction;
+BearingFriction readFriction(const YamlMap& map) {
+  BearingFriction friction;
   friction.viscous = map.number("viscous", ValueRange::nonNegative("N m s"), friction.viscous);
   friction.coulomb = map.number("coulomb", ValueRange::nonNegative("N m"), friction.coulomb);
   friction.transition =
