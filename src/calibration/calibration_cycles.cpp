@@ -197,7 +197,8 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
     if (evidence.found) {
       words.push_back(evidence.found->sentence);
     } else {
-      const std::vector<std::string> noise = noiseInWords(streamNoise(problem, estimate, options));
+      const std::vector<std::string> noise =
+          noiseInWords(streamNoise(problem, estimate, options), problem.model->hasOrientationMap());
       words.insert(words.end(), noise.begin(), noise.end());
     }
     if (!evidence.untold.empty()) {

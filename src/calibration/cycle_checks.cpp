@@ -381,7 +381,9 @@ std::vector<std::string> doubts(const EstimationProblem& problem,
                "may bias the parameters.",
                std::sqrt(chi_square)));
   }
-  if (estimate.degrees_of_freedom > kLeastFreedom && chi_square < kSmall && chi_square > kExact) {
+  // An orientation map follows the samples that it is found from.
+  if (!problem.model->hasOrientationMap() && estimate.degrees_of_freedom > kLeastFreedom &&
+      chi_square < kSmall && chi_square > kExact) {
     words.push_back(
         format("Residuals are only %.2g times their stated uncertainty: the stated noise is too "
                "large, or samples are copies of each other.",

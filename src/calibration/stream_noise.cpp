@@ -177,7 +177,7 @@ std::vector<StreamNoise> streamNoise(const EstimationProblem& problem,
           of(has_joints ? "readings of the joints" : "orientations", sums.readings())};
 }
 
-std::vector<std::string> noiseInWords(const std::vector<StreamNoise>& streams) {
+std::vector<std::string> noiseInWords(const std::vector<StreamNoise>& streams, bool has_map) {
   constexpr double kChance = 1e-5;  // in each direction of each stream
   constexpr double kLarge = 1.15;   // of 95 % of the intervals 91 % would hold
   constexpr double kSmall = 0.5;
@@ -197,7 +197,7 @@ std::vector<std::string> noiseInWords(const std::vector<StreamNoise>& streams) {
                  stream.name.c_str(),
                  factor,
                  std::max(larger, 1e-300)));
-    } else if (factor < kSmall && factor > kExact && 1.0 - larger < kChance) {
+    } else if (!has_map && factor < kSmall && factor > kExact && 1.0 - larger < kChance) {
       words.push_back(
           format("The %s scatter by only %.2g times what their samples state: uncertainties are "
                  "too large, and errors may hide below the stated noise. State it as it is.",

@@ -25,6 +25,8 @@ std::vector<StreamNoise> streamNoise(const EstimationProblem& problem,
                                      const EstimationOptions& options);
 
 /// A sentence for each stream whose noise is notably another than stated, which is none of chance.
-std::vector<std::string> noiseInWords(const std::vector<StreamNoise>& streams);
+/// An orientation map follows the samples that it is found from: that little is left of them then
+/// tells nothing of their noise.
+std::vector<std::string> noiseInWords(const std::vector<StreamNoise>& streams, bool has_map);
 
 }  // namespace sac

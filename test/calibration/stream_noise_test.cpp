@@ -75,7 +75,7 @@ class StreamNoiseTest : public ::testing::Test {
 TEST_F(StreamNoiseTest, SharesOutMisfitAndFreedom) {
   const std::vector<StreamNoise> streams = this->streams();
   expectWhole(streams);
-  EXPECT_TRUE(noiseInWords(streams).empty());
+  EXPECT_TRUE(noiseInWords(streams, false).empty());
 }
 
 TEST_F(StreamNoiseTest, SharesThemOutWhereDwellsShareReadings) {
@@ -83,21 +83,21 @@ TEST_F(StreamNoiseTest, SharesThemOutWhereDwellsShareReadings) {
   const std::vector<StreamNoise> streams = this->streams();
   expectWhole(streams);
   EXPECT_GT(streams.at(2).freedom, 100.0);
-  EXPECT_TRUE(noiseInWords(streams).empty());
+  EXPECT_TRUE(noiseInWords(streams, false).empty());
 }
 
 TEST_F(StreamNoiseTest, NamesTheSensorThatScattersMore) {
   for (Sample& sample : samples_) {
     sample.torque_stddev /= 2.0;
   }
-  const std::vector<std::string> words = noiseInWords(streams());
+  const std::vector<std::string> words = noiseInWords(streams(), false);
   ASSERT_EQ(words.size(), 1U);
   EXPECT_EQ(words.front().rfind("The torques scatter by 2", 0), 0U) << words.front();
 }
 
 TEST_F(StreamNoiseTest, NamesReadingsThatScatterMore) {
   disturbReadings(2e-3, 1e-3);
-  const std::vector<std::string> words = noiseInWords(streams());
+  const std::vector<std::string> words = noiseInWords(streams(), false);
   ASSERT_FALSE(words.empty());
   EXPECT_TRUE(std::any_of(words.begin(), words.end(), [](const std::string& sentence) {
     return sentence.rfind("The readings of the joints scatter by ", 0) == 0;
@@ -108,9 +108,17 @@ TEST_F(StreamNoiseTest, NamesTheSensorThatScattersLess) {
   for (Sample& sample : samples_) {
     sample.orientation_stddev *= 3.0;
   }
-  const std::vector<std::string> words = noiseInWords(streams());
+  const std::vector<std::string> words = noiseInWords(streams(), false);
   ASSERT_EQ(words.size(), 1U);
   EXPECT_EQ(words.front().rfind("The orientations scatter by only 0.3", 0), 0U) << words.front();
+}
+
+TEST(StreamNoise, LittleBesideAMapTellsNothing) {
+  const std::vector<StreamNoise> little = {{"orientations", 10.0, 300.0}};
+  EXPECT_EQ(noiseInWords(little, false).size(), 1U);
+  EXPECT_TRUE(noiseInWords(little, true).empty());
+  const std::vector<StreamNoise> much = {{"orientations", 900.0, 300.0}};
+  EXPECT_EQ(noiseInWords(much, true).size(), 1U);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct LabEmulatorOptions {
   ManufacturingErrors errors;
   RotorLoad load;
   Eigen::Matrix3d inertia = RigidRotor{}.inertia;  ///< of rotor and load, rotor frame [kg·m²]
-  BearingFriction friction;                          ///< of a released rotor
+  BearingFriction friction;                        ///< of a released rotor
   StreamDelays delays;
   FixtureOptions fixture;
   double mechanical_stop = 0.9;  ///< of joints 1 and 2 of a released rotor [rad]
