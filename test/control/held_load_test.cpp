@@ -157,7 +157,7 @@ TEST_F(HeldLoadTest, StaysStableWhereReadingsAreLate) {
 }
 
 TEST_F(HeldLoadTest, DryFrictionMakesItNotHunt) {
-  start(wrongBy30mrad(2), scenarios::paperNominal(), {5, 5, 2e-3, 2e-5}, {1e-4, 1e-3, 0.05});
+  start(wrongBy30mrad(2), scenarios::paperNominal(), {5, 5, 2e-3, 2e-5}, {{1e-4, 1e-3}, 0.05});
   runFor(5.0);
   EXPECT_LT(largestErrorOver(3.0), kWanted);
   EXPECT_LT(largest_rate_, 3e-3);

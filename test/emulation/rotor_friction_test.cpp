@@ -44,7 +44,7 @@ TEST(BearingFriction, DryFrictionBringsToRestAndNoFurther) {
   EXPECT_LT(w.z(), 1e-3);
   // A step that is far too long is none beyond rest either.
   const Eigen::Vector3d begin(0.0, 0.0, 1.0);
-  EXPECT_GE(slowedBy({0.1, 0.0, 0.05}, inertia, begin, 0.1).z(), 0.0);
+  EXPECT_GE(slowedBy({{0.1, 0.0}, 0.05}, inertia, begin, 0.1).z(), 0.0);
 }
 
 TEST(BearingFriction, IsTheTorqueOfItsEquation) {
@@ -66,7 +66,7 @@ TEST(BearingFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {
   };
   // An impulse of 2 mN·m·s on 1.3 g·m².
   EXPECT_NEAR(speed_after_a_second({}), 2e-3 / 1.3e-3, 1e-6);
-  const double slowed = speed_after_a_second({1e-3, 0.0, 0.05});
+  const double slowed = speed_after_a_second({{1e-3, 0.0}, 0.05});
   // The equation's own solution.
   const double rate = 1e-3 / 1.3e-3;
   EXPECT_NEAR(slowed, 0.02 / 1e-3 * (1.0 - std::exp(-0.1 * rate)) * std::exp(-0.9 * rate), 1e-5);

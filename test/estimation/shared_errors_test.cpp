@@ -92,9 +92,9 @@ std::vector<Sample> dwellSamples(double own_error) {
 }
 
 SharedErrorModel grouped(const std::vector<Sample>& samples, const EstimationOptions& options) {
-  static const CalibrationModel kModel{ParameterSpace(scenarios::paperNominal())};
+  static const CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
   EstimationProblem problem;
-  problem.model = &kModel;
+  problem.model = &model;
   problem.samples = &samples;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     problem.observations.push_back({n, Quantity::kTorque});
