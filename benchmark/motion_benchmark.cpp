@@ -1,7 +1,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -27,29 +26,6 @@ MovingRotor movingUnit(double duration) {
   moving.current_delay = 3e-3;
   moving.tracker_delay = 5e-3;
   return moving;
-}
-
-/// Streams of 24 coils and of joints at 1 kHz and of a tracker at 250 Hz, with the noise of good
-/// sensors.
-MotionRecording noisyMotion(const MovingRotor& moving) {
-  MotionRecording recording = moving.record();
-  std::mt19937_64 generator(5);
-  std::normal_distribution<double> normal;
-  const auto noise = [&](double stddev) -> Eigen::Vector3d {
-    return stddev * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
-  };
-  for (MotionStreams& streams : recording.spans) {
-    for (Eigen::Vector3d& reading : streams.joints) {
-      reading += noise(2e-5);
-    }
-    for (Eigen::Index n = 0; n < streams.currents.size(); ++n) {
-      streams.currents.data()[n] += static_cast<float>(1e-3 * normal(generator));
-    }
-    for (Eigen::Quaterniond& orientation : streams.orientations) {
-      orientation = Eigen::Quaterniond(rotationExp(noise(5e-4))) * orientation;
-    }
-  }
-  return recording;
 }
 
 /// All windows of a recording, as they come.
@@ -79,7 +55,7 @@ std::vector<MotionSlice> slicesOf(const MotionRecording& recording) {
 /// after it, with its covariance. What looks at old windows now and then is part of it.
 void takeOneWindow(benchmark::State& state) {
   constexpr std::size_t kMinute = 240;
-  const std::vector<MotionSlice> slices = slicesOf(noisyMotion(movingUnit(15.0)));
+  const std::vector<MotionSlice> slices = slicesOf(noisy(movingUnit(15.0).record()));
   const CalibrationModel model(
       ParameterSpace(scenarios::paperNominal(), withMotionEffects(EffectSelection())));
   std::vector<Eigen::Index> free(static_cast<std::size_t>(model.space().size()));
@@ -104,7 +80,7 @@ void takeOneWindow(benchmark::State& state) {
 void calibrateMotion(benchmark::State& state) {
   const auto seconds = static_cast<double>(state.range(0));
   const MovingRotor moving = movingUnit(seconds);
-  const auto recording = std::make_shared<const MotionRecording>(noisyMotion(moving));
+  const auto recording = std::make_shared<const MotionRecording>(noisy(moving.record()));
   CalibrationConfig config;
   config.effects = withMotionEffects(config.effects);
   CycleReport report;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 
 #include <gtest/gtest.h>
 
@@ -39,27 +38,6 @@ MovingRotor madeRotor() {
   moving.rotor.inertia(0, 1) = moving.rotor.inertia(1, 0) = 2e-5;
   moving.rotor.unbalance = Eigen::Vector3d(1e-3, -5e-4, 2e-3);
   return moving;
-}
-
-/// With noise as of good sensors: without any, what the rotor does between samples is all misfit.
-MotionRecording noisy(MotionRecording recording) {
-  std::mt19937_64 generator(5);
-  std::normal_distribution<double> normal;
-  const auto noise = [&](double stddev) -> Eigen::Vector3d {
-    return stddev * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
-  };
-  for (MotionStreams& streams : recording.spans) {
-    for (Eigen::Vector3d& reading : streams.joints) {
-      reading += noise(2e-5);
-    }
-    for (Eigen::Index n = 0; n < streams.currents.size(); ++n) {
-      streams.currents.data()[n] += static_cast<float>(1e-3 * normal(generator));
-    }
-    for (Eigen::Quaterniond& orientation : streams.orientations) {
-      orientation = Eigen::Quaterniond(rotationExp(noise(5e-4))) * orientation;
-    }
-  }
-  return recording;
 }
 
 double valueOf(const CalibrationModel& model, const MotionEstimate& found, const char* name) {

@@ -50,7 +50,8 @@ auto original(Function function) {
     next = ::dlsym(RTLD_NEXT, here.dli_sname);
   }
   if (next == nullptr) {
-    std::fprintf(stderr, "roscpp is not as it was when this program was built.\n");
+    std::fprintf(stderr,
+                 "roscpp is not as it was when this program was built: build the package anew.\n");
     std::abort();
   }
   return reinterpret_cast<Original>(next);
@@ -66,7 +67,8 @@ bool isTooLong(const Buffer& buffer, std::size_t place, std::uint32_t longest, c
   ROS_ERROR_STREAM_THROTTLE(kWarningPeriod,
                             "A peer announces a " << what << " of " << length
                                                   << " bytes, and is not listened to any more: "
-                                                  << longest << " are the most.");
+                                                  << longest << " are the most. End the program "
+                                                  << "that sends it.");
   return true;
 }
 
