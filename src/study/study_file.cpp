@@ -1,6 +1,8 @@
 #include "spherical_actuator_calibration/study/study_file.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -60,13 +62,16 @@ void writeStage(YamlWriter& writer, const std::string& name, const StageSummary&
 GroupTallies readTallies(const YamlMap& trial, const std::string& key) {
   const std::vector<double> numbers =
       trial.numbers(key, ValueRange::nonNegative(), kNumbersPerGroup * kParameterGroups);
+  const auto count = [&](double number) {
+    if (number != std::floor(number) || number > std::numeric_limits<std::uint32_t>::max()) {
+      trial.fail(key, "has a count that is none: a whole number below 2^32 is needed.");
+    }
+    return static_cast<std::uint32_t>(number);
+  };
   GroupTallies tallies;
   for (std::size_t g = 0; g < kParameterGroups; ++g) {
     const double* group = &numbers[kNumbersPerGroup * g];
-    tallies[g] = {static_cast<std::uint32_t>(group[0]),
-                  static_cast<std::uint32_t>(group[1]),
-                  group[2],
-                  group[3]};
+    tallies[g] = {count(group[0]), count(group[1]), group[2], group[3]};
   }
   return tallies;
 }
@@ -113,7 +118,7 @@ std::string renderStudy(const StudyRecord& study) {
 }
 
 StudyRecord loadStudy(const std::string& path) {
-  const YamlMap file = YamlMap::parse(readInputFile(path, kLargestConfiguration), path);
+  const YamlMap file = YamlMap::parse(readInputFile(path), path);
   const YamlMap map = file.map("study");
   StudyRecord study;
   for (const YamlMap& setting : map.maps("settings")) {

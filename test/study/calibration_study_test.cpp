@@ -62,6 +62,30 @@ TEST(CalibrationStudy, ShardsMergeToTheWholeToTheLastBit) {
   EXPECT_EQ(renderStudy(mergeStudies(loaded, names)), renderStudy(whole));
 }
 
+TEST(CalibrationStudy, ThousandsOfTrialsAreReadAgain) {
+  StudyRecord many{{}, 1, 5000, {}};
+  many.trials.resize(5000);
+  const std::string text = renderStudy(many);
+  EXPECT_GT(text.size(), std::size_t{1} << 20U);
+  const TemporaryFolder folder;
+  EXPECT_EQ(loadStudy(folder.write("study.yaml", text)).trials.size(), 5000U);
+}
+
+TEST(CalibrationStudy, NamesACountThatIsNone) {
+  StudyRecord study{{}, 1, 1, {}};
+  study.trials.resize(1);
+  const TemporaryFolder folder;
+  for (const char* count : {"1e119", "0.5"}) {
+    std::string text = renderStudy(study);
+    const std::string begin = "sequence: [";
+    text.replace(text.find(begin) + begin.size(), 1, count);
+    const std::string path = folder.write("study.yaml", text);
+    const std::string message = errorMessage<ConfigError>([&] { loadStudy(path); });
+    EXPECT_NE(message.find("trials[0].sequence"), std::string::npos) << message;
+    EXPECT_NE(message.find("a whole number below 2^32"), std::string::npos) << message;
+  }
+}
+
 TEST(CalibrationStudy, NamesWhatDoesNotFitInAMerge) {
   const std::vector<StudyRecord> parts = shards(paperStudy(), 2);
   const auto message = [](const std::vector<StudyRecord>& given) {
