@@ -122,13 +122,9 @@ void EffectsAt::subtractStrengthColumns(std::size_t pole,
                                         std::size_t coil,
                                         const Eigen::Vector3d& torque,
                                         ResidualJacobian& jacobian) const {
-  for (const PlacedEffect* const placed : on_strength_) {
-    const Eigen::Index n = placed->effect->strengthCoordinate(pole, coil);
-    if (n >= 0) {
-      const double factor = placed->effect->scale() / (1.0 + values_[placed->first + n]);
-      jacobian.col(space_.effect() + placed->first + n) -= factor * torque;
-    }
-  }
+  forEachStrength(pole, coil, [&](Eigen::Index coordinate, double factor) {
+    jacobian.col(coordinate) -= factor * torque;
+  });
 }
 
 void EffectsAt::addPairColumns(const Eigen::Vector3d& pole_rotor,

@@ -49,6 +49,18 @@ class EffectsAt {
 
   /// Factor on the torque of a pair.
   double strength(std::size_t pole, std::size_t coil) const;
+  /// visit(coordinate of the space, factor) for each coordinate on which that factor depends: a
+  /// pair that exerts T has ∂T/∂coordinate = factor T.
+  template <typename Visit>
+  void forEachStrength(std::size_t pole, std::size_t coil, const Visit& visit) const {
+    for (const PlacedEffect* const placed : on_strength_) {
+      const Eigen::Index n = placed->effect->strengthCoordinate(pole, coil);
+      if (n >= 0) {
+        visit(space_.effect() + placed->first + n,
+              placed->effect->scale() / (1.0 + values_[placed->first + n]));
+      }
+    }
+  }
   /// Takes ∂T/∂values of that factor off a Jacobian, for a pair that exerts `torque` [N·m].
   void subtractStrengthColumns(std::size_t pole,
                                std::size_t coil,

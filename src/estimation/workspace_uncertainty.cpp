@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <boost/container/small_vector.hpp>
 
 #include "axis_point.hpp"
+#include "effects_at.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -60,19 +62,34 @@ class ExpectedError {
   boost::container::small_vector<Column, 32> columns_;
 };
 
-/// Expected errors at single poses. The joint coordinates are condensed into the rotation error ξ
-/// that they imply at the pose, since the torque depends on them through it alone; the
-/// covariance then is that of (ξ, poles, coils).
+/// Of a belief what belongs to the machine: errors of the laboratory turn no rotor.
+ParameterBelief ofMachine(const ParameterSpace& space, ParameterBelief belief) {
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kActuator) {
+      const Eigen::Index first = space.effect() + placed.first;
+      belief.x.segment(first, placed.size()).setZero();
+      belief.covariance.middleRows(first, placed.size()).setZero();
+      belief.covariance.middleCols(first, placed.size()).setZero();
+    }
+  }
+  return belief;
+}
+
+/// Expected errors at single poses. What turns the rotor, joints and errors of their readings, is
+/// condensed into the rotation error ξ at the pose, since the torque depends on it through that
+/// alone; the covariance then is that of (ξ, poles, coils, effects).
 class PoseUncertainty {
  public:
   PoseUncertainty(const CalibrationModel& model, const ParameterBelief& belief)
       : model_(model),
-        belief_(belief),
-        point_(model, belief.x),
+        belief_(ofMachine(model.space(), belief)),
+        point_(model, belief_.x),
+        effects_(model.space(), belief_.x),
+        changed_curve_(model.hasTorqueModel() ? effects_.changedCurve() : std::nullopt),
         moved_covariance_(moved(space().size()), moved(space().size())) {
-    const Eigen::Index axes = space().size() - space().pole(0);
-    moved_covariance_.bottomRightCorner(axes, axes) =
-        belief.covariance.bottomRightCorner(axes, axes);
+    const Eigen::Index others = space().size() - space().pole(0);
+    moved_covariance_.bottomRightCorner(others, others) =
+        belief_.covariance.bottomRightCorner(others, others);
     for (std::size_t i = 0; i < space().poles(); ++i) {
       poles_.push_back(axisPoint(space().poleChart(i), belief.x.data() + space().pole(i)));
     }
@@ -83,27 +100,32 @@ class PoseUncertainty {
 
   /// Goes to a pose, R_stator_rotor where the model puts it; returns the orientation error [rad].
   double moveTo(const Sample& pose) {
-    const Eigen::Index joints = space().pole(0);
-    const Eigen::Index axes = space().size() - joints;
     R_rotor_stator_ = pose.R_stator_rotor.transpose();
-    if (joints == 0) {
+    if (space().joints() == 0) {
       moved_covariance_.topRows<3>().setZero();
       moved_covariance_.leftCols<3>().setZero();
       return 0.0;
     }
     // Measured where the model puts it, so that the residual's Jacobian is minus that of ξ.
     point_.orientationResidual(pose, &jacobian_);
-    const Eigen::Matrix<double, 3, 9> J = jacobian_.leftCols<9>();
-    const Eigen::Matrix3Xd with_all = -J * belief_.covariance.topRows(joints);
-    Eigen::Matrix3d own = -with_all.leftCols(joints) * J.transpose();
+    Eigen::Matrix3Xd with_all = Eigen::Matrix3Xd::Zero(3, space().size());
+    const std::vector<Eigen::Index> turning = turningColumns();
+    for (const Eigen::Index p : turning) {
+      with_all -= jacobian_.col(p) * belief_.covariance.row(p);
+    }
+    Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+    for (const Eigen::Index p : turning) {
+      own -= with_all.col(p) * jacobian_.col(p).transpose();
+    }
     if (model_.hasOrientationMap()) {
       const OrientationMap::Uncertainty map =
           space().nominal().orientation_map->uncertainty(pose.joint_position);
       own.diagonal() += map.variance + map.noise;
     }
+    const Eigen::Index others = space().size() - space().pole(0);
     moved_covariance_.topLeftCorner<3, 3>() = own;
-    moved_covariance_.topRightCorner(3, axes) = with_all.rightCols(axes);
-    moved_covariance_.bottomLeftCorner(axes, 3) = with_all.rightCols(axes).transpose();
+    moved_covariance_.topRightCorner(3, others) = with_all.rightCols(others);
+    moved_covariance_.bottomLeftCorner(others, 3) = with_all.rightCols(others).transpose();
     return std::sqrt(std::max(0.0, own.trace()));
   }
 
@@ -119,17 +141,28 @@ class PoseUncertainty {
     const double coil_gain = space().nominal().coils[coil].gain;
     ExpectedError error;
     Eigen::Matrix3d d_coil = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3Xd d_curve = Eigen::Matrix3Xd::Zero(3, effects_.onCurve().size());
     for (std::size_t i = 0; i < poles_.size(); ++i) {
-      if (!interacts(model_.curve(), poles_[i].axis, coil_rotor)) {
+      if (!interacts(curve(), poles_[i].axis, coil_rotor)) {
         continue;
       }
       const PoleAxis& pole = space().nominal().poles[i];
-      const double weight = coil_gain * pole.polarity * pole.gain;
-      const PairTorque pair = linearizePairTorque(model_.curve(), poles_[i].axis, coil_rotor);
+      const double weight = coil_gain * pole.polarity * pole.gain * effects_.strength(i, coil);
+      const PairTorque pair = linearizePairTorque(curve(), poles_[i].axis, coil_rotor);
       d_coil += weight * pair.d_coil;
       const Eigen::Matrix<double, 3, 2> d_pole = weight * pair.d_pole * poles_[i].d_axis;
       error.add(d_pole.col(0), moved(space().pole(i)));
       error.add(d_pole.col(1), moved(space().pole(i)) + 1);
+      effects_.forEachStrength(i, coil, [&](Eigen::Index coordinate, double factor) {
+        error.add(factor * weight * pair.torque, moved(coordinate));
+      });
+      effects_.addPairColumns(poles_[i].axis, coil_rotor, weight, d_curve);
+    }
+    for (const ActingEffects::Part& part : effects_.onCurve().parts) {
+      for (Eigen::Index n = 0; n < part.placed->size(); ++n) {
+        error.add(part.placed->effect->scale() * d_curve.col(part.first + n),
+                  moved(space().effect() + part.placed->first + n));
+      }
     }
     // s = Rᵀ s⁰, so ∂s/∂ξ = Rᵀ ŝ⁰.
     const Eigen::Matrix3d d_stator = d_coil * R_rotor_stator_;
@@ -145,12 +178,29 @@ class PoseUncertainty {
 
  private:
   const ParameterSpace& space() const { return model_.space(); }
-  /// Place of a pole or coil coordinate behind the three of ξ.
+  const TorqueCurve& curve() const { return changed_curve_ ? *changed_curve_ : model_.curve(); }
+  /// Coordinates that an orientation depends on.
+  std::vector<Eigen::Index> turningColumns() const {
+    std::vector<Eigen::Index> columns;
+    const auto take = [&](Eigen::Index first, Eigen::Index last) {
+      for (Eigen::Index p = first; p < last; ++p) {
+        if (!jacobian_.col(p).isZero(0.0)) {
+          columns.push_back(p);
+        }
+      }
+    };
+    take(0, space().pole(0));
+    take(space().effect(), space().size());
+    return columns;
+  }
+  /// Place of a coordinate that is none of a joint behind the three of ξ.
   Eigen::Index moved(Eigen::Index parameter) const { return parameter - space().pole(0) + 3; }
 
   const CalibrationModel& model_;
-  const ParameterBelief& belief_;
+  const ParameterBelief belief_;
   ModelPoint point_;
+  EffectsAt effects_;
+  std::optional<TorqueCurve> changed_curve_;
   std::vector<AxisPoint> poles_;
   std::vector<AxisPoint> coils_;
   ResidualJacobian jacobian_;

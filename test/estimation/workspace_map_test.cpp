@@ -1,7 +1,13 @@
 #include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 #include "support/scenarios.hpp"
 
@@ -65,6 +71,86 @@ TEST(WorkspaceMap, NoTorqueWithoutTorqueModel) {
   belief.x = Eigen::VectorXd::Zero(9);
   belief.covariance = Eigen::MatrixXd::Identity(9, 9) * 1e-6;
   EXPECT_EQ(workspaceMap(model, belief, 3, 2).torque.size(), 0);
+}
+
+/// An actuator as it moves and pulls, by its description alone.
+struct Machine {
+  Machine(const Actuator& actuator, const Eigen::Vector3d& reading)
+      : R_stator_rotor(rotorOrientation(jointGeometry(actuator), reading)),
+        torque_per_ampere(torquePerAmpere(
+            TorqueCurve(*actuator.torque_curve), torqueGeometry(actuator), R_stator_rotor)) {}
+
+  Eigen::Matrix3d R_stator_rotor;
+  Eigen::Matrix3Xd torque_per_ampere;
+};
+
+/// Trace of the covariance of orientation and of torque per ampere, by differences of descriptions
+/// whose coordinates differ by the columns of a root of their covariance.
+struct ExpectedSquares {
+  double orientation = 0.0;
+  Eigen::VectorXd torque;  ///< per coil
+};
+
+ExpectedSquares expectedSquares(const ParameterSpace& space,
+                                const Eigen::VectorXd& x,
+                                const Eigen::MatrixXd& root,
+                                const Eigen::Vector3d& reading) {
+  ExpectedSquares squares{0.0, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.coils()))};
+  for (Eigen::Index k = 0; k < root.cols(); ++k) {
+    const Machine after(space.actuatorAt(x + root.col(k)), reading);
+    const Machine before(space.actuatorAt(x - root.col(k)), reading);
+    const Eigen::Matrix3d apart = after.R_stator_rotor * before.R_stator_rotor.transpose();
+    squares.orientation += std::pow(0.5 * Eigen::AngleAxisd(apart).angle(), 2);
+    squares.torque += (0.5 * (after.torque_per_ampere - before.torque_per_ampere))
+                          .colwise()
+                          .squaredNorm()
+                          .transpose();
+  }
+  return squares;
+}
+
+/// What was identified beside the axes belongs to the machine, and is as uncertain; what belongs to
+/// the laboratory does not.
+TEST(WorkspaceMap, CountsTheEffectsThatBelongToTheMachine) {
+  constexpr double kSize = 0.02;
+  constexpr double kStddev = 1e-7;
+  constexpr int kSpins = 3;
+  EffectSelection effects;
+  for (const char* const effect : {"coil_gains",
+                                   "pole_gains",
+                                   "encoder_harmonics",
+                                   "tilt_cross_axis",
+                                   "torque_curve",
+                                   "torque_bias",
+                                   "marker_registration",
+                                   "tracker_registration"}) {
+    effects[effect] = true;
+  }
+  const CalibrationModel model{ParameterSpace(scenarios::paperNominal(), effects)};
+  const ParameterSpace& space = model.space();
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  ParameterBelief belief;
+  belief.x = kSize * Eigen::VectorXd::NullaryExpr(space.size(), [&] { return normal(generator); });
+  Eigen::MatrixXd root = kStddev * Eigen::MatrixXd::NullaryExpr(space.size(), space.size(), [&] {
+                           return normal(generator);
+                         });
+  belief.covariance = root * root.transpose();
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    if (placed.belongs_to != LaboratoryEffect::BelongsTo::kActuator) {
+      root.middleRows(space.effect() + placed.first, placed.size()).setZero();
+    }
+  }
+  const WorkspaceMap map = workspaceMap(model, belief, 2, kSpins);
+  ExpectedSquares sum{0.0, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.coils()))};
+  for (int s = 0; s < kSpins; ++s) {
+    const Eigen::Vector3d reading(map.tilt[1], map.tilt[0], kPi * (2.0 * s / kSpins - 1.0));
+    const ExpectedSquares at = expectedSquares(space, belief.x, root, reading);
+    sum.orientation += at.orientation / kSpins;
+    sum.torque += at.torque / kSpins;
+  }
+  EXPECT_NEAR(map.orientation(1, 0) / std::sqrt(sum.orientation), 1.0, 1e-6);
+  EXPECT_NEAR(map.torque(1, 0) / std::sqrt(sum.torque.mean()), 1.0, 1e-5);
 }
 
 }  // namespace
