@@ -4,10 +4,12 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "support/resident_memory.hpp"
 
 namespace sac::benchmarks {
@@ -78,19 +80,38 @@ void refineManyCoils(benchmark::State& state) {
   runWholeCycle(state, manyCoilsScenario(static_cast<std::size_t>(state.range(0)), kSamples));
 }
 
-/// What the status of a session tells after a capture, where the poles come next.
+/// What the status of a session tells after a capture: what is counted, the next step, that of a
+/// plan with a pose for every six samples, and whether torque is proportional to current.
 void statusManyCoils(benchmark::State& state) {
   constexpr std::size_t kSamples = 4000;
+  constexpr std::size_t kSamplesPerPose = 6;
   const CycleScenario scenario =
       manyCoilsScenario(static_cast<std::size_t>(state.range(0)), kSamples);
   const ParameterSpace& space = scenario.model.space();
+  const EstimationOptions options;
   CalibrationState reached = scenario.state;
   std::fill_n(reached.identified.begin(), space.pole(0), true);
-  ProgressCounter counter(scenario.model, reached, EstimationOptions());
-  counter.add(scenario.samples);
+  std::vector<PlannedPose> poses;
+  for (std::size_t n = 0; n < scenario.samples.size(); n += kSamplesPerPose) {
+    poses.push_back({scenario.samples[n].joint_position, {}, {}});
+  }
+  ProgressCounter counter(scenario.model, reached, options);
+  LinearitySearch linearity(options);
+  PlanProgress plan(poses, options.current_threshold);
+  const auto add = [&](const Sample& sample) {
+    counter.add(sample);
+    linearity.add(sample);
+    plan.add(sample);
+  };
+  std::for_each(scenario.samples.begin(), scenario.samples.end(), add);
+  std::size_t next = 0;
   for (auto _ : state) {
-    counter.add(scenario.samples.back());
-    benchmark::DoNotOptimize(nextStep(scenario.model, counter.progress()));
+    add(scenario.samples[next]);
+    next = (next + 1) % scenario.samples.size();
+    SessionProgress progress = counter.progress();
+    progress.plan_step = plan.nextStep();
+    benchmark::DoNotOptimize(nextStep(scenario.model, progress));
+    benchmark::DoNotOptimize(describe(linearity.best()));
   }
 }
 

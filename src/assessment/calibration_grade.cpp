@@ -21,11 +21,14 @@ std::string number(std::size_t value) {
 class Examiner {
  public:
   explicit Examiner(const CalibrationSession& session)
-      : session_(session), parameters_(session.parameters()), validation_(session.validation()) {
+      : session_(session), parameters_(session.parameters()) {
     identified_ = static_cast<std::size_t>(
         std::count_if(parameters_.begin(), parameters_.end(), [](const ParameterEstimate& one) {
           return one.observable;
         }));
+    if (identified_ > 0) {  // else there is nothing to judge
+      validation_ = session.validation();
+    }
     for (const CycleReport& report : session.reports()) {
       last_success_ = report.success ? &report : last_success_;
       // Mended: a refinement, for instance, takes all samples.
@@ -257,7 +260,7 @@ class Examiner {
 
   const CalibrationSession& session_;
   const std::vector<ParameterEstimate> parameters_;
-  const std::optional<HeldOutValidation> validation_;
+  std::optional<HeldOutValidation> validation_;
   std::size_t identified_ = 0;
   const CycleReport* last_success_ = nullptr;
   const CycleReport* refused_ = nullptr;

@@ -37,7 +37,7 @@ enum class Law { kProportional, kBent };
 /// Torques of one coil at one rest, and those without any current that were not taken off.
 struct CoilAtRest {
   std::size_t coil = 0;
-  std::vector<const Sample*> samples;
+  std::vector<std::size_t> places;  ///< in the rest
 };
 
 double currentOf(const Sample& sample, std::size_t coil) {
@@ -53,27 +53,26 @@ std::optional<std::size_t> onlyCoil(const Sample& sample, double threshold) {
   return excited.empty() ? static_cast<std::size_t>(sample.current.size()) : excited.front().coil;
 }
 
-/// Adds the coils of a rest that have enough torques.
-void collectCoils(const std::vector<const Sample*>& rest,
-                  double threshold,
-                  std::vector<CoilAtRest>& found) {
+/// The coils of a rest that have enough torques.
+std::vector<CoilAtRest> coilsAtRest(const std::vector<Sample>& rest, double threshold) {
   if (rest.size() < kFewestSamples) {
-    return;
+    return {};
   }
-  const auto coils = static_cast<std::size_t>(rest.front()->current.size());
-  std::vector<std::vector<const Sample*>> of_coil(coils + 1);
-  for (const Sample* sample : rest) {
-    if (const std::optional<std::size_t> coil = onlyCoil(*sample, threshold)) {
-      of_coil[*coil].push_back(sample);
+  const auto coils = static_cast<std::size_t>(rest.front().current.size());
+  std::vector<std::vector<std::size_t>> of_coil(coils + 1);
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    if (const std::optional<std::size_t> coil = onlyCoil(rest[n], threshold)) {
+      of_coil[*coil].push_back(n);
     }
   }
-  const std::vector<const Sample*>& without = of_coil.back();
+  std::vector<CoilAtRest> found;
+  const std::vector<std::size_t>& without = of_coil.back();
   for (std::size_t coil = 0; coil < coils; ++coil) {
-    std::vector<const Sample*>& excited = of_coil[coil];
+    std::vector<std::size_t>& excited = of_coil[coil];
     // One without current still has what was taken off the others.
-    const auto is_whole = [](const Sample* sample) { return sample->torque_shared_stddev == 0.0; };
+    const auto is_whole = [&](std::size_t n) { return rest[n].torque_shared_stddev == 0.0; };
     const auto whole = std::stable_partition(
-        excited.begin(), excited.end(), [&](const Sample* sample) { return !is_whole(sample); });
+        excited.begin(), excited.end(), [&](std::size_t n) { return !is_whole(n); });
     if (whole == excited.begin() && !excited.empty()) {
       excited.insert(excited.end(), without.begin(), without.end());
     } else {
@@ -83,32 +82,20 @@ void collectCoils(const std::vector<const Sample*>& rest,
       found.push_back({coil, excited});
     }
   }
-}
-
-std::vector<CoilAtRest> coilsAtRest(const std::vector<Sample>& samples, double threshold) {
-  std::vector<CoilAtRest> found;
-  std::vector<const Sample*> rest;
-  for (const Sample& sample : samples) {
-    if (!rest.empty() && !isSameDwell(*rest.front(), sample)) {
-      collectCoils(rest, threshold, found);
-      rest.clear();
-    }
-    if (sample.has_torque) {
-      rest.push_back(&sample);
-    }
-  }
-  collectCoils(rest, threshold, found);
   return found;
 }
 
 /// Weighted fit of the law to the torques of one coil at one rest.
 class LinearityFit {
  public:
-  LinearityFit(const CoilAtRest& at, const CalibrationConfig& config)
-      : at_(at), default_torque_stddev_(config.estimation.default_torque_stddev) {
+  LinearityFit(const std::vector<Sample>& rest, const CoilAtRest& at, double default_torque_stddev)
+      : coil_(at.coil), default_torque_stddev_(default_torque_stddev) {
+    for (const std::size_t place : at.places) {
+      samples_.push_back(&rest[place]);
+    }
     double largest_torque = default_torque_stddev_;
-    for (const Sample* sample : at.samples) {
-      full_ = std::max(full_, std::abs(currentOf(*sample, at.coil)));
+    for (const Sample* sample : samples_) {
+      full_ = std::max(full_, std::abs(currentOf(*sample, coil_)));
       largest_torque = std::max(largest_torque, sample->torque.norm());
       shared_stddev_ = std::max(shared_stddev_, sample->torque_shared_stddev);
     }
@@ -128,11 +115,11 @@ class LinearityFit {
       return std::nullopt;
     }
     TorqueLinearity found;
-    found.coil = at_.coil;
+    found.coil = coil_;
     found.full_current = full_;
-    for (const Sample* sample : at_.samples) {
+    for (const Sample* sample : samples_) {
       found.samples.push_back(sample->id);
-      found.currents.push_back(currentOf(*sample, at_.coil));
+      found.currents.push_back(currentOf(*sample, coil_));
     }
     const bool tells_asymmetry = stddevs[kAsymmetry] <= kMostUncertain;
     found.chi_square = proportional;
@@ -154,7 +141,7 @@ class LinearityFit {
 
   /// Of proportionality.
   int freedom() const {
-    const int values = 3 * static_cast<int>(at_.samples.size());
+    const int values = 3 * static_cast<int>(samples_.size());
     return values - (isZeroTakenOff() ? 3 : 6);
   }
 
@@ -178,7 +165,7 @@ class LinearityFit {
     return b_.squaredNorm();
   }
 
-  Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(at_.samples.size()); }
+  Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(samples_.size()); }
 
   /// Whitened derivatives A and residuals b at x, with what is known beforehand as rows below.
   void linearise() {
@@ -186,8 +173,8 @@ class LinearityFit {
     b_.setZero(A_.rows());
     const Eigen::Vector3d g = x_.head<3>();
     for (Eigen::Index n = 0; n < rows() / 3; ++n) {
-      const Sample& sample = *at_.samples[static_cast<std::size_t>(n)];
-      const double share = currentOf(sample, at_.coil) / full_;
+      const Sample& sample = *samples_[static_cast<std::size_t>(n)];
+      const double share = currentOf(sample, coil_) / full_;
       const double bent = 1.0 + x_[kDeviation] * std::abs(share) + x_[kAsymmetry] * share;
       Eigen::Matrix<double, 3, kUnknowns> J;
       J.leftCols<3>() = share * bent * Eigen::Matrix3d::Identity();
@@ -217,7 +204,8 @@ class LinearityFit {
     return own * Eigen::Matrix3d::Identity() + relative * relative * g * g.transpose();
   }
 
-  const CoilAtRest& at_;
+  const std::size_t coil_;
+  std::vector<const Sample*> samples_;
   const double default_torque_stddev_;
   double full_ = 0.0;
   double shared_stddev_ = 0.0;
@@ -240,16 +228,58 @@ bool TorqueLinearity::isProportional() const {
   return probability >= kLeastProbability;
 }
 
-std::optional<TorqueLinearity> torqueLinearity(const std::vector<Sample>& samples,
-                                               const CalibrationConfig& config) {
-  std::optional<TorqueLinearity> best;
-  for (const CoilAtRest& at : coilsAtRest(samples, config.estimation.current_threshold)) {
-    std::optional<TorqueLinearity> found = LinearityFit(at, config).result();
-    if (found && (!best || found->deviation.stddev < best->deviation.stddev)) {
-      best = std::move(found);
-    }
+LinearitySearch::LinearitySearch(const EstimationOptions& options)
+    : current_threshold_(options.current_threshold),
+      default_torque_stddev_(options.default_torque_stddev) {}
+
+void LinearitySearch::add(const Sample& sample) {
+  if (!rest_.empty() && !isSameDwell(rest_.front(), sample)) {
+    best_ = best();
+    rest_.clear();
+    of_coil_.clear();
+  }
+  if (sample.has_torque) {
+    rest_.push_back(sample);
+  }
+}
+
+std::optional<TorqueLinearity> LinearitySearch::best() {
+  fitRest();
+  std::optional<TorqueLinearity> best = best_;
+  for (const auto& [coil, found] : of_coil_) {
+    keepBetter(found.linearity, best);
   }
   return best;
+}
+
+/// Fits again what the samples since have changed.
+void LinearitySearch::fitRest() {
+  std::map<std::size_t, Found> before = std::move(of_coil_);
+  of_coil_.clear();
+  for (CoilAtRest& at : coilsAtRest(rest_, current_threshold_)) {
+    Found& found = of_coil_[at.coil];
+    found = std::move(before[at.coil]);
+    if (found.places != at.places) {
+      found.linearity = LinearityFit(rest_, at, default_torque_stddev_).result();
+      found.places = std::move(at.places);
+    }
+  }
+}
+
+void LinearitySearch::keepBetter(const std::optional<TorqueLinearity>& found,
+                                 std::optional<TorqueLinearity>& best) {
+  if (found && (!best || found->deviation.stddev < best->deviation.stddev)) {
+    best = found;
+  }
+}
+
+std::optional<TorqueLinearity> torqueLinearity(const std::vector<Sample>& samples,
+                                               const CalibrationConfig& config) {
+  LinearitySearch search(config.estimation);
+  for (const Sample& sample : samples) {
+    search.add(sample);
+  }
+  return search.best();
 }
 
 std::string describe(const std::optional<TorqueLinearity>& linearity) {

@@ -1,7 +1,8 @@
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 
+#include <vector>
+
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace sac {
 
@@ -9,13 +10,21 @@ double jointChiSquare(const Eigen::MatrixXd& information,
                       const Eigen::VectorXd& gradient,
                       double squared_misfit,
                       const Eigen::MatrixXd& covariance) {
-  // P = L Lᵀ, whatever its rank.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(covariance);
-  const Eigen::MatrixXd root =
-      spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  Eigen::MatrixXd inner = root.transpose() * information * root;
+  // Coordinates that no residual depends on have no part in it: of 400 coils few are held out.
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index p = 0; p < information.rows(); ++p) {
+    if (information(p, p) != 0.0) {
+      used.push_back(p);
+    }
+  }
+  // P = R Rᵀ, whatever its rank.
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance(used, used));
+  const Eigen::MatrixXd lower = factor.matrixL();
+  const Eigen::VectorXd scale = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd root = factor.transpositionsP().transpose() * (lower * scale.asDiagonal());
+  Eigen::MatrixXd inner = root.transpose() * information(used, used) * root;
   inner.diagonal().array() += 1.0;
-  const Eigen::VectorXd projected = root.transpose() * gradient;
+  const Eigen::VectorXd projected = root.transpose() * gradient(used);
   return squared_misfit - projected.dot(inner.llt().solve(projected));
 }
 

@@ -7,7 +7,6 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
 namespace {
@@ -21,32 +20,6 @@ bool isSame(const CoilPattern& a, CoilPattern b) {
     coil.sign = -coil.sign;
   }
   return a == b;
-}
-
-/// Patterns of the pose that no sample there has.
-std::vector<CoilPattern> openPatterns(const PlannedPose& pose,
-                                      const std::vector<Sample>& samples,
-                                      double current_threshold) {
-  std::vector<CoilPattern> open = pose.excitations();
-  for (const Sample& sample : samples) {
-    if (!isAtPose(sample, pose.joint_position)) {
-      continue;
-    }
-    const CoilPattern measured = patternOf(sample, current_threshold);
-    const auto done = std::find_if(open.begin(), open.end(), [&](const CoilPattern& pattern) {
-      return isSame(pattern, measured);
-    });
-    if (done != open.end()) {
-      open.erase(done);
-    }
-  }
-  return open;
-}
-
-bool hasSample(const PlannedPose& pose, const std::vector<Sample>& samples) {
-  return std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
-    return isAtPose(sample, pose.joint_position);
-  });
 }
 
 /// "a, b and c".
@@ -79,41 +52,74 @@ std::string excitationsInWords(const std::vector<CoilPattern>& patterns) {
 
 }  // namespace
 
-std::string planStep(const std::vector<PlannedPose>& poses,
-                     const std::vector<Sample>& samples,
-                     double current_threshold,
-                     bool has_joints) {
-  std::size_t measured = 0;
-  const PlannedPose* next = nullptr;
-  std::vector<CoilPattern> next_patterns;
+PlanProgress::PlanProgress(const std::vector<PlannedPose>& poses,
+                           double current_threshold,
+                           bool has_joints)
+    : current_threshold_(current_threshold), has_joints_(has_joints) {
   for (const PlannedPose& pose : poses) {
-    const std::vector<CoilPattern> open = openPatterns(pose, samples, current_threshold);
-    if (open.empty() && hasSample(pose, samples)) {
-      ++measured;
-    } else if (next == nullptr) {
-      next = &pose;
-      next_patterns = open;
+    poses_.push_back({pose, pose.excitations()});
+  }
+}
+
+void PlanProgress::add(const Sample& sample) {
+  for (Pose& pose : poses_) {
+    if (!isAtPose(sample, pose.planned.joint_position)) {
+      continue;
+    }
+    pose.has_sample = true;
+    const CoilPattern measured = patternOf(sample, current_threshold_);
+    const auto done =
+        std::find_if(pose.open.begin(), pose.open.end(), [&](const CoilPattern& pattern) {
+          return isSame(pattern, measured);
+        });
+    if (done != pose.open.end()) {
+      pose.open.erase(done);
     }
   }
-  if (next == nullptr) {
+}
+
+void PlanProgress::countAnew(const std::vector<Sample>& samples) {
+  for (Pose& pose : poses_) {
+    pose = {pose.planned, pose.planned.excitations()};
+  }
+  for (const Sample& sample : samples) {
+    add(sample);
+  }
+}
+
+std::string PlanProgress::nextStep() const {
+  const auto measured = std::count_if(
+      poses_.begin(), poses_.end(), [](const Pose& pose) { return pose.isMeasured(); });
+  const auto next = std::find_if(
+      poses_.begin(), poses_.end(), [](const Pose& pose) { return !pose.isMeasured(); });
+  if (next == poses_.end()) {
     return "";
   }
-  const Eigen::Vector3d& q = next->joint_position;
+  const Eigen::Vector3d& q = next->planned.joint_position;
   const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
-      "Go on with the plan, %zu of %zu poses are measured: turn the rotor to "
+      "Go on with the plan, %td of %zu poses are measured: turn the rotor to "
       "%s %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture",
       measured,
-      poses.size(),
-      has_joints ? "joints" : "turns about x, y, z of",
+      poses_.size(),
+      has_joints_ ? "joints" : "turns about x, y, z of",
       q.x(),
       q.y(),
       q.z(),
       degrees.x(),
       degrees.y(),
       degrees.z());
-  text += excitationsInWords(next_patterns);
+  text += excitationsInWords(next->open);
   return text + ".";
+}
+
+std::string planStep(const std::vector<PlannedPose>& poses,
+                     const std::vector<Sample>& samples,
+                     double current_threshold,
+                     bool has_joints) {
+  PlanProgress progress(poses, current_threshold, has_joints);
+  progress.countAnew(samples);
+  return progress.nextStep();
 }
 
 }  // namespace sac

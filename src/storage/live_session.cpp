@@ -70,8 +70,10 @@ LiveSession::LiveSession(const CalibratedDescription& start,
                samplesOf(database_, database_path, start.actuator.coils.size()),
                config,
                revision_.state,
-               {}) {
+               {}),
+      linearity_search_(config.estimation) {
   putInForce(revision_);
+  searchLinearityAnew();
 }
 
 Actuator LiveSession::actuator() const {
@@ -90,6 +92,8 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   database_.addSample(stored, date);
   session_.add(stored);
   counter_->add(stored);
+  linearity_search_.add(stored);
+  linearity_ = linearity_search_.best();
   if (stored.validation) {
     grade_.reset();
   }
@@ -102,6 +106,7 @@ bool LiveSession::removeSample(std::uint32_t id, const std::string& date) {
   }
   const bool is_removed = session_.remove(id);
   countAnew();
+  searchLinearityAnew();
   return is_removed;
 }
 
@@ -109,6 +114,7 @@ std::size_t LiveSession::clearSamples(const std::string& date) {
   const std::size_t count = database_.clearSamples(date);
   session_.clearSamples();
   countAnew();
+  searchLinearityAnew();
   return count;
 }
 
@@ -161,7 +167,7 @@ SessionProgress LiveSession::progress() const {
   SessionProgress progress = counter_->progress();
   progress.refined = revision_.refined;
   // A session without a cycle leaves nothing open that it was asked for, and is not done.
-  progress.complete = progress.isAllIdentified() && session_.isComplete();
+  progress.complete = progress.isAllIdentified() && is_complete_;
   return progress;
 }
 
@@ -176,7 +182,17 @@ const GradedCalibration& LiveSession::grade() const {
 void LiveSession::countAnew() {
   counter_.emplace(session_.model(), session_.state(), session_.config().estimation);
   counter_->add(session_.samples());
+  is_complete_ = session_.isComplete();
   grade_.reset();
+}
+
+/// Parameters have no part in it: only samples that went change it.
+void LiveSession::searchLinearityAnew() {
+  linearity_search_ = LinearitySearch(session_.config().estimation);
+  for (const Sample& sample : session_.samples()) {
+    linearity_search_.add(sample);
+  }
+  linearity_ = linearity_search_.best();
 }
 
 CalibratedDescription LiveSession::description(const std::string& date) const {

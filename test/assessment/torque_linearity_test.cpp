@@ -3,6 +3,8 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -204,6 +206,40 @@ TEST(TorqueLinearity, ComesWithItsUncertaintyInWords) {
   EXPECT_NE(text.find(" ± 0."), std::string::npos) << text;
   EXPECT_NE(text.find(" % at 2.00 A, a positive current by "), std::string::npos) << text;
   EXPECT_EQ(describe(judged(Bench{}.samples())).find("Torque is proportional to current: "), 0U);
+}
+
+/// Rests of several coils, some of which the last sample changes, and some that tell nothing.
+TEST(TorqueLinearity, IsFoundAsSamplesComeAsInAllOfThem) {
+  std::mt19937_64 generator(6);
+  std::vector<Sample> samples;
+  for (int rest = 0; rest < 12; ++rest) {
+    Bench bench{-0.02};
+    bench.torque_stddev *= 1.0 + (rest * 5 % 7);
+    bench.shared_stddev *= rest % 3 == 0 ? 0.0 : 1.0;
+    bench.currents.push_back(0.0);
+    for (Sample sample : noisy(bench, 0.0, generator)) {
+      sample.dwell = 100 + rest;
+      sample.id = static_cast<std::uint32_t>(samples.size() + 1);
+      samples.push_back(sample);
+      sample.current[1] = std::exchange(sample.current[2], 0.0);
+      samples.push_back(sample);
+    }
+  }
+  LinearitySearch search{EstimationOptions()};
+  std::vector<Sample> so_far;
+  for (const Sample& sample : samples) {
+    so_far.push_back(sample);
+    search.add(sample);
+    const auto found = search.best();
+    const auto expected = judged(so_far);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (found) {
+      EXPECT_EQ(found->samples, expected->samples);
+      EXPECT_EQ(found->coil, expected->coil);
+      EXPECT_EQ(found->deviation.value, expected->deviation.value);
+    }
+  }
+  EXPECT_TRUE(search.best());
 }
 
 }  // namespace

@@ -78,5 +78,27 @@ TEST(PlanGuidance, DistantSamplesCarryOutNothing) {
   EXPECT_EQ(step(kPoseTolerance - 0.01), "");
 }
 
+TEST(PlanGuidance, GoesOnFromSampleToSample) {
+  const Eigen::Vector3d first(0.1, -0.2, 1.5);
+  const Eigen::Vector3d near_first = first + Eigen::Vector3d(0.0, 0.04, 0.0);
+  const Eigen::Vector3d second(0.0, 0.3, 0.0);
+  const std::vector<PlannedPose> plan = {
+      {first, {0, 2}, {}}, {near_first, {2}, {}}, {second, {}, {}}};
+  const std::vector<Sample> samples = {sampleAt(first, {2.0, 0.0, 0.0}),
+                                       sampleAt(near_first, {0.0, 0.0, -2.0}),
+                                       sampleAt(second, {0.0, 0.0, 0.0})};
+  PlanProgress progress(plan, kThreshold);
+  std::vector<Sample> so_far;
+  for (const Sample& sample : samples) {
+    EXPECT_EQ(progress.nextStep(), planStep(plan, so_far, kThreshold));
+    so_far.push_back(sample);
+    progress.add(sample);
+  }
+  EXPECT_EQ(progress.nextStep(), "");
+  so_far.erase(so_far.begin() + 1);
+  progress.countAnew(so_far);
+  EXPECT_NE(progress.nextStep().find("1 of 3 poses"), std::string::npos) << progress.nextStep();
+}
+
 }  // namespace
 }  // namespace sac

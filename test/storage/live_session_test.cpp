@@ -97,6 +97,26 @@ void expectUpToDate(const LiveSession& session, const char* after) {
   const GradedCalibration grade = gradeCalibration(calibration);
   EXPECT_EQ(session.grade().grade, grade.grade) << after;
   EXPECT_EQ(session.grade().reason, grade.reason) << after;
+  EXPECT_EQ(progress.complete, anew.isAllIdentified() && calibration.isComplete()) << after;
+  EXPECT_EQ(describe(session.linearity()),
+            describe(torqueLinearity(calibration.samples(), calibration.config())))
+      << after;
+}
+
+/// One coil at three currents in one rest.
+std::vector<Sample> linearitySamples() {
+  scenarios::Generator generator(4);
+  std::vector<Sample> samples;
+  for (const double current : {2.0, 1.0, -2.0}) {
+    samples.push_back(
+        scenarios::torqueSamples(
+            scenarios::paperTruth(), {{0.1, 0.2, 0.3}}, 2, current, 1e-4, 1e-4, generator)
+            .front());
+    samples.back().dwell = 7;
+    samples.back().torque_shared_stddev = 5e-5;
+    samples.back().stamp = static_cast<Stamp>(samples.size());
+  }
+  return samples;
 }
 
 TEST_F(LiveSessionTest, ProgressAndGradeAreUpToDateAfterEachStep) {
@@ -106,8 +126,17 @@ TEST_F(LiveSessionTest, ProgressAndGradeAreUpToDateAfterEachStep) {
     session.addSample(sample, kDate);
     expectUpToDate(session, "a sample");
   }
+  std::uint32_t id = 0;
+  for (const Sample& sample : linearitySamples()) {
+    EXPECT_FALSE(session.linearity());
+    id = session.addSample(sample, kDate).id;
+    expectUpToDate(session, "a torque at another current");
+  }
+  EXPECT_TRUE(session.linearity());
   ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
   expectUpToDate(session, "the joint");
+  ASSERT_TRUE(session.removeSample(id, kDate));
+  EXPECT_FALSE(session.linearity());
   ASSERT_TRUE(session.run({Cycle::kPoles, 0}, kDate).success);
   expectUpToDate(session, "the poles");
   Sample held_out = samples().back();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,33 @@ struct TorqueLinearity {
 /// 10 %.
 std::optional<TorqueLinearity> torqueLinearity(const std::vector<Sample>& samples,
                                                const CalibrationConfig& config);
+
+/// The same of samples that come one after the other: only the last rest is looked at again.
+class LinearitySearch {
+ public:
+  explicit LinearitySearch(const EstimationOptions& options);
+
+  void add(const Sample& sample);
+  /// Of all samples so far.
+  std::optional<TorqueLinearity> best();
+
+ private:
+  /// One coil at the last rest.
+  struct Found {
+    std::vector<std::size_t> places;  ///< of the samples that tell, in rest_
+    std::optional<TorqueLinearity> linearity;
+  };
+
+  void fitRest();
+  static void keepBetter(const std::optional<TorqueLinearity>& found,
+                         std::optional<TorqueLinearity>& best);
+
+  double current_threshold_;
+  double default_torque_stddev_;
+  std::vector<Sample> rest_;              ///< torques of the last rest
+  std::map<std::size_t, Found> of_coil_;  ///< by coil, at the last rest
+  std::optional<TorqueLinearity> best_;   ///< of the rests before it
+};
 
 /// A sentence or two for people: deviations in percent, each with its standard deviation, or what
 /// to measure.

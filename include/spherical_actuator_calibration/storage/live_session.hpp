@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
+#include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/session_progress.hpp"
@@ -70,6 +71,8 @@ class LiveSession {
   SessionProgress progress() const;
   /// Of the parameters in force, by the samples held out.
   const GradedCalibration& grade() const;
+  /// Of the samples in use.
+  const std::optional<TorqueLinearity>& linearity() const { return linearity_; }
 
   /// The calibrated description, with its record.
   CalibratedDescription description(const std::string& date) const;
@@ -79,6 +82,7 @@ class LiveSession {
  private:
   std::optional<MotionEvidence> motionBefore(std::uint32_t number) const;
   void countAnew();
+  void searchLinearityAnew();
   void putInForce(const Revision& revision);
 
   std::string software_;
@@ -87,7 +91,10 @@ class LiveSession {
   CalibrationSession session_;
   // Kept up to date, as they are asked for at every capture.
   std::optional<ProgressCounter> counter_;
+  bool is_complete_ = false;
   mutable std::optional<GradedCalibration> grade_;
+  LinearitySearch linearity_search_;
+  std::optional<TorqueLinearity> linearity_;
 };
 
 }  // namespace sac

@@ -128,6 +128,9 @@ bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
       throw DataError("Sample " + std::to_string(request.id) +
                       " is not in use: list_samples shows those that are.");
     }
+    if (plan_) {
+      plan_->countAnew(session_.calibration().samples());
+    }
     publishStatus();
     return "Sample " + std::to_string(request.id) +
            " is out of use; run the cycles again to be rid of its effect.";
@@ -323,7 +326,11 @@ void CalibrationNode::storeWaitingSamples() {
 }
 
 Sample CalibrationNode::store(const Sample& sample) {
+  const std::size_t before = session_.calibration().samples().size();
   Sample stored = session_.addSample(sample, utcDate());
+  if (plan_ && session_.calibration().samples().size() > before) {
+    plan_->add(stored);
+  }
   topics_.publishSample(topics_.sampleMessage(stored));
   publishStatus();
   return stored;
@@ -333,17 +340,13 @@ Sample CalibrationNode::store(const Sample& sample) {
 void CalibrationNode::publishStatus() {
   try {
     SessionProgress progress = session_.progress();
-    const CalibrationSession& calibration = session_.calibration();
     const GradedCalibration& graded = session_.grade();
     progress.saved = files_.isSaved(session_.revision().number);
     progress.contradicted = graded.grade == Grade::kContradicted;
     progress.good = graded.grade == Grade::kGood;
     progress.judged = progress.good || graded.grade == Grade::kUsable;
     if (plan_) {
-      progress.plan_step = planStep(*plan_,
-                                    calibration.samples(),
-                                    calibration.config().estimation.current_threshold,
-                                    calibration.model().space().joints() > 0);
+      progress.plan_step = plan_->nextStep();
     }
     topics_.publishStatus(session_, progress, graded);
   } catch (const std::exception& error) {

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
@@ -124,7 +125,11 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    plan_ = std::make_shared<const std::vector<PlannedPose>>(plan.poses);
+    const CalibrationSession& calibration = session_.calibration();
+    plan_ = std::make_shared<PlanProgress>(plan.poses,
+                                           calibration.config().estimation.current_threshold,
+                                           calibration.model().space().joints() > 0);
+    plan_->countAnew(calibration.samples());
     publishStatus();
   } catch (const std::exception& error) {
     response.success = 0;

@@ -95,8 +95,7 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.grade_reason = graded.reason;
   message.next_step = nextStep(calibration.model(), progress);
   if (calibration.model().hasTorqueModel()) {
-    message.torque_linearity =
-        describe(torqueLinearity(calibration.samples(), calibration.config()));
+    message.torque_linearity = describe(session.linearity());
   }
   publishLatched(status_, message);
   if (last_report_ && (last_report_->grade != message.grade ||

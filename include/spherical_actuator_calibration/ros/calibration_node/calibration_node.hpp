@@ -34,7 +34,7 @@
 
 namespace sac {
 
-struct PlannedPose;
+class PlanProgress;
 
 /// The calibration of one unit while it is measured: takes samples on request or by itself, runs
 /// the cycles, keeps everything in the session database, and publishes the parameters in force.
@@ -114,7 +114,7 @@ class CalibrationNode {
   std::string last_error_;
   /// That was asked for last, until it is done or out of use; nothing without one. Behind a
   /// pointer, so that not all who use the node compile the planner.
-  std::shared_ptr<const std::vector<PlannedPose>> plan_;
+  std::shared_ptr<PlanProgress> plan_;
   CalibrationTopics topics_;
 
   std::atomic<bool> auto_capture_;
