@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -37,24 +39,82 @@ std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
                           session.config().estimation);
 }
 
-TEST(SampleInfluence, IsWhatLeavingTheSampleOutDoes) {
-  const std::vector<Sample> samples = paperSamples(1);
+/// Refines again without some of the samples.
+void expectInfluencesOfLeavingOut(const std::vector<Sample>& samples,
+                                  const std::vector<std::size_t>& left_out) {
   const CalibrationSession session = refined(samples);
   const std::vector<SampleInfluence> influences = influencesOf(session);
   ASSERT_EQ(influences.size(), samples.size());
-  for (const std::size_t left_out : {2U, 14U, 37U, 70U}) {
+  const Eigen::VectorXd stddevs = session.state().belief.covariance.diagonal().cwiseSqrt();
+  for (const std::size_t n : left_out) {
     std::vector<Sample> others = samples;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(n));
     const CalibrationSession without = refined(others);
-    const Eigen::VectorXd stddevs = session.state().belief.covariance.diagonal().cwiseSqrt();
     const double shift = (without.state().belief.x - session.state().belief.x)
                              .cwiseAbs()
                              .cwiseQuotient(stddevs)
                              .maxCoeff();
-    const SampleInfluence& told = influences[left_out];
-    EXPECT_EQ(told.id, samples[left_out].id);
-    EXPECT_NEAR(told.largest_shift, shift, 0.1 * shift + 0.02) << left_out;
+    EXPECT_EQ(influences[n].id, samples[n].id);
+    EXPECT_NEAR(influences[n].largest_shift, shift, 0.1 * shift + 0.02) << n;
   }
+}
+
+TEST(SampleInfluence, IsWhatLeavingTheSampleOutDoes) {
+  expectInfluencesOfLeavingOut(paperSamples(1), {2, 14, 37, 70});
+}
+
+/// Torques of all coils in turn, eight at each rest, where they share the errors of the readings of
+/// the joints, far larger than their own, and of the torque without current; then orientations.
+std::vector<Sample> restsSamples() {
+  constexpr std::size_t kRests = 24;
+  constexpr std::size_t kCoilsAtRest = 8;
+  constexpr double kReadingStddev = 5e-4;
+  constexpr double kSharedTorque = 2e-4;
+  constexpr double kOwnTorque = 1e-4;
+  const Actuator truth = scenarios::paperTruth();
+  scenarios::Generator generator(4);
+  std::normal_distribution<double> normal;
+  const auto vector = [&](double stddev) {
+    return Eigen::Vector3d(
+        stddev * normal(generator), stddev * normal(generator), stddev * normal(generator));
+  };
+  std::vector<Sample> samples;
+  std::size_t coil = 0;
+  for (std::size_t rest = 0; rest < kRests; ++rest) {
+    const Eigen::Vector3d q = scenarios::randomPose(0.5, generator);
+    const Eigen::Vector3d reading_error = vector(kReadingStddev);
+    const Eigen::Vector3d torque_error = vector(kSharedTorque);
+    for (std::size_t n = 0; n < kCoilsAtRest; ++n) {
+      Sample sample =
+          scenarios::torqueSamples(
+              truth, {q}, coil, 2.0, 0.0, std::hypot(kOwnTorque, kSharedTorque), generator)
+              .front();
+      sample.torque += torque_error + vector(kOwnTorque);
+      sample.torque_shared_stddev = kSharedTorque;
+      sample.joint_position += reading_error;
+      sample.joint_stddev.setConstant(kReadingStddev);
+      sample.joint_shared_stddev.setConstant(kReadingStddev);
+      sample.dwell = static_cast<Stamp>(rest + 1);
+      samples.push_back(sample);
+      coil = (coil + 1) % truth.coils.size();
+    }
+  }
+  const std::vector<Sample> orientations =
+      scenarios::orientationSamples(truth,
+                                    scenarios::randomPoses(10, 0.5, generator),
+                                    1e-3,
+                                    scenarios::uniformStddev(1e-3),
+                                    generator);
+  samples.insert(samples.end(), orientations.begin(), orientations.end());
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].id = static_cast<std::uint32_t>(n + 1);
+  }
+  return samples;
+}
+
+/// Each alone they would count far more than together.
+TEST(SampleInfluence, KnowsWhatTheSamplesOfARestShare) {
+  expectInfluencesOfLeavingOut(restsSamples(), {3, 40, 41, 77, 120, 195});
 }
 
 TEST(SampleInfluence, FindsTheOneBadSample) {

@@ -28,8 +28,9 @@ struct SampleInfluence {
 };
 
 /// Influence of every observation that a successful cycle used, by leave-one-out from one
-/// factorisation: Δx = −(JᵀWJ)⁻¹Jₙᵀ W (I − Hₙ)⁻¹ rₙ, exact for a linear model. Rejected
-/// observations have none. `after` is the state after the cycle.
+/// factorisation: Δx = −(JᵀWJ)⁻¹Jₙᵀ W (I − Hₙ)⁻¹ rₙ, exact for a linear model. The errors that a
+/// dwell shares are found along, as the fit does. Rejected observations have none. `after` is the
+/// state after the cycle.
 std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
                                               const std::vector<Sample>& samples,
                                               const CycleReport& report,
