@@ -69,10 +69,12 @@ MotionEvidence motionEvidence(const ParameterSpace& space,
 }
 
 ParameterBelief withoutMotion(ParameterBelief belief, const MotionEvidence& motion) {
+  // What they had in common with others may be of others that are known better since.
   for (const Eigen::Index p : motion.told) {
-    belief.covariance.row(p) = motion.covariance.row(p);
-    belief.covariance.col(p) = motion.covariance.col(p);
+    belief.covariance.row(p).setZero();
+    belief.covariance.col(p).setZero();
   }
+  belief.covariance(motion.told, motion.told) = motion.covariance(motion.told, motion.told);
   return belief;
 }
 

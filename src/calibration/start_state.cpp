@@ -6,8 +6,14 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/QR>
+
+#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
+
 namespace sac {
 namespace {
+
+using BelongsTo = LaboratoryEffect::BelongsTo;
 
 /// Enters what a calibrated description states into a state.
 class StatedUncertainty {
@@ -47,13 +53,87 @@ class StatedUncertainty {
   CalibrationState& state_;
 };
 
+/// What the parameters of a record have in common, for a space that may model other effects.
+class RecordedCovariance {
+ public:
+  /// `recorded` is the space of the record. Effects of the laboratory are left out: the next one
+  /// states its own.
+  RecordedCovariance(const ParameterSpace& space, const ParameterSpace& recorded) {
+    for (Eigen::Index p = 0; p < recorded.size(); ++p) {
+      if (!isOfMachine(recorded, p)) {
+        continue;
+      }
+      const std::optional<Eigen::Index> place = placeOf(space, recorded.name(p));
+      if (place) {
+        kept_.push_back(p);
+        places_.push_back(*place);
+      } else {
+        exact_.push_back(p);
+      }
+    }
+  }
+
+  // What is not modelled any more counts as exact: the rest is as certain as it is beside that.
+  void enter(const Eigen::MatrixXd& covariance, CalibrationState& state) const {
+    Eigen::MatrixXd known = covariance(kept_, kept_);
+    if (!exact_.empty()) {
+      const Eigen::MatrixXd common = covariance(exact_, kept_);
+      const Eigen::MatrixXd exact = covariance(exact_, exact_);
+      known -= common.transpose() * exact.completeOrthogonalDecomposition().solve(common);
+      known = (0.5 * (known + known.transpose())).eval();
+    }
+    state.belief.covariance(places_, places_) = known;
+    for (const Eigen::Index place : places_) {
+      state.identified[static_cast<std::size_t>(place)] = true;
+    }
+  }
+
+ private:
+  static bool isOfMachine(const ParameterSpace& recorded, Eigen::Index p) {
+    if (p < recorded.effect()) {
+      return true;
+    }
+    const BelongsTo owner = recorded.effects().at(p - recorded.effect()).belongs_to;
+    return owner == BelongsTo::kActuator || owner == BelongsTo::kLoad;
+  }
+
+  static std::optional<Eigen::Index> placeOf(const ParameterSpace& space, const std::string& name) {
+    for (Eigen::Index p = 0; p < space.size(); ++p) {
+      if (space.name(p) == name) {
+        return p;
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Eigen::Index> kept_;    ///< of the record
+  std::vector<Eigen::Index> places_;  ///< of the kept ones in the space
+  std::vector<Eigen::Index> exact_;   ///< of the record
+};
+
+/// The weight that the rotor carries is no deviation from what its description says.
+void enterWeight(const ParameterSpace& space, CalibrationState& state) {
+  for (const PlacedEffect& placed : space.effects().effects()) {
+    if (placed.belongs_to == BelongsTo::kLoad) {
+      state.belief.x.segment(space.effect() + placed.first, placed.size()) =
+          space.nominal().unbalance / placed.effect->scale();
+    }
+  }
+}
+
 }  // namespace
 
 CalibrationState startState(const ParameterSpace& space,
                             const CalibratedDescription& start,
                             const ManufacturingTolerance& tolerance) {
   CalibrationState state = nominalState(space, tolerance);
-  StatedUncertainty(space, state).enter(start.stddevs);
+  enterWeight(space, state);
+  if (start.calibration && start.calibration->covariance) {
+    const ParameterSpace recorded(space.nominal(), effectsOf(start.calibration));
+    RecordedCovariance(space, recorded).enter(coordinateCovariance(recorded, start), state);
+  } else {
+    StatedUncertainty(space, state).enter(start.stddevs);
+  }
   if (start.calibration) {
     const std::vector<std::string>& open = start.calibration->unidentified;
     for (Eigen::Index p = 0; p < space.size(); ++p) {
