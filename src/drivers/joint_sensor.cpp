@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <Eigen/LU>
@@ -52,6 +53,47 @@ EncoderOptions readEncoder(const YamlMap& map) {
   return encoder;
 }
 
+template <std::size_t N>
+std::array<double, N> readSmall(const YamlMap& map, const char* key) {
+  // Far beyond what a sensor is off by, and uncorrected() converges.
+  constexpr double kLargest = 0.05;
+  std::array<double, N> values = {};
+  if (map.has(key)) {
+    const std::vector<double> read = map.numbers(key, ValueRange::closed(-kLargest, kLargest), N);
+    std::copy(read.begin(), read.end(), values.begin());
+  }
+  return values;
+}
+
+void readCorrections(const YamlMap& map, std::array<ReadingCorrection, kJoints>& corrections) {
+  std::set<std::size_t> joints;
+  for (const YamlMap& item : map.maps("corrections")) {
+    const auto joint = static_cast<std::size_t>(item.integer("joint", 1, kJoints)) - 1;
+    if (!joints.insert(joint).second) {
+      item.fail("joint", "this joint has corrections already.");
+    }
+    corrections[joint] = {readSmall<kJoints>(item, "linear"), readSmall<4>(item, "harmonics")};
+  }
+}
+
+JointGeometry geometryOf(const std::array<ReadingCorrection, kJoints>& corrections) {
+  std::array<JointAxis, kJoints> joints;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    joints[k].correction = corrections[k];
+  }
+  return jointGeometry(joints);
+}
+
+/// Angles that become q by the corrections.
+Eigen::Vector3d uncorrected(const JointGeometry& corrections, const Eigen::Vector3d& q) {
+  constexpr int kRounds = 40;  // each leaves less than half of what is missing
+  Eigen::Vector3d reading = q;
+  for (int round = 0; corrections.is_corrected && round < kRounds; ++round) {
+    reading += q - correctedReading(corrections, reading);
+  }
+  return reading;
+}
+
 void requireEachJointOnce(const JointSensorOptions& options, const YamlMap& map) {
   std::array<int, kJoints> sensors = {};
   if (options.tilt) {
@@ -91,11 +133,15 @@ JointSensorOptions readJointSensorOptions(const YamlMap& map) {
     options.encoders.push_back(readEncoder(item));
   }
   requireEachJointOnce(options, map);
+  if (map.has("corrections")) {
+    readCorrections(map, options.corrections);
+  }
   return options;
 }
 
 JointSensor::JointSensor(const JointSensorOptions& options, ModbusTransport& transport)
     : options_(options),
+      corrections_(geometryOf(options.corrections)),
       transport_(transport),
       requests_(requestsFor(options)),
       answers_(requests_.size()),
@@ -124,7 +170,7 @@ Eigen::Vector3d JointSensor::read() {
     q[static_cast<Eigen::Index>(encoder.joint)] =
         unwrapped(n, angleOf(encoder.field, words(encoder.field), "encoder"));
   }
-  return q;
+  return correctedReading(corrections_, q);
 }
 
 const std::uint16_t* JointSensor::words(const RegisterField& field) const {
@@ -165,7 +211,8 @@ std::optional<Eigen::Vector2d> jointsOf(const Eigen::Vector2d& inclinations) {
 }
 
 std::vector<RegisterContent> encodeJoints(const JointSensorOptions& options,
-                                          const Eigen::Vector3d& q) {
+                                          const Eigen::Vector3d& corrected) {
+  const Eigen::Vector3d q = uncorrected(geometryOf(options.corrections), corrected);
   std::vector<RegisterContent> contents;
   const auto put = [&contents](const RegisterField& field, double value) {
     contents.push_back({field.unit, field.table, field.address, field.encode(value)});

@@ -1,11 +1,14 @@
 #include "spherical_actuator_calibration/drivers/joint_sensor.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/error_message.hpp"
@@ -137,6 +140,42 @@ TEST(JointSensor, ThreeEncodersServeAsWell) {
   EXPECT_LT((sensor.read() - Eigen::Vector3d(0.25, -0.125, 9.0)).norm(), 1e-9);
 }
 
+// As the description's joints do: taken over from there, the rotor is where it was.
+TEST(JointSensor, TakesOverWhatACalibrationIdentifiedOfTheReadings) {
+  const std::string text =
+      "link: {type: tcp, host: h}\n"
+      "encoders:\n"
+      "  - {joint: 1, address: 0, type: int32, scale: 1.0e-9}\n"
+      "  - {joint: 2, address: 2, type: int32, scale: 1.0e-9}\n"
+      "  - {joint: 3, address: 4, type: int32, scale: 1.0e-9}\n";
+  const JointSensorOptions options = readJointSensorOptions(
+      YamlMap::parse(text + "corrections:\n"
+                            "  - {joint: 3, harmonics: [2.0e-3, -1.0e-3, 5.0e-4, 3.0e-4]}\n"
+                            "  - {joint: 1, linear: [2.0e-3, -3.0e-3, 1.0e-3], "
+                            "harmonics: [0.0, 1.0e-3, 0.0, -2.0e-3]}\n",
+                     "s.yaml"));
+  std::array<JointAxis, kJoints> joints = freeRotorJoints();
+  joints[1].offset = 0.01;
+  const JointGeometry uncorrected = jointGeometry(joints);
+  joints[0].correction = {{2e-3, -3e-3, 1e-3}, {0.0, 1e-3, 0.0, -2e-3}};
+  joints[2].correction.harmonics = {2e-3, -1e-3, 5e-4, 3e-4};
+  const JointGeometry corrected = jointGeometry(joints);
+  ScriptedTransport bus;
+  bus.open();
+  JointSensor sensor(options, bus);
+  for (const Eigen::Vector3d& raw :
+       {Eigen::Vector3d(0.5, -0.6, 2.0), Eigen::Vector3d(-0.4, 0.3, -1.5)}) {
+    put(readJointSensorOptions(YamlMap::parse(text, "s.yaml")), raw, bus);
+    const Eigen::Vector3d read = sensor.read();
+    EXPECT_GT((read - raw).norm(), 1e-3);
+    EXPECT_LT((rotorOrientation(uncorrected, read) - rotorOrientation(corrected, raw)).norm(),
+              1e-12);
+    // Devices that are emulated hold what the sensor takes for these angles.
+    put(options, raw, bus);
+    EXPECT_LT((sensor.read() - raw).norm(), 1e-9);
+  }
+}
+
 TEST(JointSensor, ConfigurationErrorsNameTheKey) {
   const std::string link = "link: {type: tcp, host: h}\n";
   const std::string encoder = "{joint: 3, address: 0, type: int16, scale: 1.0}";
@@ -148,6 +187,20 @@ TEST(JointSensor, ConfigurationErrorsNameTheKey) {
   EXPECT_NE(configError(link + "encoders: [{joint: 3, address: 0, type: int16, scale: 0.0}]\n")
                 .find("encoders[0].scale"),
             std::string::npos);
+  std::string corrections = link + "encoders:\n";
+  for (const char* joint : {"1", "2", "3"}) {
+    corrections += std::string("  - {joint: ") + joint + ", address: 0, type: int16, scale: 1.0}\n";
+  }
+  corrections += "corrections: ";
+  for (const auto& [text, key] :
+       {std::pair{"[{joint: 4}]", "corrections[0].joint"},
+        std::pair{"[{joint: 1, linear: [0.1]}]", "corrections[0].linear"},
+        std::pair{"[{joint: 1, linear: [0.0, 0.6, 0.0]}]", "corrections[0].linear"},
+        std::pair{"[{joint: 1, harmonics: [.nan, 0.0, 0.0, 0.0]}]", "corrections[0].harmonics"},
+        std::pair{"[{joint: 2}, {joint: 2}]", "corrections[1].joint"}}) {
+    EXPECT_NE(configError(corrections + text + "\n").find(key), std::string::npos)
+        << configError(corrections + text + "\n");
+  }
   EXPECT_NE(configError("link: {type: can}\nencoders: []\n").find("link.type"), std::string::npos);
   EXPECT_NE(configError("link: {type: rtu}\nencoders: []\n").find("link.device"),
             std::string::npos);

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/drivers/modbus_link.hpp"
 #include "spherical_actuator_calibration/drivers/register_field.hpp"
 #include "spherical_actuator_calibration/drivers/register_request.hpp"
@@ -38,6 +39,9 @@ struct JointSensorOptions {
   double rate = 200.0;  ///< of polling [Hz]
   std::optional<TiltSensorOptions> tilt;
   std::vector<EncoderOptions> encoders;
+  /// What a calibration identified of the readings, as in a description, which then must not have
+  /// it.
+  std::array<ReadingCorrection, kJoints> corrections = {};
 };
 
 /// Reads a configuration (config/joint_sensor.yaml) from a map whose other keys are the caller's.
@@ -50,9 +54,10 @@ class JointSensor {
   /// Keeps a reference to the transport.
   JointSensor(const JointSensorOptions& options, ModbusTransport& transport);
 
-  /// Joint angles q [rad] before calibration. An encoder that turned through the end of its range
-  /// goes on; after a silence the turn is the one nearest to the last angle. Throws TransportError
-  /// when a device does not answer, DataError when what it says cannot be.
+  /// Joint angles q [rad] before calibration, but for the corrections of the options. An encoder
+  /// that turned through the end of its range goes on; after a silence the turn is the one nearest
+  /// to the last angle. Throws TransportError when a device does not answer, DataError when what it
+  /// says cannot be.
   Eigen::Vector3d read();
 
   const std::vector<RegisterRequest>& requests() const { return requests_; }
@@ -62,6 +67,7 @@ class JointSensor {
   double unwrapped(std::size_t encoder, double angle);
 
   JointSensorOptions options_;
+  JointGeometry corrections_;  ///< nothing else of it
   ModbusTransport& transport_;
   std::vector<RegisterRequest> requests_;
   std::vector<std::vector<std::uint16_t>> answers_;  ///< along with requests_
@@ -80,9 +86,9 @@ struct RegisterContent {
   int address = 0;
   std::vector<std::uint16_t> words;
 };
-/// What the devices hold at joint angles q [rad]: the inverse of JointSensor::read(), for devices
+/// What the devices hold at joint angles [rad]: the inverse of JointSensor::read(), for devices
 /// that are emulated. Throws DataError when a value does not fit into its register.
 std::vector<RegisterContent> encodeJoints(const JointSensorOptions& options,
-                                          const Eigen::Vector3d& q);
+                                          const Eigen::Vector3d& corrected);
 
 }  // namespace sac
