@@ -18,6 +18,10 @@ std::string number(std::size_t index) {
   return std::to_string(numberOf(index));
 }
 
+/// Strengths nearer to −1 or 0 than to 1.
+constexpr double kTurned = -0.5;
+constexpr double kNone = 0.5;
+
 template <typename Change>
 Hypothesis ofCurrents(const std::string& cause,
                       const std::string& family,
@@ -147,6 +151,9 @@ Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
                                tolerance,
                                "its current should: check its winding and the scale of its current "
                                "sensor");
+  if (gain < kNone) {
+    result.simpler = {gain < kTurned ? coilSign(coil) : coilDead(coil)};
+  }
   result.correct = [coil](WiringCase& wiring, const Eigen::VectorXd& values) {
     // By the currents: the factor may pass zero on the way.
     for (Sample& sample : wiring.samples) {
@@ -182,6 +189,9 @@ Hypothesis poleMissing(std::size_t pole) {
 Hypothesis poleGain(std::size_t pole, double gain, double tolerance) {
   Hypothesis result = strength(
       "pole", pole, gain, tolerance, "it should: check its magnet and its distance to the coils");
+  if (gain < kNone) {
+    result.simpler = {gain < kTurned ? polePolarity(pole) : poleMissing(pole)};
+  }
   result.redescribe = [pole](Actuator& actuator, const Eigen::VectorXd& values) {
     // The polarity is another hypothesis, and a description has no zero.
     actuator.poles[pole].gain *= std::max(values[0], kNearlyNothing);

@@ -145,6 +145,13 @@ class Diagnostician {
     for (ScreenedCandidate& candidate : screenStrengths(case_, base, config_)) {
       further.push_back(std::move(candidate));
     }
+    addUnknown(std::move(further), all);
+    addUnknown(simplerOnes(all), all);
+    return all;
+  }
+
+  static void addUnknown(std::vector<ScreenedCandidate> further,
+                         std::vector<ScreenedCandidate>& all) {
     for (ScreenedCandidate& candidate : further) {
       const bool is_known = std::any_of(all.begin(), all.end(), [&](const ScreenedCandidate& one) {
         return causes(one.parts) == causes(candidate.parts);
@@ -153,7 +160,19 @@ class Diagnostician {
         all.push_back(std::move(candidate));
       }
     }
-    return all;
+  }
+
+  /// What single candidates contain: others may have crowded it out.
+  static std::vector<ScreenedCandidate> simplerOnes(const std::vector<ScreenedCandidate>& all) {
+    std::vector<ScreenedCandidate> simpler;
+    for (const ScreenedCandidate& candidate : all) {
+      if (candidate.parts.size() == 1) {
+        for (const Hypothesis& one : candidate.parts.front().simpler) {
+          simpler.push_back({{one}, candidate.gain});
+        }
+      }
+    }
+    return simpler;
   }
 
   double mostMisfit() const { return std::sqrt(config_.estimation.max_reduced_chi_square); }

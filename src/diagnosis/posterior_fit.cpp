@@ -158,7 +158,8 @@ class Fit {
     out.observations.resize(problem.observations.size());
     out.whitening.clear();
     out.log_noise = 0.0;
-    const double largest_torque = largestTorquePerAmpere(mended.actuator);
+    const double large_torque =
+        with_jacobian ? largeTorque(mended.samples, config_.estimation.default_torque_stddev) : 0.0;
     for (std::size_t n = 0; n < problem.observations.size(); ++n) {
       LinearizedObservation& linear = out.observations[n];
       if (!with_jacobian) {
@@ -167,10 +168,9 @@ class Fit {
       }
       evaluator.linearize(n, point, linear);
       Eigen::Matrix3d noise = evaluator.noise(n, linear);
-      const Sample& sample = mended.samples[problem.observations[n].sample];
       const double allowance = problem.observations[n].quantity == Quantity::kOrientation
                                    ? allowance_.orientation
-                                   : allowance_.torque * largest_torque * sample.current.norm();
+                                   : allowance_.torque * large_torque;
       noise.diagonal().array() += allowance * allowance;
       out.whitening.push_back(whiteningOf(noise));
       out.log_noise -= out.whitening.back().diagonal().array().log().sum();

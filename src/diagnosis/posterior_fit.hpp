@@ -44,7 +44,7 @@ struct PosteriorFit {
 /// it in mind.
 struct ModelAllowance {
   double orientation = 1e-3;  ///< [rad]
-  double torque = 0.02;       ///< of the largest torque that the coils could exert by the current
+  double torque = 0.02;       ///< of large torques that were measured
 };
 
 /// Most probable coordinates and values of a candidate: errors of the manufacturing tolerance,

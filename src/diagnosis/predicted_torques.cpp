@@ -55,7 +55,8 @@ std::vector<PredictedTorque> predictTorques(const WiringCase& described,
   }
   const TorqueCurve curve(*described.actuator.torque_curve);
   const TorqueGeometry geometry = torqueGeometry(described.actuator);
-  const double scale = largestTorquePerAmpere(described.actuator) * ModelAllowance{}.torque;
+  const double allowance = ModelAllowance{}.torque *
+                           largeTorque(described.samples, config.estimation.default_torque_stddev);
   for (std::size_t n = 0; n < described.samples.size(); ++n) {
     const Sample& sample = described.samples[n];
     if (!sample.has_torque) {
@@ -68,7 +69,7 @@ std::vector<PredictedTorque> predictTorques(const WiringCase& described,
     torque.current = sample.current;
     const double stated =
         sample.torque_stddev > 0.0 ? sample.torque_stddev : config.estimation.default_torque_stddev;
-    torque.noise = stated * stated + scale * scale * sample.current.squaredNorm();
+    torque.noise = stated * stated + allowance * allowance;
     addPairs(curve, geometry, config.tolerance, torque);
     torques.push_back(std::move(torque));
   }

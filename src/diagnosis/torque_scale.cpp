@@ -1,21 +1,27 @@
 #include "torque_scale.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 
 namespace sac {
 
-double largestTorquePerAmpere(const Actuator& actuator) {
-  if (!actuator.hasTorqueModel()) {
+double largeTorque(const std::vector<Sample>& samples, double assumed_stddev) {
+  constexpr double kStandsOut = 10.0;  // standard deviations
+  constexpr double kLarge = 0.9;
+  std::vector<double> sizes;
+  for (const Sample& sample : samples) {
+    const double stddev = sample.torque_stddev > 0.0 ? sample.torque_stddev : assumed_stddev;
+    if (sample.has_torque && sample.torque.norm() > kStandsOut * stddev) {
+      sizes.push_back(sample.torque.norm());
+    }
+  }
+  if (sizes.empty()) {
     return 0.0;
   }
-  const TorqueCurve curve(*actuator.torque_curve);
-  constexpr int kSteps = 60;
-  double largest = 0.0;
-  for (int n = 1; n < kSteps; ++n) {
-    largest = std::max(largest, std::abs(curve.value(curve.supportEnd() * n / kSteps)));
-  }
-  return largest;
+  const auto large =
+      sizes.begin() + static_cast<std::ptrdiff_t>(kLarge * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), large, sizes.end());
+  return *large;
 }
 
 }  // namespace sac

@@ -1,11 +1,14 @@
 #pragma once
 
-#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include <vector>
+
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
 
-/// Largest torque of one pole and one coil of nominal strength per ampere [N·m/A]; 0 without a
-/// torque model.
-double largestTorquePerAmpere(const Actuator& actuator);
+/// Nine tenths of the torques that stand out of their noise are smaller [N·m]; 0 where none does.
+/// What is measured does not depend on what is supposed of coils and currents: an allowance in
+/// proportion to it is the same for all hypotheses. `assumed_stddev`: of torques that state none.
+double largeTorque(const std::vector<Sample>& samples, double assumed_stddev);
 
 }  // namespace sac

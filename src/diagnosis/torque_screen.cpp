@@ -118,11 +118,14 @@ class TorqueScreen {
     }
   }
 
-  double loss(const std::vector<Eigen::Vector3d>& measured) const {
-    double sum = 0.0;
+  /// `factor`: by which what was measured was multiplied. Its noise and allowance go with it; the
+  /// density of what was measured counts, not of what is made of it.
+  double loss(const std::vector<Eigen::Vector3d>& measured, double factor = 1.0) const {
+    double sum = -3.0 * static_cast<double>(torques_.size()) * std::log(factor);
     for (std::size_t n = 0; n < torques_.size(); ++n) {
       const PredictedTorque& torque = torques_[n];
-      sum += lossOf(measured[n] - torque.total, torque.variance(torque.current));
+      const double further_noise = (factor * factor - 1.0) * torque.noise;
+      sum += lossOf(measured[n] - torque.total, torque.variance(torque.current) + further_noise);
     }
     return sum;
   }
@@ -150,9 +153,7 @@ class TorqueScreen {
     for (Eigen::Vector3d& torque : scaled) {
       torque *= factor;
     }
-    // The density of what was measured counts, not of what is made of it.
-    const double gain =
-        loss_ - loss(scaled) + 3.0 * static_cast<double>(torques_.size()) * std::log(factor);
+    const double gain = loss_ - loss(scaled, factor);
     Candidate parts = others;
     parts.push_back(torqueUnit(factor, config_.tolerance.effect));
     add(parts, gain);
@@ -343,7 +344,8 @@ std::vector<ScreenedCandidate> screenMisfittingCoils(const WiringCase& described
           !own.isZero(0.0)) {
         misfits.push_back((torques[n].measured - torques[n].total).squaredNorm() /
                           torques[n].noise);
-        strengths.push_back((drawn[n].measured - drawn[n].total + own).norm() / own.norm());
+        const Eigen::Vector3d rest = drawn[n].measured - drawn[n].total + own;
+        strengths.push_back(std::copysign(rest.norm() / own.norm(), rest.dot(own)));
       }
     }
     if (misfits.size() < kFewestOfCoil) {

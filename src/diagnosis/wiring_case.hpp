@@ -32,6 +32,9 @@ struct Hypothesis {
   std::function<bool(const Eigen::VectorXd& values)> is_material = nullptr;
   /// Its one value is the strength of a pole or coil, told with its uncertainty.
   bool is_strength = false;
+  /// Of the same family without a value, where one is near its start: a coil that is dead or the
+  /// wrong way round has a strength near 0 or −1.
+  std::vector<Hypothesis> simpler = {};
   /// The same correction in the description alone, where that can hold it.
   std::function<void(Actuator&, const Eigen::VectorXd& values)> redescribe = nullptr;
   /// Factor on measured torques: 1 but for units.

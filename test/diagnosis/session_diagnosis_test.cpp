@@ -49,6 +49,28 @@ TEST_F(SessionDiagnosis, SaysNothingOfCoilsThatAreOff) {
   }
 }
 
+// Twelve coils in turn at each of few poses: most torques of a coil that no pole reaches are
+// nothing, and one more is, that the drawing puts at the end of the reach.
+TEST_F(SessionDiagnosis, SaysNothingOfCoilsThatNoPoleReaches) {
+  constexpr std::size_t kCoils = 12;
+  Actuator nominal = scenarios::paperNominal();
+  nominal.poles.resize(3);
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    scenarios::Generator generator(seed);
+    const Actuator truth = scenarios::perturbed(nominal, 0.03, 0.03, generator);
+    const std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(5, 0.5, generator);
+    std::vector<Sample> samples = scenarios::orientationSamples(
+        truth, poses, 1e-4, scenarios::uniformStddev(1e-5), generator);
+    for (std::size_t coil = 0; coil < kCoils; ++coil) {
+      const std::vector<Sample> torques =
+          scenarios::torqueSamples(truth, poses, coil, 2.0, 1e-5, 1e-5, generator);
+      samples.insert(samples.end(), torques.begin(), torques.end());
+    }
+    const std::vector<Diagnosis> mistakes = diagnoseMistakes({{nominal}, samples, {}});
+    EXPECT_TRUE(mistakes.empty()) << seed << ": " << mistakes.front().message;
+  }
+}
+
 TEST_F(SessionDiagnosis, NamesTheStrengthThatTheMagnetsLost) {
   Actuator truth = scenarios::paperTruth();
   for (PoleAxis& pole : truth.poles) {
