@@ -79,20 +79,16 @@ class Examiner {
 
   /// What keeps a calibration that held-out samples agree with from being good; empty: nothing.
   std::string shortcoming() const {
-    const std::vector<std::string> open = session_.openParameters();
-    if (!open.empty()) {
-      return ", " + number(open.size()) + " that were asked for are not";
-    }
-    if (identified_ < parameters_.size()) {
-      return ", the others are not";
+    // What is open says nothing of whether the rest is right.
+    const std::string open = unidentified();
+    const std::vector<std::string> doubts = doubtsInForce();
+    const std::string doubt = doubts.empty() ? std::string() : ", but " + clause(doubts.front());
+    if (!open.empty() || !doubt.empty()) {
+      return open + doubt;
     }
     std::string missed = missedAccuracy();
     if (!missed.empty()) {
       return missed;
-    }
-    const std::vector<std::string> doubts = doubtsInForce();
-    if (!doubts.empty()) {
-      return ", but " + doubts.front();
     }
     if (isUnasked()) {
       return ", but no refinement asked all samples together whether something is not modelled: "
@@ -100,6 +96,20 @@ class Examiner {
     }
     const std::string confounded = confoundedRegistration();
     return confounded.empty() ? unstatedRegistration() : confounded;
+  }
+
+  std::string unidentified() const {
+    const std::vector<std::string> open = session_.openParameters();
+    if (!open.empty()) {
+      return ", " + number(open.size()) + " that were asked for are not";
+    }
+    return identified_ < parameters_.size() ? ", the others are not" : "";
+  }
+
+  /// A sentence as a part of another one.
+  static std::string clause(const std::string& sentence) {
+    const std::size_t end = sentence.find_last_not_of('.');
+    return sentence.substr(0, end == std::string::npos ? 0 : end + 1);
   }
 
   /// Whether poles and coils were calibrated one after the other only: each cycle has few samples

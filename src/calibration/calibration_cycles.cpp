@@ -158,11 +158,17 @@ std::string join(const ParameterSpace& space,
                 all.probability);
 }
 
+/// What is to say of observations that repeat others and are left out.
+struct LeftOut {
+  std::string words;
+  std::vector<std::string> doubts;
+};
+
 /// Solves without the observations that repeat others, and with them where there is no noise that
-/// could tell them apart. Returns what is to say of those that are left out.
-std::string estimateOnce(EstimationProblem& problem,
-                         const EstimationOptions& options,
-                         Estimate& estimate) {
+/// could tell them apart.
+LeftOut estimateOnce(EstimationProblem& problem,
+                     const EstimationOptions& options,
+                     Estimate& estimate) {
   const std::vector<RepeatedObservation> repeated =
       repeatedObservations(*problem.samples, problem.observations, options);
   if (repeated.empty()) {
@@ -178,7 +184,8 @@ std::string estimateOnce(EstimationProblem& problem,
     estimate = sac::estimate(problem, options);
     return {};
   }
-  return repeatedInWords(*problem.samples, all, repeated);
+  return {repeatedInWords(*problem.samples, all, repeated),
+          stillSensorsInWords(*problem.samples, all, repeated, options)};
 }
 
 /// What keeps an estimate from being good.
@@ -245,10 +252,12 @@ CycleOutcome runCycle(const CalibrationModel& model,
     return outcome;
   }
   Estimate estimate;
-  const std::string left_out = estimateOnce(problem, options, estimate);
+  const LeftOut left_out = estimateOnce(problem, options, estimate);
   report.message = failure(problem, estimate, request, options);
   if (report.message.empty()) {
-    report.doubts = doubtsOf(problem, request, options, estimate);
+    report.doubts = left_out.doubts;
+    const std::vector<std::string> others = doubtsOf(problem, request, options, estimate);
+    report.doubts.insert(report.doubts.end(), others.begin(), others.end());
   }
   std::string together;
   if (motion != nullptr && report.message.empty()) {
@@ -271,7 +280,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
     refuse(problem, estimate, advice, report);
-    report.message += left_out;
+    report.message += left_out.words;
     return outcome;
   }
   fillReport(samples, problem.observations, estimate, report);
@@ -282,7 +291,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
   conclude(model, estimate, coordinates, request.expected_errors, outcome.state, report);
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
-      left_out + together;
+      left_out.words + together;
   return outcome;
 }
 

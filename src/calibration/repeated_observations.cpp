@@ -137,6 +137,20 @@ void addRepeated(const Measurements& measurements, std::vector<RepeatedObservati
   }
 }
 
+/// Whether what was measured twice cannot have been the same.
+bool areApart(const Sample& a, const Sample& b, Quantity quantity, double current_threshold) {
+  constexpr double kMoved = 0.02;  // [rad] which no sensor overlooks
+  if ((a.joint_position - b.joint_position).norm() > kMoved) {
+    return true;
+  }
+  return quantity == Quantity::kTorque &&
+         (a.current - b.current).lpNorm<Eigen::Infinity>() > current_threshold;
+}
+
+const char* nameOf(Quantity quantity) {
+  return quantity == Quantity::kTorque ? "torques" : "orientations";
+}
+
 std::size_t countOf(const std::vector<Observation>& observations, Quantity quantity) {
   return static_cast<std::size_t>(
       std::count_if(observations.begin(), observations.end(), [quantity](const Observation& one) {
@@ -207,7 +221,7 @@ std::string repeatedInWords(const std::vector<Sample>& samples,
       text += format(" %zu of %zu %s repeat an earlier sample bit for bit (sample %s%s).",
                      count,
                      countOf(observations, quantity),
-                     quantity == Quantity::kTorque ? "torques" : "orientations",
+                     nameOf(quantity),
                      pairs.c_str(),
                      count > kMostNamed ? ", …" : "");
     }
@@ -217,6 +231,35 @@ std::string repeatedInWords(const std::vector<Sample>& samples,
                             " They are left out, for what is measured anew never repeats: look for "
                             "a sensor that stood still, rows that are doubled, or a recording that "
                             "was taken twice.";
+}
+
+std::vector<std::string> stillSensorsInWords(const std::vector<Sample>& samples,
+                                             const std::vector<Observation>& observations,
+                                             const std::vector<RepeatedObservation>& repeated,
+                                             const EstimationOptions& options) {
+  constexpr std::size_t kLeast = 3;
+  constexpr std::size_t kPart = 4;
+  std::vector<std::string> words;
+  for (const Quantity quantity : {Quantity::kOrientation, Quantity::kTorque}) {
+    const auto still = static_cast<std::size_t>(
+        std::count_if(repeated.begin(), repeated.end(), [&](const RepeatedObservation& one) {
+          return observations[one.place].quantity == quantity &&
+                 areApart(samples[observations[one.place].sample],
+                          samples[observations[one.first].sample],
+                          quantity,
+                          options.current_threshold);
+        }));
+    const std::size_t all = countOf(observations, quantity);
+    if (still >= kLeast && kPart * still > all) {
+      words.push_back(
+          format("%zu of %zu %s are those of another pose or current, bit for bit: their sensor "
+                 "stood still; look at its driver and its link, and measure again.",
+                 still,
+                 all,
+                 nameOf(quantity)));
+    }
+  }
+  return words;
 }
 
 }  // namespace sac

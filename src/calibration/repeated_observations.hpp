@@ -39,4 +39,11 @@ std::string repeatedInWords(const std::vector<Sample>& samples,
                             const std::vector<Observation>& observations,
                             const std::vector<RepeatedObservation>& repeated);
 
+/// What keeps a calibration from being good: a stream of which more than a quarter repeats what was
+/// measured at another pose, or with another current. Its sensor stood still while others did not.
+std::vector<std::string> stillSensorsInWords(const std::vector<Sample>& samples,
+                                             const std::vector<Observation>& observations,
+                                             const std::vector<RepeatedObservation>& repeated,
+                                             const EstimationOptions& options);
+
 }  // namespace sac

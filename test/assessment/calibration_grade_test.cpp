@@ -75,6 +75,23 @@ TEST(CalibrationGrade, UsableWherePartsAreMissing) {
   EXPECT_TRUE(tells(graded, "9 of 73 parameters are identified")) << graded.reason;
 }
 
+TEST(CalibrationGrade, TellsADoubtBesideWhatIsOpen) {
+  std::vector<Sample> samples = scenarios::heldOutSession();
+  std::size_t n = 0;
+  for (Sample& sample : samples) {
+    if (sample.has_orientation && !sample.validation && ++n % 3 == 0) {
+      sample.R_stator_rotor = rotationExp({0.0, 0.2, 0.0}) * sample.R_stator_rotor;
+    }
+  }
+  CalibrationConfig config = registered();
+  config.estimation.max_rejected_fraction = 0.45;
+  const GradedCalibration graded = gradeOf(samples, {{Cycle::kJoint}}, config);
+  EXPECT_EQ(graded.grade, Grade::kUsable);
+  EXPECT_TRUE(tells(graded, "9 of 73 parameters are identified, the others are not, but "))
+      << graded.reason;
+  EXPECT_TRUE(tells(graded, "were left out as outliers")) << graded.reason;
+}
+
 TEST(CalibrationGrade, UsableWhereTheWantedAccuracyIsMissed) {
   CalibrationConfig config = registered();
   config.wanted.orientation = 1e-7;

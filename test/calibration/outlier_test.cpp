@@ -77,6 +77,27 @@ TEST_F(Outliers, AreToldAsADoubtWhereTheyAreMoreThanAQuarter) {
   EXPECT_EQ(doubts(6).front().rfind("6 of 21 orientations were left out as outliers", 0), 0U);
 }
 
+TEST_F(Outliers, SensorsThatStoodStillAreADoubt) {
+  const CalibrationState nominal = nominalState(space_, ManufacturingTolerance());
+  const auto doubts = [&](std::size_t still, bool is_moved) {
+    scenarios::Generator generator(5);
+    const auto poses = scenarios::randomPoses(21, 0.6, generator);
+    std::vector<Sample> data = scenarios::orientationSamples(
+        truth_, poses, 1e-3, scenarios::uniformStddev(1e-3), generator);
+    for (std::size_t n = 0; n < still; ++n) {
+      data[20 - n].R_stator_rotor = data[0].R_stator_rotor;
+      if (!is_moved) {
+        data[20 - n].joint_position = data[0].joint_position;
+      }
+    }
+    return runCycle(model_, data, nominal, {Cycle::kJoint}, options_).report.doubts;
+  };
+  EXPECT_TRUE(doubts(5, true).empty());
+  EXPECT_TRUE(doubts(8, false).empty());  // rows that are doubled count once, and are right
+  ASSERT_EQ(doubts(6, true).size(), 1U);
+  EXPECT_EQ(doubts(6, true).front().rfind("6 of 21 orientations are those of another pose", 0), 0U);
+}
+
 TEST_F(Outliers, OfTorqueAreFoundAndTheRestFitsAsIfTheyWereAbsent) {
   const CalibrationState state = scenarios::exactJoints(space_, truth_, ManufacturingTolerance());
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
