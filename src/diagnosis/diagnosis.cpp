@@ -9,6 +9,7 @@
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "strength_screen.hpp"
 #include "torque_screen.hpp"
@@ -40,6 +41,16 @@ struct Judged {
     return score() - kMistakeCost * values - (values > 0.0 ? kUnexplained * gain : 0.0);
   }
 };
+
+/// Whether an explanation bends the unit far beyond its tolerances, or leaves misfits: perhaps it
+/// is a part of the right one.
+bool isStrained(const PosteriorFit& fit) {
+  constexpr double kMisfit = 1.5;
+  constexpr double kChance = 1e-4;
+  const double bent = fit.log_likelihood - fit.log_posterior;
+  return fit.scale > kMisfit ||
+         bent > 0.5 * chiSquareLimit(static_cast<double>(fit.x.size()), kChance);
+}
 
 bool isMaterial(const Judged& judged) {
   Eigen::Index at = 0;
@@ -91,7 +102,8 @@ class Diagnostician {
     if (has_orientations) {
       diagnoseOrientations();
     }
-    if (torques_ >= kFewestTorques) {
+    // Where joints or tracker are wrong in a way that nobody knows, torques blame coils for it.
+    if (torques_ >= kFewestTorques && are_orientations_explained_) {
       diagnoseTorques(!has_orientations);
     }
     result_.actuator = case_.actuator;
@@ -103,13 +115,20 @@ class Diagnostician {
   void diagnoseOrientations() {
     for (int round = 0; round < kMostRounds; ++round) {
       const PosteriorFit base = fitted({}, FittedStream::kOrientations);
-      std::vector<Judged> found = decided(
-          judged(screenOrientations(case_, config_), base, FittedStream::kOrientations, false));
-      if (found.empty() && base.scale > mostMisfit()) {
-        found = decided(judged(
-            screenOrientationPairs(case_, config_), base, FittedStream::kOrientations, false));
+      std::vector<Judged> candidates =
+          judged(screenOrientations(case_, config_), base, FittedStream::kOrientations, false);
+      std::vector<Judged> found = decided(candidates);
+      if (found.empty() ? base.scale > mostMisfit() : isStrained(found.front().fit)) {
+        for (Judged& pair : judged(screenOrientationPairs(case_, config_),
+                                   base,
+                                   FittedStream::kOrientations,
+                                   false)) {
+          candidates.push_back(std::move(pair));
+        }
+        found = decided(std::move(candidates));
       }
       if (found.empty()) {
+        are_orientations_explained_ = base.scale <= mostMisfit();
         return;
       }
       take(judgedByTorques(std::move(found)));
@@ -316,6 +335,7 @@ class Diagnostician {
   WiringDiagnosis result_;
   std::size_t orientations_ = 0;
   std::size_t torques_ = 0;
+  bool are_orientations_explained_ = true;
 };
 
 }  // namespace

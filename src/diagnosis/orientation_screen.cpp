@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
+
+#include <Eigen/SVD>
 
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
@@ -123,6 +126,170 @@ std::vector<Hypothesis> singles(const WiringCase& few, const CalibrationConfig& 
   return all;
 }
 
+/// Two mistakes at once, of which at most the second has continuous values unless both are scales
+/// or both are frames.
+class PairScreen {
+ public:
+  PairScreen(const WiringCase& few, const CalibrationConfig& config)
+      : few_(few),
+        config_(config),
+        unchanged_(lossOf(few, {}, config)),
+        joints_(jointHypotheses(few.actuator, config.tolerance)),
+        tracker_(trackerHypotheses()) {}
+
+  std::vector<ScreenedCandidate> run() {
+    addDiscrete();
+    keepBest(candidates_, kMostFitted);
+    std::vector<ScreenedCandidate> discrete = std::exchange(candidates_, {});
+    addContinuous();
+    addScales();
+    addFrames();
+    keepBest(candidates_, kMostFitted);
+    for (ScreenedCandidate& candidate : discrete) {
+      candidates_.push_back(std::move(candidate));
+    }
+    return std::move(candidates_);
+  }
+
+ private:
+  static bool isOf(const Hypothesis& hypothesis, const std::string& kind) {
+    return hypothesis.cause.rfind(kind, 0) == 0;
+  }
+
+  void add(const Hypothesis& first, const Hypothesis& second) {
+    const double gain = unchanged_ - lossOf(few_, {first, second}, config_);
+    if (gain > 0.0) {
+      candidates_.push_back({{first, second}, gain});
+    }
+  }
+
+  std::vector<Hypothesis> discreteJoints() const {
+    std::vector<Hypothesis> discrete;
+    for (const Hypothesis& one : joints_) {
+      if (one.start.size() == 0) {
+        discrete.push_back(one);
+      }
+    }
+    return discrete;
+  }
+
+  void addDiscrete() {
+    std::vector<Hypothesis> all = discreteJoints();
+    const std::size_t joints = all.size();
+    all.insert(all.end(), tracker_.begin(), tracker_.end());
+    for (std::size_t a = 0; a < all.size(); ++a) {
+      for (std::size_t b = 0; b < all.size(); ++b) {
+        const bool is_tracker_first = a >= joints && b < joints;
+        if (!is_tracker_first && all[a].cause != all[b].cause) {
+          add(all[a], all[b]);
+        }
+      }
+    }
+  }
+
+  /// An index mark or a frame that is off beside a discrete mistake, or a second index mark.
+  void addContinuous() {
+    std::vector<Hypothesis> firsts = discreteJoints();
+    for (const Hypothesis& one : tracker_) {
+      if (!isOf(one, "tracker_frame") && !isOf(one, "marker_frame")) {
+        firsts.push_back(one);
+      }
+    }
+    for (const Hypothesis& first : firsts) {
+      const WiringCase mended = corrected(few_, {first}, {});
+      for (Hypothesis second : joints_) {
+        if (isOf(second, "joint_index")) {
+          scan(second, angleGrid(), mended, config_);
+          add(first, second);
+        }
+      }
+      for (const bool is_tracker : {true, false}) {
+        const double tolerance = config_.tolerance.joint_axis;
+        Hypothesis second = is_tracker ? trackerRotation(tolerance) : markerRotation(tolerance);
+        scanRotation(second, mended, is_tracker, config_);
+        add(first, second);
+      }
+    }
+    for (Hypothesis first : joints_) {
+      if (!isOf(first, "joint_index")) {
+        continue;
+      }
+      for (const double angle : angleGrid()) {
+        first.start[0] = angle;
+        addBestIndexAfter(first);
+      }
+    }
+  }
+
+  void addBestIndexAfter(const Hypothesis& first) {
+    const WiringCase mended = corrected(few_, {first}, first.start);
+    for (Hypothesis second : joints_) {
+      if (isOf(second, "joint_index") && second.cause > first.cause) {
+        scan(second, angleGrid(), mended, config_);
+        add(first, second);
+      }
+    }
+  }
+
+  /// Two of three joints in degrees, as where one reads another device than the others.
+  void addScales() {
+    for (Hypothesis first : joints_) {
+      for (Hypothesis second : joints_) {
+        if (!isOf(first, "joint_scale") || !isOf(second, "joint_scale") ||
+            second.cause <= first.cause) {
+          continue;
+        }
+        for (const double factor : {kOneDegree, 1.0 / kOneDegree}) {
+          first.start[0] = factor;
+          second.start[0] = factor;
+          add(first, second);
+        }
+      }
+    }
+  }
+
+  /// Tracker and marker that nobody registered, in closed form (Shah 2013): the rotations A and B
+  /// that maximise Σ tr(R(q)ᵀ A R_measured B).
+  void addFrames() {
+    using Matrix9d = Eigen::Matrix<double, 9, 9>;
+    const JointGeometry joints = jointGeometry(few_.actuator);
+    Matrix9d sum = Matrix9d::Zero();
+    for (const Sample& sample : few_.samples) {
+      const Eigen::Matrix3d R = rotorOrientation(joints, sample.joint_position);
+      for (Eigen::Index a = 0; a < 3; ++a) {
+        for (Eigen::Index b = 0; b < 3; ++b) {
+          sum.block<3, 3>(3 * a, 3 * b) += sample.R_stator_rotor(a, b) * R;
+        }
+      }
+    }
+    const Eigen::JacobiSVD<Matrix9d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Matrix<double, 9, 1> left = svd.matrixU().col(0);
+    const Eigen::Matrix<double, 9, 1> right = svd.matrixV().col(0);
+    const Eigen::Map<const Eigen::Matrix3d> A(left.data());
+    const Eigen::Map<const Eigen::Matrix3d> B_transposed(right.data());
+    const double sign = A.determinant() < 0.0 ? -1.0 : 1.0;
+    Hypothesis tracker = trackerRotation(config_.tolerance.joint_axis);
+    Hypothesis marker = markerRotation(config_.tolerance.joint_axis);
+    tracker.start = rotationLog(nearestRotation(sign * A));
+    marker.start = rotationLog(nearestRotation(sign * B_transposed.transpose()));
+    add(tracker, marker);
+  }
+
+  static Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double handed = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, handed).asDiagonal() *
+           svd.matrixV().transpose();
+  }
+
+  const WiringCase few_;
+  const CalibrationConfig& config_;
+  const double unchanged_;
+  const std::vector<Hypothesis> joints_;
+  const std::vector<Hypothesis> tracker_;
+  std::vector<ScreenedCandidate> candidates_;
+};
+
 }  // namespace
 
 double orientationLoss(const WiringCase& given, const CalibrationConfig& config) {
@@ -172,41 +339,7 @@ std::vector<ScreenedCandidate> screenOrientations(const WiringCase& described,
 
 std::vector<ScreenedCandidate> screenOrientationPairs(const WiringCase& described,
                                                       const CalibrationConfig& config) {
-  const WiringCase few = orientationsOf(described);
-  const double unchanged = lossOf(few, {}, config);
-  std::vector<Hypothesis> joints;
-  for (const Hypothesis& hypothesis : jointHypotheses(described.actuator, config.tolerance)) {
-    if (hypothesis.start.size() == 0) {
-      joints.push_back(hypothesis);
-    }
-  }
-  const std::vector<Hypothesis> tracker = trackerHypotheses();
-  std::vector<ScreenedCandidate> candidates;
-  const auto add = [&](const Hypothesis& first, const Hypothesis& second) {
-    const double gain = unchanged - lossOf(few, {first, second}, config);
-    if (gain > 0.0) {
-      candidates.push_back({{first, second}, gain});
-    }
-  };
-  for (const Hypothesis& first : joints) {
-    for (const Hypothesis& second : joints) {
-      if (first.cause != second.cause) {
-        add(first, second);
-      }
-    }
-    for (const Hypothesis& second : tracker) {
-      add(first, second);
-    }
-  }
-  for (const Hypothesis& first : tracker) {
-    for (const Hypothesis& second : tracker) {
-      if (first.cause != second.cause) {
-        add(first, second);
-      }
-    }
-  }
-  keepBest(candidates, kMostFitted);
-  return candidates;
+  return PairScreen(orientationsOf(described), config).run();
 }
 
 }  // namespace sac

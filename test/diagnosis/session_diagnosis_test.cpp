@@ -194,6 +194,40 @@ TEST_F(SessionDiagnosis, TellsByHowManyRowsTorquesAreLate) {
       << mistakes.front().message;
 }
 
+class TwoMistakesAtAJoint : public SessionDiagnosis {
+ protected:
+  /// Causes named where the readings are `changed`.
+  template <typename Change>
+  std::vector<std::string> named(const Change& changed) {
+    const CalibrationSession given = session(scenarios::paperTruth(), 21);
+    std::vector<Sample> samples = given.samples();
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      changed(samples[n].joint_position, n < samples.size() / 2);
+    }
+    std::vector<std::string> causes;
+    for (const Diagnosis& one : diagnoseMistakes({given.start(), samples, {}})) {
+      causes.push_back(one.cause);
+    }
+    return causes;
+  }
+};
+
+TEST_F(TwoMistakesAtAJoint, AreNamedTogether) {
+  const auto turned = [](Eigen::Vector3d& q, bool) { q[2] = 1.2 - q[2]; };
+  EXPECT_EQ(named(turned), (std::vector<std::string>{"joint_sign:3", "joint_index:3"}));
+}
+
+// A single one explains a part, with a unit that is bent beyond its tolerances.
+TEST_F(TwoMistakesAtAJoint, OfTwoJointsAreNotOneAndABentUnit) {
+  const auto turned = [](Eigen::Vector3d& q, bool) { q += Eigen::Vector3d(0.5, -0.4, 0.0); };
+  EXPECT_EQ(named(turned), (std::vector<std::string>{"joint_index:1", "joint_index:2"}));
+}
+
+TEST_F(TwoMistakesAtAJoint, NobodyKnowsOfAReadingThatJumpsAndBlamesNoCoil) {
+  const auto jumps = [](Eigen::Vector3d& q, bool early) { q[0] += early ? 0.6 : 0.0; };
+  EXPECT_EQ(named(jumps), std::vector<std::string>{});
+}
+
 class Validity : public SessionDiagnosis {
  protected:
   /// A calibrated session, with further poses of another truth held out.

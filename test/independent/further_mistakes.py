@@ -1,4 +1,4 @@
-"""Thirty mistakes beside those of mistakes.py, of the same form: other places, other sizes, several at once."""
+"""Thirty-six mistakes beside those of mistakes.py, of the same form: other places, other sizes, several at once."""
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from mistakes import (
     joint_sign,
     joints_changed,
     marker_frame,
+    orientations_changed,
     pole_strength,
     rows_shifted,
     torque_frame,
@@ -43,6 +44,27 @@ FURTHER_LEVEL_1 = {
     "joint 3 and tracker": (
         both(joint_sign(2), tracker_frame(turn(X, np.pi / 2))),
         [("joint_sign:3", "tracker_frame")],
+    ),
+    "joint 3 backwards, its index off": (both(joint_sign(2), joint_index(2, 0.7)), [("joint_sign:3", "joint_index:3")]),
+    "index marks of joints 1 and 2": (
+        both(joint_index(0, 0.5), joint_index(1, -0.4)),
+        [("joint_index:1", "joint_index:2"), ("tracker_frame", "joint_index:2")],
+    ),
+    "joints 1 and 2 alone in degrees": (
+        both(joint_scale(0, np.degrees(1.0)), joint_scale(1, np.degrees(1.0))),
+        [("joint_scale:1", "joint_scale:2")],
+    ),
+    "tracker and marker askew": (
+        both(tracker_frame(turn([1, 2, 3], 1.1)), marker_frame(turn([-2, 1, 0.5], 0.9))),
+        [("tracker_frame", "marker_frame")],
+    ),
+    "joint 1 backwards, tracker askew": (
+        both(joint_sign(0), tracker_frame(turn([1, 1, 0], 0.45))),
+        [("joint_sign:1", "tracker_frame")],
+    ),
+    "inverse, marker askew": (
+        both(marker_frame(turn([1, 0, 1], 0.7)), orientations_changed(lambda R: R.T)),
+        [("orientation_inverted", "marker_frame"), ("orientation_inverted", "tracker_frame")],
     ),
 }
 
