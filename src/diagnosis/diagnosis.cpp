@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -108,10 +109,16 @@ class Diagnostician {
     }
     result_.actuator = case_.actuator;
     result_.samples = case_.samples;
+    redescribe();
     return std::move(result_);
   }
 
  private:
+  struct Redescription {
+    std::function<void(Actuator&, const Eigen::VectorXd& values)> change;
+    Eigen::VectorXd values;
+  };
+
   void diagnoseOrientations() {
     for (int round = 0; round < kMostRounds; ++round) {
       const PosteriorFit base = fitted({}, FittedStream::kOrientations);
@@ -138,6 +145,7 @@ class Diagnostician {
   void diagnoseTorques(bool with_joints) {
     const WiringCase before = case_;
     const WiringDiagnosis result_before = result_;
+    const std::vector<Redescription> redescriptions_before = redescriptions_;
     PosteriorFit base = fitted({}, FittedStream::kTorques);
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<Judged> found =
@@ -152,6 +160,7 @@ class Diagnostician {
     if (base.scale > mostMisfit()) {
       case_ = before;
       result_ = result_before;
+      redescriptions_ = redescriptions_before;
     }
   }
 
@@ -295,11 +304,20 @@ class Diagnostician {
     Eigen::Index at = 0;
     for (const Hypothesis& part : first.parts) {
       if (part.redescribe) {
-        part.redescribe(result_.redescribed, first.fit.values.segment(at, part.start.size()));
+        redescriptions_.push_back(
+            {part.redescribe, first.fit.values.segment(at, part.start.size())});
       } else {
         result_.beyond_description.push_back(part.cause);
       }
       at += part.start.size();
+    }
+  }
+
+  /// Corrections of what was measured come one after the other; in the description the last one is
+  /// next to the unit: of readings that are turned around and then shifted, the shift comes first.
+  void redescribe() {
+    for (auto one = redescriptions_.rbegin(); one != redescriptions_.rend(); ++one) {
+      one->change(result_.redescribed, one->values);
     }
   }
 
@@ -333,6 +351,7 @@ class Diagnostician {
   const CalibrationConfig& config_;
   WiringCase case_;
   WiringDiagnosis result_;
+  std::vector<Redescription> redescriptions_;
   std::size_t orientations_ = 0;
   std::size_t torques_ = 0;
   bool are_orientations_explained_ = true;

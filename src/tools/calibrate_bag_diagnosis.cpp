@@ -19,6 +19,10 @@ std::string effectOf(const std::string& cause) {
   return family == "pole_gain" || family == "coil_gain" ? family + "s" : cause;
 }
 
+bool isOfJointNames(const Diagnosis& diagnosis) {
+  return diagnosis.cause.rfind("joint_swap", 0) == 0;
+}
+
 }  // namespace
 
 std::string diagnosisLines(const std::vector<Diagnosis>& diagnoses) {
@@ -57,6 +61,10 @@ void writeCorrection(const CalibrationSession& session,
     description.actuator = wiring.redescribed;
     saveDescription(path, description, policy);
     std::cout << "Corrected description: " << path << "\n";
+    if (std::any_of(wiring.mistakes.begin(), wiring.mistakes.end(), isOfJointNames)) {
+      std::cout << "It exchanges names of joints, which act on streams alone: calibrate by it with "
+                   "--from streams, for recorded samples keep their order.\n";
+    }
     return;
   }
   const std::vector<std::string>& effects = effectNames();

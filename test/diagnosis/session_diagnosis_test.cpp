@@ -3,11 +3,13 @@
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "support/scenarios.hpp"
 
@@ -226,6 +228,39 @@ TEST_F(TwoMistakesAtAJoint, OfTwoJointsAreNotOneAndABentUnit) {
 TEST_F(TwoMistakesAtAJoint, NobodyKnowsOfAReadingThatJumpsAndBlamesNoCoil) {
   const auto jumps = [](Eigen::Vector3d& q, bool early) { q[0] += early ? 0.6 : 0.0; };
   EXPECT_EQ(named(jumps), std::vector<std::string>{});
+}
+
+class Redescription : public SessionDiagnosis {
+ protected:
+  /// Mistakes that samples `changed` make beside the corrected description.
+  template <typename Change>
+  std::vector<Diagnosis> left(const Change& changed) {
+    const CalibrationSession given = session(scenarios::paperTruth(), 23);
+    std::vector<Sample> samples = given.samples();
+    for (Sample& sample : samples) {
+      changed(sample);
+    }
+    const WiringDiagnosis wiring = diagnoseWiring(given.start().actuator, samples, {});
+    EXPECT_GE(wiring.mistakes.size(), 2U);
+    EXPECT_TRUE(wiring.beyond_description.empty());
+    return diagnoseWiring(wiring.redescribed, samples, {}).mistakes;
+  }
+};
+
+TEST_F(Redescription, OfAJointThatCountsBackwardsFromAnotherIndex) {
+  const std::vector<Diagnosis> mistakes =
+      left([](Sample& sample) { sample.joint_position[2] = 1.2 - sample.joint_position[2]; });
+  EXPECT_TRUE(mistakes.empty()) << mistakes.front().message;
+}
+
+TEST_F(Redescription, OfThreeCoilsInACircle) {
+  const std::vector<Diagnosis> mistakes = left([](Sample& sample) {
+    if (sample.current.size() > 0) {
+      std::swap(sample.current[0], sample.current[1]);
+      std::swap(sample.current[1], sample.current[2]);
+    }
+  });
+  EXPECT_TRUE(mistakes.empty()) << mistakes.front().message;
 }
 
 class Validity : public SessionDiagnosis {
