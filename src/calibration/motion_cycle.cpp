@@ -96,29 +96,6 @@ bool changesStrength(const PlacedEffect& placed, const ParameterSpace& space) {
          placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
 }
 
-std::vector<Eigen::Index> requestedCoordinates(const ParameterSpace& space,
-                                               const MotionRecording& recording) {
-  const bool has_orientations =
-      std::any_of(recording.spans.begin(), recording.spans.end(), [](const MotionStreams& streams) {
-        return !streams.orientations.empty();
-      });
-  std::vector<Eigen::Index> coordinates(static_cast<std::size_t>(space.effect()));
-  std::iota(coordinates.begin(), coordinates.end(), 0);
-  const std::vector<PlacedEffect>& effects = space.effects().effects();
-  const bool strength_moves =
-      std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
-        return changesStrength(placed, space);
-      });
-  for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
-    // Beside strengths one inertia is the reference; else all could shrink to nothing.
-    const bool is_reference = strength_moves && space.effects().name(e) == "rotor_inertia/zz";
-    if (!is_reference && actsOnMotion(space.effects().at(e), has_orientations)) {
-      coordinates.push_back(space.effect() + e);
-    }
-  }
-  return coordinates;
-}
-
 /// Why an estimate is not to be used; empty: it is.
 std::string failure(const MotionProblem& problem,
                     const MotionEstimate& found,
@@ -206,6 +183,14 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
   return words;
 }
 
+HasOrientations orientationsIn(const MotionRecording& recording) {
+  const bool has_any =
+      std::any_of(recording.spans.begin(), recording.spans.end(), [](const MotionStreams& streams) {
+        return !streams.orientations.empty();
+      });
+  return has_any ? HasOrientations::kYes : HasOrientations::kNo;
+}
+
 /// With a model that knows motion.
 CycleOutcome runWithMotion(const CalibrationModel& model,
                            const MotionRecording& recording,
@@ -218,7 +203,7 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   problem.model = &model;
   problem.recording = &recording;
   problem.prior = state.belief;
-  problem.free = requestedCoordinates(model.space(), recording);
+  problem.free = motionCoordinates(model.space(), orientationsIn(recording));
   const MotionEstimate found = estimateMotion(problem, config.estimation, MotionOptions());
   const std::string words = failure(problem, found, config.estimation);
   report.motion = found.summary;
@@ -241,6 +226,26 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
 }
 
 }  // namespace
+
+std::vector<Eigen::Index> motionCoordinates(const ParameterSpace& space,
+                                            HasOrientations has_orientations) {
+  std::vector<Eigen::Index> coordinates(static_cast<std::size_t>(space.effect()));
+  std::iota(coordinates.begin(), coordinates.end(), 0);
+  const std::vector<PlacedEffect>& effects = space.effects().effects();
+  const bool strength_moves =
+      std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
+        return changesStrength(placed, space);
+      });
+  for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
+    // Beside strengths one inertia is the reference; else all could shrink to nothing.
+    const bool is_reference = strength_moves && space.effects().name(e) == "rotor_inertia/zz";
+    if (!is_reference &&
+        actsOnMotion(space.effects().at(e), has_orientations == HasOrientations::kYes)) {
+      coordinates.push_back(space.effect() + e);
+    }
+  }
+  return coordinates;
+}
 
 CycleOutcome runMotionCycle(const CalibrationModel& model,
                             const MotionRecording* recording,

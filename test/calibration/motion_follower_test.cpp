@@ -1,0 +1,108 @@
+#include "spherical_actuator_calibration/calibration/motion_follower.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/moving_rotor.hpp"
+
+namespace sac {
+namespace {
+
+/// Lets a follower see a motion as it comes; its groups after every window.
+std::vector<std::vector<GroupUncertainty>> follow(const MotionStreams& streams,
+                                                  MotionFollower& follower) {
+  std::vector<std::vector<GroupUncertainty>> told;
+  MotionSlicer slicer(static_cast<std::size_t>(streams.currents.cols()), MotionOptions());
+  std::size_t orientation = 0;
+  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
+    const auto row = streams.currents.row(static_cast<Eigen::Index>(n));
+    slicer.add(CurrentMeasurement{streams.current_stamps[n], row.transpose().cast<double>()});
+    for (; orientation < streams.orientation_stamps.size() &&
+           streams.orientation_stamps[orientation] <= streams.joint_stamps[n];
+         ++orientation) {
+      slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
+                                        streams.orientations[orientation]});
+    }
+    slicer.add(JointMeasurement{streams.joint_stamps[n], streams.joints[n]});
+    while (auto slice = slicer.take()) {
+      follower.add(std::move(*slice));
+      told.push_back(follower.groups());
+    }
+  }
+  return told;
+}
+
+TEST(MotionFollower, TellsEachGroupBetterAndBetter) {
+  scenarios::Generator generator(3);
+  MovingRotor moving;
+  moving.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+  moving.rotor.unbalance = Eigen::Vector3d(1e-3, -5e-4, 2e-3);
+  moving.duration = 9.0;
+  constexpr double kWanted = 1e-4;  // [rad]
+  MotionFollower follower(scenarios::paperNominal(), CalibrationConfig(), kWanted);
+  EXPECT_FALSE(follower.timeLeft());
+  const auto told = follow(moving.record().spans.front(), follower);
+  ASSERT_TRUE(follower.estimate().is_told);
+  ASSERT_EQ(told.front().size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(told.front()[n].group, (std::array{"joints", "poles", "coils"})[n]);
+    // As uncertain as it was made.
+    EXPECT_GT(told.front()[n].stddev, 5e-3);
+    EXPECT_LT(told.back()[n].stddev, 1e-3);
+    EXPECT_EQ(told.front()[n].left, told.front()[n].parameters);
+    EXPECT_EQ(told.back()[n].parameters, (std::array{9U, 16U, 48U})[n]);
+    EXPECT_EQ(told.back()[n].left == 0, told.back()[n].stddev <= kWanted);
+  }
+  EXPECT_EQ(told.back()[2].least_known.rfind("coil_", 0), 0U) << told.back()[2].least_known;
+  const std::vector<ParameterEstimate> dynamics = follower.dynamics();
+  const auto unbalance = std::find_if(dynamics.begin(), dynamics.end(), [](const auto& one) {
+    return one.name == "rotor_unbalance/z";
+  });
+  ASSERT_NE(unbalance, dynamics.end());
+  EXPECT_NEAR(unbalance->value, 2e-3, 1e-4);
+  EXPECT_TRUE(unbalance->observable);
+}
+
+/// The worst standard deviation of all.
+double worst(const MotionFollower& follower) {
+  double most = 0.0;
+  for (const GroupUncertainty& one : follower.groups()) {
+    most = std::max(most, one.stddev);
+  }
+  return most;
+}
+
+TEST(MotionFollower, TellsHowLongItTakes) {
+  scenarios::Generator generator(3);
+  MovingRotor moving;
+  moving.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+  moving.duration = 9.0;
+  const MotionStreams streams = moving.record().spans.front();
+  MotionFollower once(scenarios::paperNominal(), CalibrationConfig(), 1e-4);
+  follow(streams, once);
+  // Half of what is there takes four times as long.
+  MotionFollower finer(scenarios::paperNominal(), CalibrationConfig(), 0.5 * worst(once));
+  follow(streams, finer);
+  EXPECT_NEAR(finer.timeLeft().value(), 3.0 * finer.estimate().duration, 1e-6);
+  MotionFollower coarser(scenarios::paperNominal(), CalibrationConfig(), 2.0 * worst(once));
+  follow(streams, coarser);
+  EXPECT_EQ(coarser.timeLeft(), 0.0);
+}
+
+TEST(MotionFollower, SuitsActuatorsWithJointsAndTorqueModel) {
+  Actuator actuator = scenarios::paperNominal();
+  EXPECT_TRUE(MotionFollower::suits(actuator));
+  actuator.has_joints = false;
+  EXPECT_FALSE(MotionFollower::suits(actuator));
+  actuator.has_joints = true;
+  actuator.poles.clear();
+  EXPECT_FALSE(MotionFollower::suits(actuator));
+}
+
+}  // namespace
+}  // namespace sac
