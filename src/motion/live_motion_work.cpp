@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -129,8 +130,7 @@ double LiveMotionWork::linearizeKept(bool with_covariance) {
   parallelFor(kept_.size(), threads, [&](unsigned worker, std::size_t n) {
     LiveWindow& window = kept_[n];
     const bool is_first = window.linearizedAt().size() == 0;
-    const Eigen::VectorXd expected =
-        is_first || with_covariance ? Eigen::VectorXd() : residualOf(window);
+    const Eigen::VectorXd expected = is_first ? Eigen::VectorXd() : window.balanceAt(x_);
     BalanceOrder order;
     order.covariance = with_covariance || is_first;
     window.linearize(point, order, evaluators_[worker]);
@@ -138,8 +138,8 @@ double LiveMotionWork::linearizeKept(bool with_covariance) {
       window.whiten(factors_.joints, factors_.currents * noise_.current * noise_.current);
     }
     window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
-    const Eigen::VectorXd residual = residualOf(window);
-    wrong[n] = expected.size() == 0 ? residual.squaredNorm() : (residual - expected).squaredNorm();
+    const Eigen::VectorXd& residual = window.term.balance.residual;
+    wrong[n] = window.whitened(is_first ? residual : residual - expected).squaredNorm();
   });
   double sum = 0.0;
   for (const double one : wrong) {
@@ -209,7 +209,10 @@ void LiveMotionWork::linearizeAnew(bool with_noise) {
   constexpr int kMostRounds = 6;
   if (with_noise) {
     takeNoise();
-    next_noise_ = 2 * estimate_.windows;
+    // What many windows have told of the noise, more do not tell better.
+    next_noise_ = estimate_.windows < live_.kept_windows / 2
+                      ? 2 * estimate_.windows
+                      : std::numeric_limits<std::size_t>::max();
   }
   for (int round = 0; round < kMostRounds; ++round) {
     const double wrong = linearizeKept(with_noise && round == 0);
@@ -235,9 +238,7 @@ bool LiveMotionWork::misleads() {
   next_probe_ += 7;
   const MotionPoint point(*model_, places_, x_);
   evaluators_.front().evaluate(window.span(), window.term.window, point, {}, probe_);
-  const Eigen::VectorXd residual =
-      window.term.whitening.triangularView<Eigen::Lower>() * probe_.residual;
-  const double wrong = (residual - residualOf(window)).squaredNorm();
+  const double wrong = window.whitened(probe_.residual - window.balanceAt(x_)).squaredNorm();
   return wrong * static_cast<double>(kept_.size()) > live_.tolerance * live_.tolerance;
 }
 

@@ -58,9 +58,4 @@ void LiveWindow::whiten(double joint_factor, double current_variance) {
                                    current_variance * term.balance.by_currents);
 }
 
-Eigen::VectorXd LiveWindow::residualAt(const Eigen::VectorXd& x) const {
-  return term.whitening.triangularView<Eigen::Lower>() *
-         (term.balance.residual + term.balance.jacobian * (x - linearized_at_));
-}
-
 }  // namespace sac

@@ -31,8 +31,15 @@ class LiveWindow {
                              double stddev);
   void whiten(double joint_factor, double current_variance);
 
-  /// Whitened residual at coordinates x, as the derivatives say.
-  Eigen::VectorXd residualAt(const Eigen::VectorXd& x) const;
+  /// Residual at coordinates x, as the derivatives say.
+  Eigen::VectorXd balanceAt(const Eigen::VectorXd& x) const {
+    return term.balance.residual + term.balance.jacobian * (x - linearized_at_);
+  }
+  /// Whitened.
+  Eigen::VectorXd residualAt(const Eigen::VectorXd& x) const { return whitened(balanceAt(x)); }
+  Eigen::VectorXd whitened(const Eigen::VectorXd& residual) const {
+    return term.whitening.triangularView<Eigen::Lower>() * residual;
+  }
   Eigen::MatrixXd whitenedJacobian() const {
     return term.whitening.triangularView<Eigen::Lower>() * term.balance.jacobian;
   }
