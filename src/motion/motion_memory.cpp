@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/motion/motion_memory.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace sac {
@@ -52,6 +53,45 @@ void MotionMemory::add(const CurrentMeasurement& measurement) {
 void MotionMemory::add(const OrientationMeasurement& measurement) {
   take(kOrientationBytes);
   recorder_.add(measurement);
+}
+
+// Windows overlap; what they share counts once. One that is earlier than the last is of another
+// clock.
+void MotionMemory::restore(const std::vector<MotionSlice>& windows) {
+  constexpr Stamp kNone = std::numeric_limits<Stamp>::min();
+  Stamp joint = kNone;
+  Stamp current = kNone;
+  Stamp orientation = kNone;
+  Stamp begin = kNone;
+  for (const MotionSlice& window : windows) {
+    const MotionStreams& streams = window.streams;
+    if (streams.joint_stamps.front() < begin) {
+      joint = current = orientation = kNone;
+    }
+    begin = streams.joint_stamps.front();
+    std::size_t c = 0;
+    std::size_t r = 0;
+    for (std::size_t n = 0; n < streams.joints.size(); ++n) {
+      const Stamp now = streams.joint_stamps[n];
+      for (; c < streams.current_stamps.size() && streams.current_stamps[c] <= now; ++c) {
+        if (streams.current_stamps[c] > current) {
+          current = streams.current_stamps[c];
+          const auto row = streams.currents.row(static_cast<Eigen::Index>(c));
+          add(CurrentMeasurement{current, row.transpose().cast<double>()});
+        }
+      }
+      for (; r < streams.orientations.size() && streams.orientation_stamps[r] <= now; ++r) {
+        if (streams.orientation_stamps[r] > orientation) {
+          orientation = streams.orientation_stamps[r];
+          add(OrientationMeasurement{orientation, streams.orientations[r]});
+        }
+      }
+      if (now > joint) {
+        joint = now;
+        add(JointMeasurement{joint, streams.joints[n]});
+      }
+    }
+  }
 }
 
 /// One stream may flood while the joints are silent: no stretch becomes larger than half of all.

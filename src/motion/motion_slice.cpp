@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include "motion_span.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "unwrapped_angle.hpp"
 
 namespace sac {
@@ -18,6 +20,9 @@ constexpr double kWait = 0.1;
 constexpr double kHole = 0.5;
 
 constexpr std::size_t kLeastReadings = 12;
+
+/// Readings on either side of a window, for what is interpolated there.
+constexpr std::size_t kBeside = 2;
 
 Stamp ticks(double seconds) {
   return static_cast<Stamp>(std::llround(seconds * 1e9));
@@ -39,12 +44,61 @@ bool isDriven(const MotionStreams& streams) {
          streams.currents.cwiseAbs().maxCoeff() > kExcitationThreshold;
 }
 
+bool isIncreasing(const std::vector<Stamp>& stamps) {
+  return std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) == stamps.end();
+}
+
+bool isFine(const MotionStreams& streams, std::size_t coils) {
+  const auto readings = static_cast<Eigen::Index>(streams.current_stamps.size());
+  const auto isUnit = [](const Eigen::Quaterniond& orientation) {
+    constexpr double kRounding = 1e-6;
+    return std::abs(orientation.norm() - 1.0) < kRounding;
+  };
+  return isIncreasing(streams.joint_stamps) && isIncreasing(streams.current_stamps) &&
+         isIncreasing(streams.orientation_stamps) &&
+         streams.joints.size() == streams.joint_stamps.size() &&
+         std::all_of(streams.joints.begin(),
+                     streams.joints.end(),
+                     [](const Eigen::Vector3d& position) { return position.allFinite(); }) &&
+         streams.currents.rows() == readings && readings > 0 &&
+         streams.currents.cols() == static_cast<Eigen::Index>(coils) &&
+         streams.currents.allFinite() &&
+         streams.orientations.size() == streams.orientation_stamps.size() &&
+         std::all_of(streams.orientations.begin(), streams.orientations.end(), isUnit);
+}
+
+/// Why a window cannot serve; empty: it can.
+std::string refusalOf(const MotionSlice& slice, const MotionOptions& options) {
+  const MotionSpan span(slice.streams);
+  if (span.current_times.empty()) {
+    return "currents are missing";
+  }
+  std::string reason = refusalOf(span, {0, slice.window.first, slice.window.last}, options);
+  return reason.empty() && !isDriven(slice.streams) ? "no coil is on" : reason;
+}
+
 template <typename Stream>
 void dropFront(Stream& stream, std::size_t count) {
   stream.erase(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
+
+void validate(const MotionSlice& slice, std::size_t coils, const MotionOptions& options) {
+  const WindowRange& window = slice.window;
+  const bool is_within = window.first >= kBeside && window.last >= window.first + kLeastReadings &&
+                         window.last < slice.streams.joints.size() - kBeside;
+  if (slice.streams.joints.size() <= kBeside || !is_within || !isFine(slice.streams, coils)) {
+    throw DataError("A window of a motion holds none.");
+  }
+  const std::string reason = refusalOf(slice, options);
+  if (!reason.empty()) {
+    throw DataError("A window of a motion cannot serve: " + reason + ".");
+  }
+}
+
+MotionSlicer::MotionSlicer(std::size_t coils, const MotionOptions& options)
+    : coils_(coils), options_(options), begin_(kBeside) {}
 
 template <typename Value>
 void MotionSlicer::push(Stream<Value>& stream, Stamp stamp, const Value& value) {
@@ -159,14 +213,7 @@ std::optional<MotionSlice> MotionSlicer::take() {
   while (const std::optional<std::size_t> at = end()) {
     MotionSlice slice = cut(*at);
     advance(*at);
-    const MotionSpan span(slice.streams);
-    std::string reason =
-        span.current_times.empty()
-            ? "currents are missing"
-            : refusalOf(span, {0, slice.window.first, slice.window.last}, options_);
-    if (reason.empty() && !isDriven(slice.streams)) {
-      reason = "no coil is on";
-    }
+    const std::string reason = refusalOf(slice, options_);
     if (reason.empty()) {
       return slice;
     }

@@ -118,6 +118,19 @@ std::size_t LiveSession::clearSamples(const std::string& date) {
   return count;
 }
 
+std::vector<MotionSlice> LiveSession::motionWindows() const {
+  std::vector<MotionSlice> windows = database_.motion();
+  const std::size_t coils = modelledCoils(session_.model().space().nominal());
+  for (const MotionSlice& window : windows) {
+    try {
+      validate(window, coils, MotionOptions());
+    } catch (const DataError& error) {
+      throw DataError(database_.path() + ": " + error.what());
+    }
+  }
+  return windows;
+}
+
 CycleReport LiveSession::run(const CycleRequest& request, const std::string& date) {
   // What cannot be stored must not be in force.
   CalibrationState before = session_.state();

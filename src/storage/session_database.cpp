@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cycle_table.hpp"
+#include "motion_table.hpp"
 #include "revision_table.hpp"
 #include "row_access.hpp"
 #include "sample_table.hpp"
@@ -70,6 +71,10 @@ SessionDatabase::SessionDatabase(const std::string& path, const SessionIdentity&
 
 SessionDatabase::~SessionDatabase() = default;
 
+const std::string& SessionDatabase::path() const {
+  return tables_->connection.path();
+}
+
 void SessionDatabase::addSample(const Sample& sample, const std::string& date) {
   tables_->connection.write(
       notStored("sample " + std::to_string(sample.id)),
@@ -104,6 +109,23 @@ std::size_t SessionDatabase::clearSamples(const std::string& date) {
 std::uint32_t SessionDatabase::nextSampleId() const {
   return tables_->connection.read(kNotRead,
                                   [this] { return sample_table::nextId(tables_->database()); });
+}
+
+void SessionDatabase::addMotion(const std::vector<MotionSlice>& windows, const std::string& date) {
+  tables_->connection.write(notStored("the motion"), [&](SQLite::Database& database) {
+    for (const MotionSlice& window : windows) {
+      motion_table::insert(database, window, date);
+    }
+  });
+}
+
+std::vector<MotionSlice> SessionDatabase::motion() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return motion_table::all(tables_->database()); });
+}
+
+void SessionDatabase::forgetMotion() {
+  tables_->connection.write("the motion was not forgotten", motion_table::clear);
 }
 
 void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {

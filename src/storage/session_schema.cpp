@@ -12,7 +12,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 4;
+constexpr std::int64_t kSchemaVersion = 5;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -34,6 +34,19 @@ CREATE TABLE cycles (
   solve_time ANY,
   orientation_uncertainty ANY,
   torque_uncertainty ANY
+) STRICT;
+)sql";
+
+constexpr char kMotionWindows[] = R"sql(
+CREATE TABLE motion_windows (
+  id INTEGER PRIMARY KEY,
+  date TEXT NOT NULL,
+  first INTEGER NOT NULL,
+  last INTEGER NOT NULL,
+  coils INTEGER NOT NULL,
+  joints BLOB NOT NULL,
+  currents BLOB NOT NULL,
+  orientations BLOB NOT NULL
 ) STRICT;
 )sql";
 
@@ -191,18 +204,22 @@ void upgradeSessionSchema(SQLite::Database& database) {
         "ALTER TABLE samples ADD COLUMN joint_3_shared_stddev ANY NOT NULL DEFAULT 0.0;"
         "ALTER TABLE samples ADD COLUMN torque_shared_stddev ANY DEFAULT 0.0");
   }
-  // The table of cycles named those that it took; a constraint goes with its table only.
-  database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
-  database.exec(kCycles);
-  database.exec(
-      "INSERT INTO cycles SELECT * FROM earlier_cycles; DROP TABLE earlier_cycles;"
-      "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
+  if (version < 4) {
+    // The table of cycles named those that it took; a constraint goes with its table only.
+    database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
+    database.exec(kCycles);
+    database.exec(
+        "INSERT INTO cycles SELECT * FROM earlier_cycles; DROP TABLE earlier_cycles;"
+        "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
+  }
+  database.exec(kMotionWindows);
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
 void createSessionSchema(SQLite::Database& database) {
   database.exec(kCycles);
   database.exec(kTables);
+  database.exec(kMotionWindows);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }

@@ -39,6 +39,21 @@ Sample sampleAt(int n) {
   return sample;
 }
 
+/// Of an actuator without coils: none of use, but bytes of every kind.
+MotionSlice windowAt(int n) {
+  MotionSlice slice;
+  slice.window = {2, 20};
+  slice.streams.currents.resize(24, 0);
+  for (int k = 0; k < 24; ++k) {
+    slice.streams.joint_stamps.push_back(250'000'000LL * n + 10'000'000LL * k);
+    slice.streams.joints.emplace_back(0.01 * k, 0.0, 0.1 * k);
+    slice.streams.current_stamps.push_back(slice.streams.joint_stamps.back());
+    slice.streams.orientation_stamps.push_back(slice.streams.joint_stamps.back());
+    slice.streams.orientations.push_back(Eigen::Quaterniond::Identity());
+  }
+  return slice;
+}
+
 /// A session with something in every table, and a copy of it that is spoilt and read each time.
 class Sandbox {
  public:
@@ -49,6 +64,7 @@ class Sandbox {
         session.addSample(sampleAt(n), kDate);
       }
       session.run({Cycle::kJoint}, kDate);
+      session.addMotion({windowAt(1), windowAt(2)}, kDate);
       session.removeSample(2, kDate);
       session.reset(kDate);
       session.restore(0, kDate);
@@ -114,6 +130,7 @@ void spoilCells(const std::string& path, Input& input) {
                                 "cycle_errors",
                                 "cycle_estimates",
                                 "cycle_residuals",
+                                "motion_windows",
                                 "revisions"};
   constexpr std::uint8_t kTaken = 224;  // and above: rows are taken away
   const SQLite::Database database(path, SQLite::OPEN_READWRITE);
@@ -176,6 +193,10 @@ void readAll(const std::string& path) {
       session.description(kDate);
     } catch (const Error&) {
     }
+  }
+  try {
+    session.motionWindows();
+  } catch (const Error&) {
   }
   session.lastReport();
   session.progress();

@@ -1,6 +1,9 @@
 #include "spherical_actuator_calibration/motion/motion_memory.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +48,40 @@ TEST_F(MotionMemoryTest, KeepsWhatMovedWithCurrents) {
   EXPECT_EQ(memory_.recording().spans.size(), 1U);  // to ask does not take it away
   memory_.forget();
   EXPECT_TRUE(memory_.recording().empty());
+}
+
+TEST_F(MotionMemoryTest, TakesUpTheWindowsOfAnEarlierOne) {
+  MotionSlicer slicer(kCoils, MotionOptions());
+  pass(5.0, true, true);
+  const MotionStreams before = memory_.recording().spans.at(0);
+  std::vector<MotionSlice> windows;
+  for (std::size_t n = 0; n < before.joints.size(); ++n) {
+    const Stamp stamp = before.joint_stamps[n];
+    slicer.add(CurrentMeasurement{stamp, Eigen::Vector2d::Constant(0.5)});
+    slicer.add(OrientationMeasurement{stamp, before.orientations[n]});
+    slicer.add(JointMeasurement{stamp, before.joints[n]});
+    while (auto window = slicer.take()) {
+      windows.push_back(std::move(*window));
+    }
+  }
+  ASSERT_GT(windows.size(), 15U);
+  MotionMemory later(kCoils, 1'000'000);
+  later.restore(windows);
+  const MotionRecording recording = later.recording();
+  ASSERT_EQ(recording.spans.size(), 1U);
+  const MotionStreams& after = recording.spans[0];
+  // What windows have beside them: some readings at both ends are lost.
+  EXPECT_GT(after.joints.size(), before.joints.size() - 60U);
+  const auto first =
+      std::find(before.joint_stamps.begin(), before.joint_stamps.end(), after.joint_stamps.front());
+  const auto offset = first - before.joint_stamps.begin();
+  for (std::size_t n = 0; n < after.joints.size(); ++n) {
+    ASSERT_EQ(after.joint_stamps[n], before.joint_stamps[offset + n]);
+    ASSERT_EQ(after.joints[n], before.joints[offset + n]);
+  }
+  EXPECT_GE(after.current_stamps.size() + 1U, after.joints.size());
+  EXPECT_GE(after.orientations.size() + 20U, after.joints.size());
+  EXPECT_EQ(recording.dropped, 0U);
 }
 
 TEST_F(MotionMemoryTest, KeepsNeitherDwellsNorAFixtureThatTurnsTheRotor) {

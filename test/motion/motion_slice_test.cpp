@@ -1,11 +1,14 @@
 #include "spherical_actuator_calibration/motion/motion_slice.hpp"
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "motion_span.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "support/error_message.hpp"
 
 namespace sac {
 namespace {
@@ -76,6 +79,36 @@ TEST_F(MotionSlicerTest, NeedsCurrentsWithinTheirLargestDelay) {
   }
   EXPECT_GE(countLeftOut("currents are missing"), 8U);
   EXPECT_LE(countLeftOut("currents are missing"), 9U);
+}
+
+TEST_F(MotionSlicerTest, ToldFromWhatIsNoWindow) {
+  pass(2.0);
+  ASSERT_FALSE(slices_.empty());
+  const MotionSlice slice = slices_.front();
+  const auto refusal = [&](auto spoil) {
+    MotionSlice other = slice;
+    spoil(other);
+    return errorMessage<DataError>([&] { validate(other, kCoils, MotionOptions()); });
+  };
+  EXPECT_EQ(refusal([](MotionSlice&) {}), "no exception");
+  for (const std::string& message : {
+           refusal([](MotionSlice& other) { other.window.first = 0; }),
+           refusal([](MotionSlice& other) { other.window.last = other.window.first + 2; }),
+           refusal([](MotionSlice& other) { other.window.last = other.streams.joints.size(); }),
+           refusal([](MotionSlice& other) { other.streams = {}; }),
+           refusal([](MotionSlice& other) {
+             other.streams.joint_stamps[3] = other.streams.joint_stamps[2];
+           }),
+           refusal([](MotionSlice& other) { other.streams.joints[3][1] = std::nan(""); }),
+           refusal([](MotionSlice& other) { other.streams.currents(3, 1) = std::nanf(""); }),
+           refusal([](MotionSlice& other) { other.streams.currents.conservativeResize(3, 2); }),
+           refusal([](MotionSlice& other) { other.streams.orientations[1].w() = 2.0; }),
+       }) {
+    EXPECT_EQ(message, "A window of a motion holds none.");
+  }
+  EXPECT_NE(
+      refusal([](MotionSlice& other) { other.streams.currents.setZero(); }).find("no coil is on"),
+      std::string::npos);
 }
 
 TEST_F(MotionSlicerTest, LeavesOutRestsHolesAndHands) {

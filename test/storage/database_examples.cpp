@@ -110,6 +110,30 @@ Sample sample(std::uint32_t id, Eigen::Index coils) {
   return sample;
 }
 
+MotionSlice window(unsigned seed, Eigen::Index coils) {
+  constexpr Stamp kStep = 1'000'000;  // [ns]
+  constexpr Stamp kWindow = 250'000'000;
+  constexpr int kReadings = 370;
+  Numbers numbers(seed);
+  MotionSlice slice;
+  slice.window = {60, 310};
+  MotionStreams& streams = slice.streams;
+  streams.currents.resize(kReadings, coils);
+  for (int n = 0; n < kReadings; ++n) {
+    const Stamp stamp = seed * kWindow + n * kStep;
+    streams.joint_stamps.push_back(stamp);
+    streams.joints.emplace_back(numbers.matrix(3, 1));
+    streams.current_stamps.push_back(stamp + 1);
+    streams.currents.row(n) = numbers.matrix(1, coils).cast<float>();
+    if (n % 4 == 0) {
+      const Eigen::Vector4d components = numbers.matrix(4, 1);
+      streams.orientation_stamps.push_back(stamp + 2);
+      streams.orientations.push_back(Eigen::Quaterniond(components).normalized());
+    }
+  }
+  return slice;
+}
+
 CalibrationState state(unsigned seed, Eigen::Index parameters) {
   Numbers numbers(seed);
   CalibrationState state;
@@ -161,6 +185,21 @@ CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters
   report.orientation_uncertainty = numbers.next();
   report.torque_uncertainty = numbers.next();
   return report;
+}
+
+bool isSame(const MotionSlice& a, const MotionSlice& b) {
+  const MotionStreams& p = a.streams;
+  const MotionStreams& q = b.streams;
+  return a.window.first == b.window.first && a.window.last == b.window.last &&
+         p.joint_stamps == q.joint_stamps && p.joints == q.joints &&
+         p.current_stamps == q.current_stamps && p.currents == q.currents &&
+         p.orientation_stamps == q.orientation_stamps &&
+         std::equal(
+             p.orientations.begin(),
+             p.orientations.end(),
+             q.orientations.begin(),
+             q.orientations.end(),
+             [](const auto& one, const auto& other) { return one.coeffs() == other.coeffs(); });
 }
 
 bool isSame(const Sample& a, const Sample& b) {

@@ -22,6 +22,8 @@ SessionIdentity jointIdentity();
 
 /// A sample with orientation, torque and as many currents.
 Sample sample(std::uint32_t id, Eigen::Index coils);
+/// A window of a motion with as many coils. `seed`: later ones have later stamps.
+MotionSlice window(unsigned seed, Eigen::Index coils);
 /// State with as many parameters.
 CalibrationState state(unsigned seed, Eigen::Index parameters);
 /// A successful cycle of coil 3 with infinities where reports can hold them; its residuals are of
@@ -30,6 +32,7 @@ CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters
 
 /// Equal in every bit of every number.
 bool isSame(const Sample& a, const Sample& b);
+bool isSame(const MotionSlice& a, const MotionSlice& b);
 bool isSame(const CalibrationState& a, const CalibrationState& b);
 bool isSame(const CycleReport& a, const CycleReport& b);
 

@@ -111,7 +111,7 @@ TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
 
 TEST_F(OpeningTest, ANewerFormatIsRefused) {
   make();
-  database_examples::change(path(), "PRAGMA user_version = 5");
+  database_examples::change(path(), "PRAGMA user_version = 6");
   expectRefusal("a newer version of this package made this session database");
 }
 
@@ -176,6 +176,21 @@ TEST_F(OpeningTest, RowsThatHoldNoSampleAreTold) {
       database.samplesInUse();
     });
     EXPECT_NE(message.find(words), std::string::npos) << change << ": " << message;
+  }
+}
+
+TEST_F(OpeningTest, RowsThatHoldNoWindowAreTold) {
+  for (const char* change : {
+           "UPDATE motion_windows SET joints = substr(joints, 2)",
+           "UPDATE motion_windows SET coils = 23",
+           "UPDATE motion_windows SET first = -1",
+       }) {
+    std::filesystem::remove(path());
+    SessionDatabase(path(), identity()).addMotion({database_examples::window(1, kCoils)}, kDate);
+    database_examples::change(path(), change);
+    const std::string message =
+        errorMessage<DataError>([&] { SessionDatabase(path(), identity()).motion(); });
+    EXPECT_NE(message.find(path() + ": the file is damaged"), std::string::npos) << message;
   }
 }
 

@@ -194,6 +194,7 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
 
 /// Cycles as formats before 4 had them.
 constexpr char kWithoutMotionAndUnits[] =
+    "DROP TABLE motion_windows;"
     "ALTER TABLE cycle_estimates DROP COLUMN unit;"
     "PRAGMA writable_schema = ON;"
     "UPDATE sqlite_schema SET sql = replace(sql, 'cycle TEXT NOT NULL,', 'cycle TEXT NOT NULL "
@@ -233,7 +234,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "4");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "5");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -271,10 +272,23 @@ TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
   report.cycle = Cycle::kMotion;
   database.addCycle(report, kDate);
   EXPECT_EQ(database.lastCycle()->cycle, Cycle::kMotion);
+  database.addMotion({database_examples::window(1, 24)}, kDate);
+  EXPECT_EQ(database.motion().size(), 1U);
   EXPECT_EQ(database_examples::query(path(), "SELECT parent FROM pragma_foreign_key_check"), "");
   EXPECT_EQ(database_examples::query(path(),
                                      "SELECT name FROM sqlite_schema WHERE name LIKE '%earlier%'"),
             "");
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheFourthFormatKeepsMotions) {
+  constexpr Eigen::Index kParameters = 73;
+  const CycleReport report = database_examples::report(1, 0, kParameters);
+  SessionDatabase(path(), identity()).addCycle(report, kDate);
+  database_examples::change(path(), "DROP TABLE motion_windows; PRAGMA user_version = 4");
+  SessionDatabase database(path(), identity());
+  EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
+  database.addMotion({database_examples::window(1, 24)}, kDate);
+  EXPECT_EQ(database.motion().size(), 1U);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -74,6 +75,37 @@ TEST_F(SessionDatabaseTest, RefusesASampleTwiceAndSamplesThatAreNoNumbers) {
   EXPECT_THROW(database.addSample(sample, kDate), DataError);
   EXPECT_EQ(idsInUse(database), Ids{1});  // nor half of the second
   EXPECT_EQ(database.nextSampleId(), 2U);
+}
+
+TEST_F(SessionDatabaseTest, KeepsEveryBitOfAMotion) {
+  open().addMotion({database_examples::window(1, kCoils), database_examples::window(2, kCoils)},
+                   kDate);
+  open().addMotion({database_examples::window(3, kCoils)}, kDate);
+  const std::vector<MotionSlice> windows = open().motion();
+  ASSERT_EQ(windows.size(), 3U);
+  for (unsigned n = 0; n < 3; ++n) {
+    EXPECT_TRUE(isSame(windows[n], database_examples::window(n + 1, kCoils)));
+  }
+  open().forgetMotion();
+  EXPECT_TRUE(open().motion().empty());
+}
+
+TEST_F(SessionDatabaseTest, KeepsTheNewestWindowsInAFileThatDoesNotGrow) {
+  constexpr unsigned kWindows = 600;
+  constexpr std::uintmax_t kMost = 22'000'000;
+  SessionDatabase database = open();
+  for (unsigned n = 0; n < kWindows; n += 20) {
+    std::vector<MotionSlice> windows;
+    for (unsigned m = n; m < n + 20; ++m) {
+      windows.push_back(database_examples::window(m, kCoils));
+    }
+    database.addMotion(windows, kDate);
+  }
+  const std::vector<MotionSlice> windows = database.motion();
+  EXPECT_GT(windows.size(), 300U);
+  EXPECT_LT(windows.size(), 450U);
+  EXPECT_TRUE(isSame(windows.back(), database_examples::window(kWindows - 1, kCoils)));
+  EXPECT_LT(std::filesystem::file_size(path()), kMost);
 }
 
 TEST_F(SessionDatabaseTest, MarksSamplesAndNeverUsesAnIdAgain) {

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "spherical_actuator_calibration/motion/motion_slice.hpp"
 
 namespace sac {
 
@@ -19,6 +21,9 @@ class MotionMemory {
   void add(const JointMeasurement& measurement);
   void add(const CurrentMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
+
+  /// What windows of an earlier memory hold, oldest first.
+  void restore(const std::vector<MotionSlice>& windows);
 
   /// All that is kept, oldest first; the present stretch ends here.
   MotionRecording recording();

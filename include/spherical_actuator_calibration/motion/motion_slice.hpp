@@ -22,12 +22,14 @@ struct MotionSlice {
   WindowRange window;
 };
 
+/// Throws DataError unless a slice, wherever it comes from, is as a MotionSlicer cuts it.
+void validate(const MotionSlice& slice, std::size_t coils, const MotionOptions& options);
+
 /// Cuts windows out of streams as they come, one after the other. What is behind them is forgotten.
 /// Measurements come in the order of their stamps, or nearly so.
 class MotionSlicer {
  public:
-  MotionSlicer(std::size_t coils, const MotionOptions& options)
-      : coils_(coils), options_(options) {}
+  MotionSlicer(std::size_t coils, const MotionOptions& options);
 
   // What is not finite, or not later than the last of its kind, is dropped. A clock that was set
   // back, or a hole of half a second in the readings, begins anew.
@@ -59,11 +61,8 @@ class MotionSlicer {
   Stream<Eigen::Vector3d> joints_;
   Stream<Eigen::VectorXf> currents_;
   Stream<Eigen::Quaterniond> orientations_;
-  std::size_t begin_ = kBeside;  ///< reading at which the next window begins
+  std::size_t begin_;  ///< reading at which the next window begins
   std::vector<WindowsLeftOut> left_out_;
-
-  /// Readings on either side, for what is interpolated there.
-  static constexpr std::size_t kBeside = 2;
 };
 
 }  // namespace sac

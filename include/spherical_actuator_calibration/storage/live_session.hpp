@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
@@ -49,6 +50,15 @@ class LiveSession {
   bool removeSample(std::uint32_t id, const std::string& date);
   /// The same for all samples; returns how many there were.
   std::size_t clearSamples(const std::string& date);
+
+  /// Stores windows of a motion; the newest ones are kept (SessionDatabase::addMotion()). Throws
+  /// DataError.
+  void addMotion(const std::vector<MotionSlice>& windows, const std::string& date) {
+    database_.addMotion(windows, date);
+  }
+  /// Windows that are kept, oldest first. Throws DataError.
+  std::vector<MotionSlice> motionWindows() const;
+  void forgetMotion() { database_.forgetMotion(); }
 
   /// What the cycle motion is run on; null: nothing. It is not stored.
   void setMotion(std::shared_ptr<const MotionRecording> motion) {

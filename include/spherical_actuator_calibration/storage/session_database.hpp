@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/motion_slice.hpp"
 #include "spherical_actuator_calibration/storage/revision.hpp"
 
 namespace sac {
@@ -24,7 +25,8 @@ struct SessionIdentity {
 };
 
 /// Everything that a session must not lose, in one SQLite file (doc/session_database.md): every
-/// sample, the report of every cycle, every revision of the parameters.
+/// sample, the report of every cycle, every revision of the parameters, and the newest windows of
+/// a motion.
 ///
 /// What a function has written when it returns survives the end of the process and of power. When a
 /// function throws, nothing of it is stored, and the next call may succeed: a full disk, say, needs
@@ -41,6 +43,8 @@ class SessionDatabase {
   SessionDatabase(const SessionDatabase&) = delete;
   SessionDatabase& operator=(const SessionDatabase&) = delete;
 
+  const std::string& path() const;
+
   /// Stores a sample. Its id must be new.
   void addSample(const Sample& sample, const std::string& date);
   /// Throws DataError unless the file holds what was stored, among it the sample with this id.
@@ -53,6 +57,12 @@ class SessionDatabase {
   std::size_t clearSamples(const std::string& date);
   /// Larger than any id ever stored; 1 at first.
   std::uint32_t nextSampleId() const;
+
+  /// Stores windows of a motion. The oldest ones make room for them: some 20 MB are kept.
+  void addMotion(const std::vector<MotionSlice>& windows, const std::string& date);
+  /// That are kept, oldest first.
+  std::vector<MotionSlice> motion() const;
+  void forgetMotion();
 
   /// Stores the report of a cycle that changed nothing. Its residuals name stored samples.
   void addCycle(const CycleReport& report, const std::string& date);
