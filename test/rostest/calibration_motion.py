@@ -10,6 +10,7 @@ import unittest
 import rospy
 import rostest
 from calibration_client import (
+    NAMESPACE,
     PACKAGE,
     CalibrationClient,
     CalibrationNode,
@@ -26,10 +27,12 @@ import free_motion  # noqa: E402
 import laboratory  # noqa: E402
 import numpy as np  # noqa: E402
 from motion_bag import write_bag  # noqa: E402
+from spherical_actuator_calibration.msg import MotionProgress  # noqa: E402
 
 SECONDS = 10.0
 SEED = 8
 RATE = 200.0  # [Hz]
+WANTED = 2e-4  # [rad]
 
 
 class LiveMotion(unittest.TestCase):
@@ -37,7 +40,7 @@ class LiveMotion(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.client = CalibrationClient()
-        self.node = CalibrationNode(os.path.join(self.folder.name, "calibration"), diagnostic_period=0.1)
+        self.node = CalibrationNode(os.path.join(self.folder.name, "calibration"), diagnostic_period=0.1, motion_wanted_stddev=WANTED)
         self.addCleanup(self.node.stop)
 
     def record(self):
@@ -69,23 +72,55 @@ class LiveMotion(unittest.TestCase):
         self.assertLess(normalised, 1.6)
         self.assertLess(max(abs(apart)), 1e-3)
 
+    def expect_progress(self, least_windows=0):
+        """What was told while it moved, after so many windows or more."""
+        told = []
+        subscriber = rospy.Subscriber(f"{NAMESPACE}/motion_progress", MotionProgress, told.append)
+        self.addCleanup(subscriber.unregister)
+        wait_for(lambda: told and told[-1].duration > 0.8 * SECONDS, "the last windows")
+        wait_for(lambda: told[-1].windows >= least_windows, "those of before")
+        progress = told[-1]
+        self.assertTrue(progress.told)
+        self.assertEqual([group.group for group in progress.groups], ["joints", "poles", "coils"])
+        self.assertEqual([group.parameters for group in progress.groups], [9, 16, 48])
+        worst = max(group.stddev for group in progress.groups)
+        self.assertLess(worst, 1e-3)
+        self.assertEqual(progress.wanted_stddev, WANTED)
+        self.assertAlmostEqual(progress.time_left, progress.duration * max(0.0, (worst / WANTED) ** 2 - 1.0), places=6)
+        for group in progress.groups:
+            self.assertEqual(group.left == 0, group.stddev <= WANTED)
+            self.assertIn(group.group[:-1], group.least_known)
+        dynamics = {one.name: one for one in progress.dynamics}
+        inertia = dynamics["rotor_inertia/xx"]
+        self.assertLess(abs(inertia.value - free_motion.Machine().inertia[0, 0]), 6.0 * inertia.stddev)
+        return progress
+
     def test_motion_gives_parameters_that_outlive_the_node(self):
         self.client.start(self.node)
         refused = self.client.call("calibrate_motion")
         self.assertFalse(refused.success)
         self.assertIn("No motion is recorded", refused.message)
         self.listen(*self.record())
+        before = self.expect_progress()
+        # The session database has kept the windows as they came.
+        self.node.kill()
+        self.client.start(self.node)
+        after = self.expect_progress(before.windows)
+        for one, other in zip(before.groups, after.groups):
+            self.assertAlmostEqual(one.stddev / other.stddev, 1.0, delta=0.1)
         answer = self.client.call("calibrate_motion")
         self.assertTrue(answer.success, answer.message)
         self.expect_the_truth(answer.report)
         wait_for(lambda: self.client.revision() == 1, "the parameters")
         found = values_of(self.client.latest("parameters"))
+        self.assertTrue(self.client.call("forget_motion").success)
+        self.assertIn("No motion is recorded", self.client.call("calibrate_motion").message)
         self.node.kill()
         self.client.start(self.node)
         self.assertEqual(values_of(self.client.latest("parameters")), found)
         self.assertEqual(self.client.latest("status").grade, answer.report.grade)
-        # What it heard is gone with it; what it found is not.
-        self.assertFalse(self.client.call("calibrate_motion").success)
+        # A motion that was forgotten is not taken up; what it told is.
+        self.assertIn("No motion is recorded", self.client.call("calibrate_motion").message)
         self.assertEqual(self.client.revision(), 1)
 
 

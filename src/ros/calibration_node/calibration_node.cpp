@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSamplePeriod = 0.05;  // how often finished dwells are looked for [s]
+constexpr double kMotionPeriod = 0.1;   // how often windows of a motion are looked for [s]
 
 }  // namespace
 
@@ -37,6 +38,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
       files_(directory_),
       session_(start, options.calibration, directory_.database(), packageVersion()),
       topics_(node, options.calibration.frames.stator),
+      motion_(node, start.actuator, options.calibration, options.motion_wanted_stddev),
       auto_capture_(options.auto_capture),
       intake_(node, start.actuator, options.calibration),
       diagnostics_(node, private_node, start.actuator) {
@@ -48,12 +50,16 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   }
   publishStatus();
 
+  takeUpMotion();
   diagnostics_.add("session", [this](DiagnosticStatus& status) { diagnose(status); });
   intake_.addDiagnostics(diagnostics_);
   advertiseServices();
   sample_timer_ = node_.createWallTimer(
       ros::WallDuration(kSamplePeriod),
       [this](const ros::WallTimerEvent& /*event*/) { takeAutomaticSamples(); });
+  motion_timer_ =
+      node_.createWallTimer(ros::WallDuration(kMotionPeriod),
+                            [this](const ros::WallTimerEvent& /*event*/) { followMotion(); });
 }
 
 void CalibrationNode::advertiseServices() {
@@ -71,6 +77,7 @@ void CalibrationNode::advertiseServices() {
   advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
   advertise("refine", &CalibrationNode::refine);
   advertise("calibrate_motion", &CalibrationNode::calibrateMotion);
+  advertise("forget_motion", &CalibrationNode::forgetMotion);
   advertise("validate", &CalibrationNode::validate);
   advertise("diagnose", &CalibrationNode::explainSamples);
   advertise("check", &CalibrationNode::checkParameters);
@@ -151,7 +158,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
                                    std_srvs::Trigger::Response& response) {
   answer(response, [&] {
     const std::size_t count = session_.clearSamples(utcDate());
-    intake_.forgetMotion();
+    beginMotionAnew();
     plan_ = nullptr;
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
@@ -180,19 +187,6 @@ bool CalibrationNode::calibrateCoil(msg::Calibrate::Request& request,
 bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
                              msg::Calibrate::Response& response) {
   run({Cycle::kRefine}, response);
-  return true;
-}
-
-bool CalibrationNode::calibrateMotion(msg::Calibrate::Request& /*request*/,
-                                      msg::Calibrate::Response& response) {
-  const auto motion = std::make_shared<const MotionRecording>(intake_.motion());
-  {
-    const std::lock_guard<std::mutex> lock(session_mutex_);
-    session_.setMotion(motion);
-  }
-  run({Cycle::kMotion}, response);
-  const std::lock_guard<std::mutex> lock(session_mutex_);
-  session_.setMotion(nullptr);
   return true;
 }
 
@@ -357,12 +351,13 @@ void CalibrationNode::publishStatus() {
 
 void CalibrationNode::diagnose(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
-  if (waiting_.empty()) {
+  if (waiting_.empty() && waiting_windows_.empty()) {
     status.summary(DiagnosticStatus::OK, "good");
   } else {
     status.summaryf(DiagnosticStatus::ERROR,
-                    "%zu samples wait to be stored: %s",
+                    "%zu samples and %zu windows of a motion wait to be stored: %s",
                     waiting_.size(),
+                    waiting_windows_.size(),
                     last_error_.c_str());
   }
   status.add("revision", session_.revision().number);

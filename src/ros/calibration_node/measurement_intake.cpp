@@ -36,6 +36,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
     : has_joints_(nominal.has_joints),
       builder_(config.samples, modelledCoils(nominal), nominal.has_joints),
       motion_(modelledCoils(nominal)),
+      slicer_(modelledCoils(nominal), MotionOptions()),
       reader_(nominal, config.frames),
       joints_("joint_states", kLimits),
       orientations_("measured_orientation", kLimits),
@@ -142,6 +143,21 @@ MotionRecording MeasurementIntake::motion() {
 void MeasurementIntake::forgetMotion() {
   const std::lock_guard<std::mutex> lock(mutex_);
   motion_.forget();
+  slicer_.forget();
+}
+
+void MeasurementIntake::restoreMotion(const std::vector<MotionSlice>& windows) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  motion_.restore(windows);
+}
+
+std::vector<MotionSlice> MeasurementIntake::takeWindows() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<MotionSlice> windows;
+  while (auto window = slicer_.take()) {
+    windows.push_back(std::move(*window));
+  }
+  return windows;
 }
 
 void MeasurementIntake::addDiagnostics(NodeDiagnostics& diagnostics) {
@@ -189,6 +205,7 @@ template <typename Measurement>
 void MeasurementIntake::follow(const Measurement& measurement) {
   if (has_joints_) {
     motion_.add(measurement);
+    slicer_.add(measurement);
   }
 }
 

@@ -26,6 +26,7 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node_options.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node/motion_watch.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/storage/calibration_directory.hpp"
@@ -70,10 +71,18 @@ class CalibrationNode {
   bool calibratePoles(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool calibrateCoil(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
-  bool calibrateMotion(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   void run(const CycleRequest& request, msg::Calibrate::Response& response);
+
+  // Motion (calibration_node_motion.cpp).
+  bool calibrateMotion(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool forgetMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void takeUpMotion();
+  void followMotion();
+  void storeWaitingWindows();
+  /// Precondition: session_mutex_ is held.
+  void beginMotionAnew();
 
   // What does not fit, and why (calibration_node_diagnosis.cpp).
   bool explainSamples(msg::Diagnose::Request& request, msg::Diagnose::Response& response);
@@ -106,7 +115,7 @@ class CalibrationNode {
   ros::NodeHandle private_node_;
   const CalibrationNodeOptions options_;
 
-  std::mutex session_mutex_;  ///< of everything down to topics_
+  std::mutex session_mutex_;  ///< of everything down to motion_
   const CalibrationDirectory directory_;
   const CalibrationFiles files_;
   LiveSession session_;
@@ -116,6 +125,9 @@ class CalibrationNode {
   /// pointer, so that not all who use the node compile the planner.
   std::shared_ptr<PlanProgress> plan_;
   CalibrationTopics topics_;
+  MotionWatch motion_;
+  std::vector<MotionSlice> stored_windows_;   ///< of a session that is taken up: not followed yet
+  std::vector<MotionSlice> waiting_windows_;  ///< not stored yet: the disk did not take them
 
   std::atomic<bool> auto_capture_;
   MeasurementIntake intake_;
@@ -123,6 +135,7 @@ class CalibrationNode {
   NodeDiagnostics diagnostics_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer sample_timer_;
+  ros::WallTimer motion_timer_;
 };
 
 }  // namespace sac

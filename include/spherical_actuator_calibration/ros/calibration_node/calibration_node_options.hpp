@@ -16,7 +16,9 @@ struct CalibrationNodeOptions {
   std::string directory;
   bool auto_capture = false;      ///< at start: every dwell is captured by itself
   double capture_duration = 1.0;  ///< of a capture that asks for none [s]
-  bool report_page = true;        ///< save also makes the page of the report, which takes seconds
+  /// Of each parameter of joints, poles and coils, that motion_progress tells the way to [rad].
+  double motion_wanted_stddev = 1e-4;
+  bool report_page = true;  ///< save also makes the page of the report, which takes seconds
 };
 
 /// Reads the private parameters of a node. Throws ConfigError that names the key for anything

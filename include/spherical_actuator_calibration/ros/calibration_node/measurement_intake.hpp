@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/motion/motion_memory.hpp"
+#include "spherical_actuator_calibration/motion/motion_slice.hpp"
 #include "spherical_actuator_calibration/ros/conversion/measurement_reader.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
@@ -51,7 +52,11 @@ class MeasurementIntake {
 
   /// How the rotor moved with currents lately: see MotionMemory.
   MotionRecording motion();
+  /// Windows of motion since the last call: see MotionSlicer.
+  std::vector<MotionSlice> takeWindows();
   void forgetMotion();
+  /// Takes up the motion of an earlier intake: see MotionMemory.
+  void restoreMotion(const std::vector<MotionSlice>& windows);
 
   /// Adds one diagnostic task per stream, and one for the dwells.
   void addDiagnostics(NodeDiagnostics& diagnostics);
@@ -85,6 +90,7 @@ class MeasurementIntake {
   SampleBuilder builder_;
   Eigen::VectorXd newest_currents_;
   MotionMemory motion_;
+  MotionSlicer slicer_;
   ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
   bool finished_ = true;           ///< nothing came since finish()
 
