@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""What is said of a motion while it goes on, and when that is enough."""
+
+import unittest
+
+from spherical_actuator_calibration.coil_drive.motion_progress import ProgressWatch, in_words, is_enough, time_left
+from spherical_actuator_calibration.msg import GroupUncertainty, MotionProgress
+
+
+def progress(duration, joints, poles, coils, **others):
+    names = (("joints", "joint_3/offset"), ("poles", "pole_2/polar"), ("coils", "coil_7/azimuth"))
+    groups = [GroupUncertainty(group, name, stddev, 9, 0) for (group, name), stddev in zip(names, (joints, poles, coils))]
+    fields = {"told": True, "windows": 40, "wanted_stddev": 1e-4, **others}
+    return MotionProgress(duration=duration, groups=groups, **fields)
+
+
+class Words(unittest.TestCase):
+    def test_half_the_uncertainty_takes_four_times_as_long(self):
+        self.assertAlmostEqual(time_left(progress(10.0, 1e-5, 2e-4, 1e-4), 1e-4), 30.0)
+        self.assertEqual(time_left(progress(10.0, 1e-5, 2e-5, 1e-5), 1e-4), 0.0)
+
+    def test_names_what_is_left(self):
+        words = in_words(progress(12.0, 5e-5, 2e-4, 3e-4), 1e-4)
+        self.assertIn("12 s of motion: joints 0.050, poles 0.200, coils 0.300 mrad;", words)
+        self.assertIn("left to 0.100 mrad: pole_2/polar, coil_7/azimuth, some 96 s more.", words)
+        self.assertIn("all within 0.100 mrad", in_words(progress(12.0, 5e-5, 1e-5, 9e-5), 1e-4))
+        self.assertIn("3 of 40 windows left out", in_words(progress(12.0, 5e-5, 1e-5, 9e-5, left_out=3), 1e-4))
+
+    def test_nothing_is_enough_before_there_is_an_estimate(self):
+        self.assertTrue(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5), 1e-4))
+        self.assertFalse(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5), 8e-5))
+        self.assertFalse(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5, told=False), 1e-4))
+        self.assertFalse(is_enough(MotionProgress(told=True), 1e-4))
+
+
+class Watch(unittest.TestCase):
+    def setUp(self):
+        self.said = []
+        self.ended = 0
+
+    def watch(self, wanted, *messages):
+        """Its end, after it has seen each of them twice."""
+
+        def enough():
+            self.ended += 1
+
+        watch = ProgressWatch("/actuator", self.said.append, wanted, enough)
+        for message in messages:
+            watch.receive(message)
+            watch.look()
+            watch.look()
+        return watch.end()
+
+    def test_ends_the_motion_once_it_is_enough(self):
+        enough = progress(13.0, 5e-5, 5e-5, 5e-5)
+        self.assertTrue(self.watch(1e-4, progress(12.0, 5e-5, 2e-4, 3e-4), enough, progress(13.2, 2e-4, 5e-5, 5e-5)))
+        self.assertEqual(self.ended, 1)
+        self.assertEqual(len(self.said), 2)
+
+    def test_without_a_wish_it_only_tells(self):
+        self.assertTrue(self.watch(None, progress(12.0, 5e-5, 5e-5, 5e-5), progress(14.0, 5e-5, 5e-5, 5e-5)))
+        self.assertEqual(self.ended, 0)
+        self.assertEqual(len(self.said), 1)
+
+    def test_tells_that_it_was_not_reached(self):
+        self.assertFalse(self.watch(1e-4, progress(12.0, 5e-5, 2e-4, 3e-4)))
+        self.assertIn("ended before that was reached. 12 s of motion", self.said[-1])
+        self.assertFalse(self.watch(1e-4, progress(0.0, 1.0, 1.0, 1.0, told=False)))
+        self.assertIn("before anything was known", self.said[-1])
+
+
+if __name__ == "__main__":
+    unittest.main()
