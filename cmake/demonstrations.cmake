@@ -17,4 +17,4 @@ add_custom_target(demo_programs
 add_custom_target(tracking_demo_programs
   DEPENDS ${laboratory} orientation_controller visualization ${PROJECT_NAME}_rviz)
 add_custom_target(motion_demo_programs
-  DEPENDS ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters)
+  DEPENDS ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder)

@@ -10,7 +10,7 @@ from spherical_actuator_calibration.msg import GroupUncertainty, MotionProgress
 def progress(duration, joints, poles, coils, **others):
     names = (("joints", "joint_3/offset"), ("poles", "pole_2/polar"), ("coils", "coil_7/azimuth"))
     groups = [GroupUncertainty(group, name, stddev, 9, 0) for (group, name), stddev in zip(names, (joints, poles, coils))]
-    fields = {"told": True, "windows": 40, "wanted_stddev": 1e-4, **others}
+    fields = {"told": True, "windows": 51, "wanted_stddev": 1e-4, **others}
     return MotionProgress(duration=duration, groups=groups, **fields)
 
 
@@ -24,13 +24,17 @@ class Words(unittest.TestCase):
         self.assertIn("12 s of motion: joints 0.050, poles 0.200, coils 0.300 mrad;", words)
         self.assertIn("left to 0.100 mrad: pole_2/polar, coil_7/azimuth, some 96 s more.", words)
         self.assertIn("all within 0.100 mrad", in_words(progress(12.0, 5e-5, 1e-5, 9e-5), 1e-4))
-        self.assertIn("3 of 40 windows left out", in_words(progress(12.0, 5e-5, 1e-5, 9e-5, left_out=3), 1e-4))
+        self.assertIn("3 of 51 windows left out", in_words(progress(12.0, 5e-5, 1e-5, 9e-5, left_out=3), 1e-4))
 
     def test_nothing_is_enough_before_there_is_an_estimate(self):
         self.assertTrue(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5), 1e-4))
         self.assertFalse(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5), 8e-5))
         self.assertFalse(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5, told=False), 1e-4))
-        self.assertFalse(is_enough(MotionProgress(told=True), 1e-4))
+        self.assertFalse(is_enough(MotionProgress(told=True, windows=51), 1e-4))
+
+    def test_some_windows_must_judge(self):
+        self.assertFalse(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5, left_out=4), 1e-4))
+        self.assertTrue(is_enough(progress(12.0, 5e-5, 1e-5, 9e-5, left_out=3), 1e-4))
 
 
 class Watch(unittest.TestCase):
