@@ -27,6 +27,7 @@ class Budget {
         space_(session.model().space()),
         belief_(session.state().belief),
         chosen_(estimatedCoordinates(space_, report)),
+        coordinates_(space_.size(), chosen_),
         observed_(static_cast<Eigen::Index>(chosen_.size())) {
     problem_.model = &session.model();
     problem_.samples = &session.samples();
@@ -53,9 +54,10 @@ class Budget {
 
  private:
   struct Dwell {
-    Eigen::MatrixXd jacobian;  ///< rows of all observations, in all coordinates
-    Eigen::MatrixXd loading;   ///< of joint readings and the torque without current
-    Eigen::VectorXd variance;  ///< noise of each row's own
+    std::vector<Eigen::Index> columns;  ///< coordinates that an observation depends on, ascending
+    Eigen::MatrixXd jacobian;           ///< rows of all observations, in these
+    Eigen::MatrixXd loading;            ///< of joint readings and the torque without current
+    Eigen::VectorXd variance;           ///< noise of each row's own
     Eigen::MatrixXd readings;  ///< of errors of readings that an observation has for itself
     Eigen::MatrixXd held;      ///< covariance that held coordinates add, block by block
     std::vector<bool> is_orientation;
@@ -76,7 +78,8 @@ class Budget {
 
   void sumObservations();
   Dwell dwellOf(const std::vector<std::size_t>& observations,
-                const ObservationEvaluator& evaluator) const;
+                const ObservationEvaluator& evaluator,
+                const ModelPoint& point) const;
   void add(const Dwell& dwell);
   void sumKnowledge();
   std::vector<BudgetEntry> propagated();
@@ -86,6 +89,7 @@ class Budget {
   const ParameterSpace& space_;
   const ParameterBelief& belief_;
   std::vector<Eigen::Index> chosen_;
+  ChosenCoordinates coordinates_;  ///< the same
   EstimationProblem problem_;
   std::vector<bool> held_;
   InformationSum observed_;
@@ -97,6 +101,7 @@ class Budget {
 
 void Budget::sumObservations() {
   const ObservationEvaluator evaluator(problem_, options_);
+  const ModelPoint point = evaluator.at(belief_.x);
   const std::vector<std::size_t> kept = keptObservations(problem_, report_);
   const SharedErrorModel shared = groupByDwell(problem_, options_);
   const auto is_kept = [&](std::size_t n) {
@@ -104,34 +109,41 @@ void Budget::sumObservations() {
   };
   for (const std::size_t n : kept) {
     if (!shared.shares[n]) {
-      add(dwellOf({n}, evaluator));
+      add(dwellOf({n}, evaluator, point));
     }
   }
   for (const std::vector<std::size_t>& dwell : shared.dwells) {
     std::vector<std::size_t> serving;
     std::copy_if(dwell.begin(), dwell.end(), std::back_inserter(serving), is_kept);
     if (!serving.empty()) {
-      add(dwellOf(serving, evaluator));
+      add(dwellOf(serving, evaluator, point));
     }
   }
 }
 
 Budget::Dwell Budget::dwellOf(const std::vector<std::size_t>& observations,
-                              const ObservationEvaluator& evaluator) const {
+                              const ObservationEvaluator& evaluator,
+                              const ModelPoint& point) const {
   const auto rows = 3 * static_cast<Eigen::Index>(observations.size());
   Dwell dwell;
-  dwell.jacobian = Eigen::MatrixXd::Zero(rows, space_.size());
   dwell.loading.resize(rows, kSharedErrors);
   dwell.variance.resize(rows);
   dwell.readings.resize(rows, 3);
   dwell.held = Eigen::MatrixXd::Zero(rows, rows);
-  const ModelPoint point = evaluator.at(belief_.x);
-  LinearizedObservation linear;
+  std::vector<LinearizedObservation> linears(observations.size());
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    evaluator.linearize(observations[k], point, linears[k]);
+    const std::vector<Eigen::Index>& own = linears[k].columns;
+    dwell.columns.insert(dwell.columns.end(), own.begin(), own.end());
+  }
+  std::sort(dwell.columns.begin(), dwell.columns.end());
+  dwell.columns.erase(std::unique(dwell.columns.begin(), dwell.columns.end()), dwell.columns.end());
+  dwell.jacobian.resize(rows, static_cast<Eigen::Index>(dwell.columns.size()));
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const std::size_t n = observations[k];
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
-    evaluator.linearize(n, point, linear);
-    dwell.jacobian.middleRows<3>(row) = linear.jacobian;
+    const LinearizedObservation& linear = linears[k];
+    dwell.jacobian.middleRows<3>(row) = linear.jacobian(Eigen::all, dwell.columns);
     dwell.loading.middleRows<3>(row) = evaluator.sharedErrors(n, linear);
     dwell.variance.segment<3>(row).setConstant(evaluator.ownVariance(n));
     dwell.readings.middleRows<3>(row) = evaluator.ownReadingErrors(n, linear);
@@ -148,26 +160,35 @@ void Budget::add(const Dwell& dwell) {
     const Eigen::Matrix3d own = dwell.readings.middleRows<3>(row);
     covariance.block<3, 3>(row, row) += own * own.transpose();
   }
-  const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, chosen_);
+  std::vector<Eigen::Index> own;     // among the columns of the dwell
+  std::vector<Eigen::Index> places;  // of the same among the chosen coordinates
+  for (std::size_t k = 0; k < dwell.columns.size(); ++k) {
+    const Eigen::Index place = coordinates_.place(dwell.columns[k]);
+    if (place >= 0) {
+      own.push_back(static_cast<Eigen::Index>(k));
+      places.push_back(place);
+    }
+  }
+  const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, own);
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   const Eigen::MatrixXd whitened = factor.matrixL().solve(J);
-  observed_.addDense(whitened, Eigen::VectorXd::Zero(whitened.rows()));
+  InformationSum observed(J.cols());
+  observed.addDense(whitened, Eigen::VectorXd::Zero(whitened.rows()));
+  observed_.addAt(places, observed);
   const Eigen::MatrixXd weighed = factor.matrixU().solve(whitened);  // V⁻¹J
-  others_ += weighed.transpose() * dwell.jacobian;
+  others_(places, dwell.columns) += weighed.transpose() * dwell.jacobian;
+  const auto add_to = [&](const std::string& source, const Eigen::MatrixXd& rows) {
+    of(source)(places, places) += rows.transpose() * rows;
+  };
   for (std::size_t k = 0; k < dwell.is_orientation.size(); ++k) {
     const Eigen::Index row = 3 * static_cast<Eigen::Index>(k);
-    const Eigen::MatrixXd part =
-        dwell.variance.segment<3>(row).cwiseSqrt().asDiagonal() * weighed.middleRows<3>(row);
-    of(dwell.is_orientation[k] ? "orientation" : "torque") += part.transpose() * part;
-    const Eigen::MatrixXd own =
-        dwell.readings.middleRows<3>(row).transpose() * weighed.middleRows<3>(row);
-    of(reading()) += own.transpose() * own;
+    add_to(dwell.is_orientation[k] ? "orientation" : "torque",
+           dwell.variance.segment<3>(row).cwiseSqrt().asDiagonal() * weighed.middleRows<3>(row));
+    add_to(reading(), dwell.readings.middleRows<3>(row).transpose() * weighed.middleRows<3>(row));
   }
-  const Eigen::MatrixXd shares = weighed.transpose() * dwell.loading;
-  const auto joints = shares.leftCols<3>();
-  const auto torques = shares.rightCols<3>();
-  of(reading()) += joints * joints.transpose();
-  of("torque_without_current") += torques * torques.transpose();
+  const Eigen::MatrixXd shares = dwell.loading.transpose() * weighed;
+  add_to(reading(), shares.topRows<3>());
+  add_to("torque_without_current", shares.bottomRows<3>());
 }
 
 /// What was stated of effects, what held open directions, and what held coordinates were known by.
