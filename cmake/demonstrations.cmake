@@ -13,7 +13,7 @@ set(laboratory
   ${PROJECT_NAME}_generate_messages_py
 )
 add_custom_target(demo_programs
-  DEPENDS ${laboratory} calibrate_bag session_recorder visualization)
+  DEPENDS ${laboratory} calibrate_bag generate_urdf session_recorder visualization)
 add_custom_target(tracking_demo_programs
   DEPENDS ${laboratory} orientation_controller visualization ${PROJECT_NAME}_rviz)
 add_custom_target(motion_demo_programs
