@@ -169,6 +169,9 @@ BENCHMARK_CAPTURE(ceresRefine, DENSE_NORMAL_CHOLESKY, ceres::DENSE_NORMAL_CHOLES
 BENCHMARK_CAPTURE(ceresRefine, DENSE_SCHUR, ceres::DENSE_SCHUR)
     ->Arg(kSamples)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ceresRefine, SPARSE_SCHUR, ceres::SPARSE_SCHUR)
+    ->Arg(kSamples)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ceresRefine, SPARSE_NORMAL_CHOLESKY, ceres::SPARSE_NORMAL_CHOLESKY)
     ->Arg(kSamples)
     ->Unit(benchmark::kMillisecond);

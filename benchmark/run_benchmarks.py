@@ -36,9 +36,14 @@ SCIPY_AIM = 10.0
 CERES_AIM = 1.2
 COIL_EXPONENT_AIM = 1.2
 MEMORY_AIM = 150.0  # [byte] a sample, beside the samples
+SAMPLE_AIM = 12.0  # [us] a sample of a refinement of many
+UPDATE_AIM = 50.0  # [us]
+STATUS_AIM = 100.0  # [us]
+PAGE_AIM = 1.5  # [s]
 CONTROL_PERIOD = 1e-3  # [s]
 CONTROL_AIM = 20.0  # cycles in a period: 50 microseconds each
 REFINEMENT_SAMPLES = 132
+MANY_SAMPLES = 100000
 SAME_RESULT = 1e-10  # [rad]
 SAME_REFINEMENT = 1e-9  # [rad]
 CYCLES = {"joint": 30, "poles": 30, "coil": 4}  # samples
@@ -125,14 +130,14 @@ def by_clock(medians, clock):
     return {name: entry[clock] for name, entry in medians.items()}
 
 
-def numpy_time(cycle, scenario):
-    """Median processor time [s] of the reference script, its parameters and iterations."""
+def reference_time(identify, *arguments):
+    """Median processor time [s] of a reference script, its parameters and evaluations."""
     times = []
     for _ in range(REPETITIONS):
         begin = time.process_time()
-        found, iterations = paper_iteration.identify(cycle, scenario)
+        found, evaluations = identify(*arguments)
         times.append(time.process_time() - begin)
-    return statistics.median(times), found, iterations
+    return statistics.median(times), found, evaluations
 
 
 def compare_costs(times, report):
@@ -146,7 +151,7 @@ def compare_with_numpy(times, scenarios, report):
     report.heading("From nominal to converged, against the paper's iteration in NumPy")
     for cycle, samples in CYCLES.items():
         scenario = scenarios[cycle]
-        reference, found, iterations = numpy_time(cycle, scenario)
+        reference, found, iterations = reference_time(paper_iteration.identify, cycle, scenario)
         expected = paper_iteration.parameters(cycle, scenario, scenario["solution"])
         difference = np.abs(found - expected).max()
         if difference > SAME_RESULT:
@@ -172,13 +177,10 @@ def compare_with_numpy(times, scenarios, report):
 
 def compare_with_scipy(times, scenario, report):
     report.heading("Refinement of 73 parameters from where the sequence of cycles ends, against SciPy")
-    runs = []
-    for _ in range(REPETITIONS):
-        begin = time.process_time()
-        found, evaluations = scipy_refinement.identify(scenario)
-        runs.append(time.process_time() - begin)
-    reference = statistics.median(runs)
-    difference = np.abs(found - scipy_refinement.parameters(scenario["solution"])).max()
+    expected = scipy_refinement.parameters(scenario["solution"])
+    reference, found, evaluations = reference_time(scipy_refinement.identify, scenario)
+    least, found_by_least, steps = reference_time(scipy_refinement.identify_by_normal_equations, scenario)
+    difference = max(np.abs(one - expected).max() for one in (found, found_by_least))
     if difference > SAME_REFINEMENT:
         raise SystemExit(f"run_benchmarks: refine: SciPy differs by {difference:.1e} rad.")
     own = times[f"iterate/refine/{REFINEMENT_SAMPLES}"]
@@ -191,6 +193,10 @@ def compare_with_scipy(times, scenario, report):
     report.figure(
         f"    whole cycle with uncertainty and report, {1e3 * whole:.3g} ms, times faster",
         f"{reference / whole:.0f}",
+    )
+    report.figure(
+        f"    iteration against bare normal equations in NumPy, {1e3 * least:.3g} ms, {steps} steps, times faster",
+        f"{least / own:.2f}",
     )
     report.figure(
         f"    SciPy: {reference:.3g} s, {evaluations} evaluations; same parameters to [rad]",
@@ -220,12 +226,22 @@ def list_growth(times, memory_a_sample, report):
         report.figure(f"{count} coils, 4000 samples [ms]", f"{1e3 * seconds:.4g}")
     report.figure("exponent of the number of samples", f"{growth.fitted(samples)[0]:.2f}")
     report.at_most("exponent of the number of coils", growth.fitted(coils)[0], COIL_EXPONENT_AIM)
+    report.at_most("100000 samples, each [us]", 1e6 * dict(samples)[MANY_SAMPLES] / MANY_SAMPLES, SAMPLE_AIM)
     report.at_most(
         "memory beside 100000 samples [byte each]",
         memory_a_sample,
         MEMORY_AIM,
     )
     growth.draw([(samples, "samples, of 24 coils"), (coils, "coils, 4000 samples")], SOURCE / "doc/images/growth.svg")
+
+
+def list_session(times, report):
+    report.heading("While a session goes on")
+    report.at_most("one more sample in an estimate of 73 parameters [us]", 1e6 * times["takeOneSample/132"], UPDATE_AIM)
+    for coils in (24, 400):
+        report.at_most(
+            f"status after a capture, {coils} coils, 4000 samples [us]", 1e6 * times[f"statusManyCoils/{coils}"], STATUS_AIM
+        )
 
 
 def list_control(times, report):
@@ -308,6 +324,32 @@ def measure_reading(build, report):
         report.figure(MEMORY_ROWS[name], " and ".join(f"{value / 1e6:.1f} MB" for value in memory))
 
 
+def measure_page(build, report):
+    """The page of the report of the first recording."""
+    programs = build / PROGRAMS
+    figures = build / "benchmark" / "report"
+    quiet = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    calibrated = build / "benchmark" / "calibrated.yaml"
+    subprocess.run(
+        [programs / "calibrate_bag", "--actuator", ACTUATOR, "--output", calibrated, "--report", figures, "--force",
+         build / "benchmark" / "session.bag"],
+        **quiet,
+    )
+    environment = {**os.environ, "PYTHONPATH": str(SOURCE / "src")}
+    times = []
+    for _ in range(REPETITIONS):
+        begin = os.times()
+        subprocess.run(
+            [SOURCE / "scripts" / "render_report", figures / "report.yaml", figures / "page.html"],
+            env=environment,
+            **quiet,
+        )
+        end = os.times()
+        times.append(end.children_user + end.children_system - begin.children_user - begin.children_system)
+    report.heading("The page of a report")
+    report.at_most("of a session of 132 samples [s]", statistics.median(times), PAGE_AIM)
+
+
 def main():
     """Returns the exit status: 0 also when an aim is missed, since times depend on the machine."""
     if len(sys.argv) != 2:
@@ -328,9 +370,11 @@ def main():
     compare_with_ceres(times, report)
     list_growth(times, memory_beside(programs / "calibration_benchmark", "runWholeCycle/refine/100000"), report)
     list_large_cycles(times, report)
+    list_session(times, report)
     list_control(times, report)
     list_plans(programs / "planning_benchmark", report)
     measure_reading(build, report)
+    measure_page(build, report)
     print(report.text())
     pages.write(SOURCE / "README.md", f"{provenance}\n\n{report.aims()}")
     pages.write(SOURCE / "doc/performance.md", f"{provenance}\n\n{report.tables()}")
