@@ -1,13 +1,13 @@
 #include "cycle_checks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 
 #include <boost/math/distributions/binomial.hpp>
 
+#include "frequent_outliers.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -245,72 +245,6 @@ std::string lostAxes(const EstimationProblem& problem,
   return {};
 }
 
-/// Of orientations, then torques: those that lose more than a quarter to outliers, which accidents
-/// do not come near; noise that is stated too small does.
-std::vector<std::string> frequentOutliers(const Estimate& estimate) {
-  constexpr std::size_t kLeast = 3;
-  constexpr std::size_t kPart = 4;
-  std::array<Group, 2> streams{Group{"orientations", true}, Group{"torques", true}};
-  for (const ObservationResidual& residual : estimate.residuals) {
-    count(residual, streams[residual.observation.quantity == Quantity::kOrientation ? 0 : 1]);
-  }
-  std::vector<std::string> words;
-  for (const Group& stream : streams) {
-    if (stream.rejected >= kLeast && kPart * stream.rejected > stream.count) {
-      words.push_back(
-          format("%zu of %zu %s were left out as outliers, more than accidents are: is their noise "
-                 "as their samples state it?",
-                 stream.rejected,
-                 stream.count,
-                 stream.name.c_str()));
-    }
-  }
-  return words;
-}
-
-/// Coils that lose half of their torques or more to outliers, which come by accident elsewhere: the
-/// few that are left fit wherever the coil then lies.
-std::vector<std::string> lostCoils(const EstimationProblem& problem,
-                                   const Estimate& estimate,
-                                   const EstimationOptions& options) {
-  constexpr double kChanceOfOne = 1e-3;
-  std::vector<Group> coils(problem.model->space().coils());
-  Group all;
-  for (const ObservationResidual& residual : estimate.residuals) {
-    if (residual.observation.quantity == Quantity::kOrientation) {
-      continue;
-    }
-    count(residual, all);
-    const Sample& sample = (*problem.samples)[residual.observation.sample];
-    for (const Excitation& excitation : excitedCoils(sample, options.current_threshold)) {
-      count(residual, coils[excitation.coil]);
-    }
-  }
-  std::vector<std::string> words;
-  for (std::size_t j = 0; j < coils.size(); ++j) {
-    const Group& coil = coils[j];
-    const std::size_t kept = coil.count - coil.rejected;
-    if (coil.rejected == 0 || kept == 0 || coil.rejected < kept) {
-      continue;
-    }
-    const double rate = static_cast<double>(all.rejected - coil.rejected + 1) /
-                        static_cast<double>(all.count - coil.count + 1);
-    const boost::math::binomial_distribution<double> accident(static_cast<double>(coil.count),
-                                                              std::min(1.0, rate));
-    // Of two that contradict each other nobody can tell which is wrong, whatever the rate.
-    if (kept == 1 || boost::math::cdf(boost::math::complement(
-                         accident, static_cast<double>(coil.rejected) - 1.0)) < kChanceOfOne) {
-      words.push_back(
-          format("%zu of %zu torques of coil %zu were left out as outliers, and the rest fits "
-                 "wherever it then lies: check its current and its strength, and measure it again.",
-                 coil.rejected,
-                 coil.count,
-                 numberOf(j)));
-    }
-  }
-  return words;
-}
-
 }  // namespace
 
 std::string deviation(const ParameterSpace& space,
@@ -371,9 +305,7 @@ std::vector<std::string> doubts(const EstimationProblem& problem,
   constexpr double kSmall = 0.25;
   constexpr double kLeastFreedom = 30.0;
   constexpr double kExact = 1e-12;  // without noise nothing is told of it
-  std::vector<std::string> words = frequentOutliers(estimate);
-  const std::vector<std::string> lost = lostCoils(problem, estimate, options);
-  words.insert(words.end(), lost.begin(), lost.end());
+  std::vector<std::string> words = frequentOutliers(problem, estimate, options);
   const double chi_square = estimate.reduced_chi_square;
   if (estimate.covariance_scale > 1.0 && chi_square > kLarge) {
     words.push_back(

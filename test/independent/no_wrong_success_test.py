@@ -12,6 +12,7 @@ import numpy as np
 
 QUARTER = laboratory.rotation(np.array([0.0, 0.0, np.pi / 2.0]))
 ABOUT_X = laboratory.rotation(np.array([np.pi / 2.0, 0.0, 0.0]))
+COIL = 2  # from 0
 EXACT = cases.registration_config((0.0, 0.0, 0.0))
 
 
@@ -94,6 +95,17 @@ class NoWrongSuccess(unittest.TestCase):
         outcome = self.outcome(dwells)
         self.assertNotIn(outcome.grade, ("good", "usable"), outcome.reason)
         self.assertFalse(outcome.refined(), outcome.cycles)
+
+    def test_coil_that_is_turned_around_for_its_last_torques_is_told(self):
+        """Fewer than half of them: the result is right, and the coil is not."""
+        dwells = self.session()
+        places = [(n, k) for n, dwell in enumerate(dwells) for k, (current, _) in enumerate(dwell.torques) if COIL in current]
+        for n, k in places[-((len(places) - 1) // 2) :]:
+            current, torque = dwells[n].torques[k]
+            dwells[n].torques[k] = (current, -torque)
+        outcome = self.outcome(dwells)
+        self.assertTrue(outcome.refined(), outcome.cycles)
+        self.assertIn(f"torques of coil {COIL + 1} were left out as outliers", outcome.reason)
 
     def test_an_outlier_among_ten_torques_leaves_a_result_that_counts(self):
         """What a cycle on the way lost to outliers is mended by the refinement, and the last word is of that."""
