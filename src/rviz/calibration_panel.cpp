@@ -184,12 +184,17 @@ QWidget* CalibrationPanel::makeResults() {
   revisions_ = new RevisionTable(node_, [this](std::uint32_t number) { restore(number); });
   buttons_.push_back(revisions_->restoreButton());
   chart_ = new ConvergenceChart;
+  motion_ = new MotionView(
+      node_, [this] { calibrate("calibrate_motion", 0U); }, [this] { trigger("forget_motion"); });
+  buttons_.push_back(motion_->calibrateButton());
+  buttons_.push_back(motion_->forgetButton());
   auto* tabs = new QTabWidget;
   tabs->addTab(parameters_, "In force");
   tabs->addTab(estimates_, "Last cycle");
   tabs->addTab(samples_, "Samples");
   tabs->addTab(revisions_, "&Revisions");
   tabs->addTab(chart_, "Convergence");
+  tabs->addTab(motion_, "&Motion");
   return tabs;
 }
 
@@ -228,6 +233,7 @@ void CalibrationPanel::refresh() {
   hand_guide_->refresh();
   coil_look_->refresh(static_cast<int>(model_.coils()));
   revisions_->refresh(model_.revision());
+  motion_->refresh();
   if (ticks_++ % kTicksOfHealth == 0) {
     const ros::WallTime now = ros::WallTime::now();
     health_->fill(model_.streams(now), model_.troubles(now));

@@ -20,6 +20,7 @@
 #include "coverage_bars.hpp"
 #include "hand_guide.hpp"
 #include "health_view.hpp"
+#include "motion_view.hpp"
 #include "panel_model.hpp"
 #include "parameter_table.hpp"
 #include "revision_table.hpp"
@@ -108,6 +109,7 @@ class CalibrationPanel : public rviz::Panel {
   RevisionTable* revisions_ = nullptr;
   std::uint32_t removal_ = 0;  ///< sample that the last call of remove_sample names
   ConvergenceChart* chart_ = nullptr;
+  MotionView* motion_ = nullptr;
 };
 
 }  // namespace sac

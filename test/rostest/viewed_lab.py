@@ -3,6 +3,7 @@
 import os
 import subprocess
 import time
+import unittest
 
 from calibration_client import wait_for
 from emulated_lab import LabCase
@@ -35,12 +36,16 @@ class Screen:
         ).stdout
         return list(zip(picture[0::3], picture[1::3], picture[2::3]))
 
-    def click(self, x, y):
+    def click(self, x, y, *options):
+        """By the first button of the mouse, where `options` do not say otherwise."""
         subprocess.run(
-            ["xdotool", "mousemove", str(x), str(y), "click", "1"],
+            ["xdotool", "mousemove", str(x), str(y), "click", *(options or ("1",))],
             check=True,
             env={**os.environ, "DISPLAY": self.display},
         )
+
+    def scroll_down(self, x, y):
+        self.click(x, y, "--repeat", "20", "5")
 
     def stop(self):
         self._server.terminate()
@@ -64,15 +69,15 @@ def find_button(pixels):
     return round(sum(rows.values()) / len(rows)), round(sum(rows) / len(rows))
 
 
-class ViewedLabCase(LabCase):
-    """Tests in one laboratory with rviz on `screen`."""
+class ViewedCase(unittest.TestCase):
+    """Tests with rviz on `screen`."""
 
     @classmethod
-    def make_lab(cls, **arguments):
+    def make_screen(cls):
+        """The environment of what is shown on it."""
         cls.screen = Screen()
         cls.addClassCleanup(cls.screen.stop)
-        environment = {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        super().make_lab(environment=environment, rviz=True, **arguments)
+        return {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
 
     def press(self, key, done, what, pause=PAUSE):
         """A key, again after a pause [s] where the panel was still busy, until something is so."""
@@ -100,3 +105,11 @@ class ViewedLabCase(LabCase):
         for window in windows[:1]:
             subprocess.run(["xdotool", "windowfocus", window], check=False, env=environment)
         subprocess.run(["xdotool", "key", key], check=True, env=environment)
+
+
+class ViewedLabCase(ViewedCase, LabCase):
+    """Tests in one laboratory with rviz."""
+
+    @classmethod
+    def make_lab(cls, **arguments):
+        super().make_lab(environment=cls.make_screen(), rviz=True, **arguments)
