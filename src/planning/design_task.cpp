@@ -9,7 +9,8 @@
 namespace sac {
 namespace {
 
-/// Beyond this slope [rad/rad] an angle says nothing: its axis is along that of the angles.
+/// Slopes of an angle [rad/rad] beyond which it says nothing: its axis is along that of the angles.
+constexpr double kFlattest = 0.5;
 constexpr double kSteepest = 1e3;
 
 /// Difference of two values; of angles the short way round.
@@ -59,9 +60,10 @@ Eigen::SparseMatrix<double> reportedDerivative(const ParameterSpace& space,
     }
   }
   for (Eigen::Index a = 0; a < count; ++a) {
+    const double slope = derivative.row(a).norm();
     const bool is_angle = coordinates[static_cast<std::size_t>(a)] < space.effect();
-    if (!derivative.row(a).allFinite() || (is_angle && derivative.row(a).norm() > kSteepest)) {
-      derivative.row(a).setZero();
+    if (is_angle && !(slope > kFlattest && slope < kSteepest)) {
+      derivative.row(a) = Eigen::RowVectorXd::Unit(count, a);
     }
   }
   return derivative.sparseView(1.0, 1e-9);

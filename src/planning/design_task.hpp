@@ -36,8 +36,8 @@ struct DesignTask {
   double minimum_spacing = 0.1;  ///< rotation angle between two poses [rad]
 };
 
-/// ∂(values for people)/∂(coordinates) at x. A value that has no derivative there, as the azimuth
-/// of an axis at polar = ±π/2, has a row of zeros.
+/// ∂(values for people)/∂(coordinates) at x. Where a value has no derivative, as the angles of an
+/// axis at polar = ±π/2, its coordinate stands for it.
 Eigen::SparseMatrix<double> reportedDerivative(const ParameterSpace& space,
                                                const Eigen::VectorXd& x,
                                                const std::vector<Eigen::Index>& coordinates);

@@ -268,11 +268,16 @@ class Planner {
     }
     const auto worst = std::max_element(
         plan.expected.begin(), plan.expected.end(), [](const auto& a, const auto& b) {
-          return a.stddev < b.stddev;
+          return definedStddev(a) < definedStddev(b);
         });
     plan.worst_parameter = worst->name;
     plan.worst_stddev = worst->stddev;
     plan.reached_wanted = isAllObservable(plan) && plan.worst_stddev <= options_.wanted_stddev;
+  }
+
+  /// Zero of an azimuth on the polar axis, which poses cannot tell.
+  static double definedStddev(const ParameterEstimate& estimate) {
+    return estimate.stddev < kPi ? estimate.stddev : 0.0;
   }
 
   bool isObservable(Eigen::Index coordinate) const {

@@ -68,6 +68,22 @@ TEST_F(LevitatedPlan, ComesNearTheBoundWithTheNoiseOfATracker) {
   EXPECT_LE(plan.worst_stddev, 1.05 * *plan.stddev_bound);
 }
 
+// On the polar axis an azimuth is no direction at all: its standard deviation is not one that poses
+// could make less.
+TEST_F(LevitatedPlan, AnAzimuthOnThePolarAxisIsNotTheWorstParameter) {
+  Actuator sphere = scenarios::reactionSphere();
+  sphere.coils[0].polar = kPi / 2.0;
+  const CalibrationModel model{ParameterSpace(sphere)};
+  problem_.model = &model;
+  options_.patterns = PlanPatterns::kWeighing;
+  options_.wanted_stddev = 5e-3;
+  const PosePlan plan = planPoses(problem_, options_);
+  ASSERT_TRUE(plan.success) << plan.message;
+  EXPECT_NE(plan.worst_parameter, "coil_1/azimuth");
+  EXPECT_LT(plan.worst_stddev, 5e-3);
+  EXPECT_TRUE(plan.reached_wanted) << plan.message;
+}
+
 TEST_F(LevitatedPlan, LevelOneCannotBePlanned) {
   problem_.request = {Cycle::kJoint};
   EXPECT_EQ(errorMessage<ConfigError>([&] { planPoses(problem_, options_); }),
