@@ -91,13 +91,12 @@ void statusManyCoils(benchmark::State& state) {
   const EstimationOptions options;
   CalibrationState reached = scenario.state;
   std::fill_n(reached.identified.begin(), space.pole(0), true);
-  std::vector<PlannedPose> poses;
-  for (std::size_t n = 0; n < scenario.samples.size(); n += kSamplesPerPose) {
-    poses.push_back({scenario.samples[n].joint_position, {}, {}});
-  }
   ProgressCounter counter(scenario.model, reached, options);
   LinearitySearch linearity(options);
-  PlanProgress plan(poses, options.current_threshold);
+  PlanProgress plan(options.current_threshold);
+  for (std::size_t n = 0; n < scenario.samples.size(); n += kSamplesPerPose) {
+    plan.addPose(scenario.samples[n].joint_position, {});
+  }
   const auto add = [&](const Sample& sample) {
     counter.add(sample);
     linearity.add(sample);

@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
 namespace {
@@ -52,18 +53,9 @@ std::string excitationsInWords(const std::vector<CoilPattern>& patterns) {
 
 }  // namespace
 
-PlanProgress::PlanProgress(const std::vector<PlannedPose>& poses,
-                           double current_threshold,
-                           bool has_joints)
-    : current_threshold_(current_threshold), has_joints_(has_joints) {
-  for (const PlannedPose& pose : poses) {
-    poses_.push_back({pose, pose.excitations()});
-  }
-}
-
 void PlanProgress::add(const Sample& sample) {
   for (Pose& pose : poses_) {
-    if (!isAtPose(sample, pose.planned.joint_position)) {
+    if (!isAtPose(sample, pose.joint_position)) {
       continue;
     }
     pose.has_sample = true;
@@ -80,7 +72,8 @@ void PlanProgress::add(const Sample& sample) {
 
 void PlanProgress::countAnew(const std::vector<Sample>& samples) {
   for (Pose& pose : poses_) {
-    pose = {pose.planned, pose.planned.excitations()};
+    pose.open = pose.patterns;
+    pose.has_sample = false;
   }
   for (const Sample& sample : samples) {
     add(sample);
@@ -95,7 +88,7 @@ std::string PlanProgress::nextStep() const {
   if (next == poses_.end()) {
     return "";
   }
-  const Eigen::Vector3d& q = next->planned.joint_position;
+  const Eigen::Vector3d& q = next->joint_position;
   const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
       "Go on with the plan, %td of %zu poses are measured: turn the rotor to "
@@ -117,7 +110,10 @@ std::string planStep(const std::vector<PlannedPose>& poses,
                      const std::vector<Sample>& samples,
                      double current_threshold,
                      bool has_joints) {
-  PlanProgress progress(poses, current_threshold, has_joints);
+  PlanProgress progress(current_threshold, has_joints);
+  for (const PlannedPose& pose : poses) {
+    progress.addPose(pose.joint_position, pose.excitations());
+  }
   progress.countAnew(samples);
   return progress.nextStep();
 }

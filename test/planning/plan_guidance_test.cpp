@@ -87,7 +87,10 @@ TEST(PlanGuidance, GoesOnFromSampleToSample) {
   const std::vector<Sample> samples = {sampleAt(first, {2.0, 0.0, 0.0}),
                                        sampleAt(near_first, {0.0, 0.0, -2.0}),
                                        sampleAt(second, {0.0, 0.0, 0.0})};
-  PlanProgress progress(plan, kThreshold);
+  PlanProgress progress(kThreshold);
+  for (const PlannedPose& pose : plan) {
+    progress.addPose(pose.joint_position, pose.excitations());
+  }
   std::vector<Sample> so_far;
   for (const Sample& sample : samples) {
     EXPECT_EQ(progress.nextStep(), planStep(plan, so_far, kThreshold));

@@ -16,6 +16,11 @@ namespace sac {
 /// weights of that point, errors that a dwell shares included (Kalman's filter in coordinates and
 /// these errors, which are forgotten when the dwell ends).
 ///
+/// Rounding grows with the variance of the prior over that of the noise. Against normal equations
+/// of 80 samples, from tolerances of manufacture: 1e-11 rad and 1e-9 of the covariance with noise
+/// of 3e-4 rad, 5e-10 rad and 4e-7 with 1e-6 rad. Noise of 1e-8 rad leaves 2e-5 rad, less leaves
+/// nothing.
+///
 /// It judges nothing: no sample is an outlier, no coordinate is held, a stated uncertainty that is
 /// too small stays so. What comes into force is what a cycle finds.
 class IncrementalEstimate {

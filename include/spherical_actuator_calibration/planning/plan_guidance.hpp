@@ -3,11 +3,14 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
-#include "spherical_actuator_calibration/planning/planned_pose.hpp"
 
 namespace sac {
+
+struct PlannedPose;
 
 /// What of a plan is measured, by samples that come one after the other. A pose is measured when
 /// samples at it, held out or not, have each of its patterns or its opposite, or when one is there
@@ -16,10 +19,13 @@ class PlanProgress {
  public:
   /// `current_threshold` [A]: a coil below it counts as off. Without joints a pose is told as
   /// turns.
-  PlanProgress(const std::vector<PlannedPose>& poses,
-               double current_threshold,
-               bool has_joints = true);
+  explicit PlanProgress(double current_threshold, bool has_joints = true)
+      : current_threshold_(current_threshold), has_joints_(has_joints) {}
 
+  /// One more pose, before any sample. `patterns`: see PlannedPose::excitations().
+  void addPose(const Eigen::Vector3d& joint_position, const std::vector<CoilPattern>& patterns) {
+    poses_.push_back({joint_position, patterns, patterns});
+  }
   void add(const Sample& sample);
   /// All samples in use, in the place of those that were added.
   void countAnew(const std::vector<Sample>& samples);
@@ -29,7 +35,8 @@ class PlanProgress {
 
  private:
   struct Pose {
-    PlannedPose planned;
+    Eigen::Vector3d joint_position;
+    std::vector<CoilPattern> patterns;
     std::vector<CoilPattern> open;  ///< that no sample there has
     bool has_sample = false;
 

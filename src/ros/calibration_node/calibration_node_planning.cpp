@@ -126,9 +126,11 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
     const CalibrationSession& calibration = session_.calibration();
-    plan_ = std::make_shared<PlanProgress>(plan.poses,
-                                           calibration.config().estimation.current_threshold,
+    plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
                                            calibration.model().space().joints() > 0);
+    for (const PlannedPose& pose : plan.poses) {
+      plan_->addPose(pose.joint_position, pose.excitations());
+    }
     plan_->countAnew(calibration.samples());
     publishStatus();
   } catch (const std::exception& error) {
