@@ -22,6 +22,11 @@ constexpr double kLargestShare = 0.9;       // of the error without the map
 constexpr double kLeastSignificance = 2.0;  // standard deviations of the mean gain of a region
 constexpr double kInterval = 1.96;          // standard deviations of a 95 % interval
 constexpr double kMilli = 1e3;
+/// Of the stated noise, by which axes and corrections are fitted: a bend far beyond it is no reason
+/// to look for no map.
+constexpr double kNoiseFactors[] = {1.0, 5.0, 25.0};
+/// Rotation beyond which no machine bends, root mean square [rad].
+constexpr double kLargestBend = 5e-3;
 
 /// A sample whose orientation serves.
 bool serves(const Sample& sample) {
@@ -96,6 +101,25 @@ std::vector<Sample> orientationsOf(const std::vector<Sample>& samples) {
     }
   }
   return oriented;
+}
+
+std::vector<Sample> noisier(std::vector<Sample> samples,
+                            double factor,
+                            const EstimationOptions& options) {
+  for (Sample& sample : samples) {
+    const double stated = sample.orientation_stddev > 0.0 ? sample.orientation_stddev
+                                                          : options.default_orientation_stddev;
+    sample.orientation_stddev = factor * stated;
+  }
+  return samples;
+}
+
+double rmsOf(const std::vector<Eigen::Vector3d>& rotations) {
+  double sum = 0.0;
+  for (const Eigen::Vector3d& rotation : rotations) {
+    sum += rotation.squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(rotations.size(), 1)));
 }
 
 /// Predicts regions from the samples of all others.
@@ -268,12 +292,23 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
     choice.sentence = tooFew(oriented.size());
     return choice;
   }
-  const CycleOutcome outcome = fromOrientations(model, oriented, start, options);
+  std::vector<Sample> fitted;
+  CycleOutcome outcome;
+  for (const double factor : kNoiseFactors) {
+    fitted = noisier(oriented, factor, options);
+    outcome = fromOrientations(model, fitted, start, options);
+    if (outcome.report.success) {
+      break;
+    }
+  }
   if (!outcome.report.success) {
     return choice;
   }
   const UnexplainedRotations poses =
-      mergedPoses(unexplained(model, oriented, outcome.state.belief.x));
+      mergedPoses(unexplained(model, fitted, outcome.state.belief.x));
+  if (rmsOf(poses.rotations) > kLargestBend) {
+    return choice;
+  }
   if (poses.readings.size() < kFewestPoses) {
     choice.sentence = tooFew(poses.readings.size());
     return choice;
@@ -286,7 +321,7 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
     return choice;
   }
   const std::vector<HeldOutErrors> regions =
-      RegionJudge(model, oriented, start, options).judge(fit.map);
+      RegionJudge(model, fitted, start, options).judge(fit.map);
   const MapRecord record = recordOf(regions);
   const bool is_better = regions.size() > 2 && record.map_rms < kLargestShare * record.axes_rms &&
                          significance(regions) > kLeastSignificance;
