@@ -26,6 +26,8 @@ constexpr double kTie = 4.0;
 constexpr std::size_t kFewestOrientations = 4;
 constexpr std::size_t kFewestTorques = 4;
 constexpr int kMostRounds = 6;
+/// So much is gained by a better optimum as well [nats].
+constexpr double kDoubtful = 100.0;
 
 /// A candidate after its fit.
 struct Judged {
@@ -219,11 +221,17 @@ class Diagnostician {
       Judged one;
       one.parts = candidate.parts;
       one.fit = fitted(candidate.parts, stream);
+      const double by_chance =
+          gainByChance(one.fit.values.size()) * static_cast<double>(one.parts.size());
       one.gain = one.fit.log_posterior - base.log_posterior;
-      const bool is_beyond_chance =
-          one.gain > gainByChance(one.fit.values.size()) * static_cast<double>(one.parts.size());
-      if (is_beyond_chance && (later_rounds_explain || one.fit.scale < mostMisfit()) &&
-          isMaterial(one)) {
+      if (one.gain > by_chance && one.gain < kDoubtful) {
+        // Perhaps what was described had found another optimum only.
+        const PosteriorFit again =
+            fitPosterior(case_, {}, stream, config_, ModelAllowance{}, one.fit.x);
+        one.gain -= std::max(0.0, again.log_posterior - base.log_posterior);
+      }
+      if (one.gain > by_chance && (later_rounds_explain || one.fit.scale < mostMisfit()) &&
+          isMaterial(one) && isSure(one)) {
         all.push_back(std::move(one));
       }
     }
@@ -338,14 +346,29 @@ class Diagnostician {
     }
   }
 
+  /// Whether a strength is other than 1 beyond what the samples leave open.
+  bool isSure(const Judged& candidate) const {
+    constexpr double kSignificant = 5.0;  // standard deviations
+    return candidate.parts.size() != 1 || !candidate.parts.front().is_strength ||
+           std::abs(candidate.fit.values[0] - 1.0) > kSignificant * valueStddev(candidate, 0);
+  }
+
   /// `value`: its place among the continuous values of the candidate.
+  double valueStddev(const Judged& candidate, Eigen::Index value) const {
+    const Eigen::Index place = candidate.fit.x.size() + value;
+    const Eigen::MatrixXd covariance = posteriorCovariance(case_,
+                                                           candidate.parts,
+                                                           FittedStream::kTorques,
+                                                           config_,
+                                                           ModelAllowance{},
+                                                           {},
+                                                           candidate.fit);
+    return std::sqrt(covariance(place, place));
+  }
+
   std::string strengthInWords(const Judged& candidate, Eigen::Index value) const {
-    const PosteriorFit& fit = candidate.fit;
-    const Eigen::Index place = fit.x.size() + value;
-    const Eigen::MatrixXd covariance = posteriorCovariance(
-        case_, candidate.parts, FittedStream::kTorques, config_, ModelAllowance{}, {}, fit);
     return format(
-        " Strength: %.4g ± %.2g.", fit.values[value], std::sqrt(covariance(place, place)));
+        " Strength: %.4g ± %.2g.", candidate.fit.values[value], valueStddev(candidate, value));
   }
 
   const CalibrationConfig& config_;
@@ -363,34 +386,6 @@ WiringDiagnosis diagnoseWiring(const Actuator& nominal,
                                const std::vector<Sample>& samples,
                                const CalibrationConfig& config) {
   return Diagnostician(nominal, samples, config).run();
-}
-
-const std::vector<std::string>& wiringCauses() {
-  static const std::vector<std::string> causes = {"joint_sign",
-                                                  "joint_swap",
-                                                  "joint_degrees",
-                                                  "joint_scale",
-                                                  "joint_index",
-                                                  "orientation_inverted",
-                                                  "quaternion_order",
-                                                  "tracker_frame",
-                                                  "marker_frame",
-                                                  "torque_frame",
-                                                  "torque_in_stator_frame",
-                                                  "torque_sign",
-                                                  "torque_unit",
-                                                  "current_sign",
-                                                  "current_unit",
-                                                  "coil_sign",
-                                                  "coil_swap",
-                                                  "coil_shift",
-                                                  "coil_dead",
-                                                  "coil_gain",
-                                                  "pole_polarity",
-                                                  "pole_missing",
-                                                  "pole_gain",
-                                                  "rows_shifted"};
-  return causes;
 }
 
 }  // namespace sac
