@@ -50,7 +50,7 @@ bool isIncreasing(const std::vector<Stamp>& stamps) {
 
 bool isFine(const MotionStreams& streams, std::size_t coils) {
   const auto readings = static_cast<Eigen::Index>(streams.current_stamps.size());
-  const auto isUnit = [](const Eigen::Quaterniond& orientation) {
+  const auto is_unit = [](const Eigen::Quaterniond& orientation) {
     constexpr double kRounding = 1e-6;
     return std::abs(orientation.norm() - 1.0) < kRounding;
   };
@@ -64,7 +64,7 @@ bool isFine(const MotionStreams& streams, std::size_t coils) {
          streams.currents.cols() == static_cast<Eigen::Index>(coils) &&
          streams.currents.allFinite() &&
          streams.orientations.size() == streams.orientation_stamps.size() &&
-         std::all_of(streams.orientations.begin(), streams.orientations.end(), isUnit);
+         std::all_of(streams.orientations.begin(), streams.orientations.end(), is_unit);
 }
 
 /// Why a window cannot serve; empty: it can.

@@ -13,10 +13,10 @@
 
 namespace sac {
 
-MotionView::MotionView(ros::NodeHandle node,
+MotionView::MotionView(const ros::NodeHandle& node,
                        std::function<void()> calibrate,
                        std::function<void()> forget)
-    : node_(std::move(node)),
+    : node_(node),
       calibrate_(new QPushButton("Cali&brate by motion")),
       end_(new QPushButton("E&nd motion")),
       forget_(new QPushButton("Forget motion")),

@@ -18,7 +18,9 @@ namespace sac {
 class MotionView : public QWidget {
  public:
   /// `calibrate`, `forget`: called when their buttons are pressed.
-  MotionView(ros::NodeHandle node, std::function<void()> calibrate, std::function<void()> forget);
+  MotionView(const ros::NodeHandle& node,
+             std::function<void()> calibrate,
+             std::function<void()> forget);
 
   /// To be called ten times a second.
   void refresh();

@@ -74,7 +74,7 @@ TEST_F(MotionMemoryTest, TakesUpTheWindowsOfAnEarlierOne) {
   EXPECT_GT(after.joints.size(), before.joints.size() - 60U);
   const auto first =
       std::find(before.joint_stamps.begin(), before.joint_stamps.end(), after.joint_stamps.front());
-  const auto offset = first - before.joint_stamps.begin();
+  const auto offset = static_cast<std::size_t>(first - before.joint_stamps.begin());
   for (std::size_t n = 0; n < after.joints.size(); ++n) {
     ASSERT_EQ(after.joint_stamps[n], before.joint_stamps[offset + n]);
     ASSERT_EQ(after.joints[n], before.joints[offset + n]);
