@@ -93,6 +93,22 @@ TEST(TorqueCurve, SafeFormIsValueOverSineAndItsSlope) {
   }
 }
 
+TEST(TorqueCurve, SafeFormIsPreciseWhereItsSeriesEnds) {
+  // A curve that reaches beyond; f(ψ) = ψ there.
+  TorqueCurveDescription description;
+  description.coefficients = {0.0, 1.0};
+  description.blend_start = 1.0;
+  description.support_begin = 80.0;
+  description.support_end = 100.0;
+  const TorqueCurve curve(description);
+  for (double degrees = 0.5; degrees < 79.0; degrees += 0.5) {
+    const double psi = degrees * kOneDegree;
+    const TorqueCurve::Safe safe = curve.safe(std::cos(psi), std::sin(psi));
+    const double expected = degrees / std::sin(psi);
+    EXPECT_NEAR(safe.h, expected, 1e-14 * expected / psi) << degrees;
+  }
+}
+
 TEST(TorqueCurve, SafeFormHasItsLimitsAtZeroAngle) {
   const TorqueCurve curve(paperCurve());
   const double k1 = curve.linearCoefficient();
