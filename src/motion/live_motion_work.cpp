@@ -236,8 +236,7 @@ void LiveMotionWork::linearizeAnew(bool with_noise) {
 bool LiveMotionWork::misleads() {
   const LiveWindow& window = kept_[next_probe_ % kept_.size()];
   next_probe_ += 7;
-  const MotionPoint point(*model_, places_, x_);
-  evaluators_.front().evaluate(window.span(), window.term.window, point, {}, probe_);
+  window.evaluate(MotionPoint(*model_, places_, x_), {}, evaluators_, probe_);
   const double wrong = window.whitened(probe_.residual - window.balanceAt(x_)).squaredNorm();
   return wrong * static_cast<double>(kept_.size()) > live_.tolerance * live_.tolerance;
 }
@@ -260,7 +259,7 @@ void LiveMotionWork::take(LiveWindow& window) {
   const MotionPoint point(*model_, places_, x_);
   BalanceOrder order;
   order.covariance = true;
-  window.linearize(point, order, evaluators_.front());
+  window.linearize(point, order, evaluators_);
   window.whiten(factors_.joints, factors_.currents * noise_.current * noise_.current);
   window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
   const Eigen::VectorXd residual = residualOf(window);

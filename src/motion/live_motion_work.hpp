@@ -43,6 +43,7 @@ class LiveMotionWork {
   void addTo(InformationSum& balance, InformationSum& orientation, const LiveWindow& window) const;
   Eigen::MatrixXd information() const;
   void solve();
+  Eigen::MatrixXd orientingColumns(const Eigen::MatrixXd& of_free) const;
   void tell(const Eigen::MatrixXd& inverse);
   double chiSquare() const;
   double orientationChiSquare() const;

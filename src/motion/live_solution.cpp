@@ -68,6 +68,18 @@ void LiveMotionWork::countServing() {
   estimate_.left_out = estimate_.windows - serving;
 }
 
+/// Columns of what is free that orientations tell of; zero of what is held.
+Eigen::MatrixXd LiveMotionWork::orientingColumns(const Eigen::MatrixXd& of_free) const {
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(of_free.rows(), orientation_.gradient().size());
+  for (std::size_t n = 0; n < orienting_.size(); ++n) {
+    const auto place = std::lower_bound(free_.begin(), free_.end(), orienting_[n]);
+    if (place != free_.end() && *place == orienting_[n]) {
+      columns.col(static_cast<Eigen::Index>(n)) = of_free.col(place - free_.begin());
+    }
+  }
+  return columns;
+}
+
 /// What is known now, with noise as large as both kinds of residuals say. `inverse`: of the
 /// information of what is free.
 void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
@@ -80,16 +92,11 @@ void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
   const double windows = is_misfit ? estimate_.chi_square : 1.0;
   const double orientations = std::max(1.0, orientationChiSquare());
   Eigen::MatrixXd own = windows * inverse;
-  Eigen::MatrixXd by_orientations =
-      Eigen::MatrixXd::Zero(inverse.rows(), orientation_.gradient().size());
-  for (std::size_t n = 0; n < orienting_.size(); ++n) {
-    const auto place = std::lower_bound(free_.begin(), free_.end(), orienting_[n]);
-    if (place != free_.end() && *place == orienting_[n]) {
-      by_orientations.col(static_cast<Eigen::Index>(n)) = inverse.col(place - free_.begin());
-    }
+  if (orientations != windows) {
+    const Eigen::MatrixXd by_orientations = orientingColumns(inverse);
+    own += (orientations - windows) *
+           (by_orientations * orientation_.information() * by_orientations.transpose());
   }
-  own += (orientations - windows) *
-         (by_orientations * orientation_.information() * by_orientations.transpose());
   ParameterBelief& belief = estimate_.belief;
   belief.x = x_;
   belief.covariance = prior_.covariance;

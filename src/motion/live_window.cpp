@@ -1,6 +1,9 @@
 #include "live_window.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "spherical_actuator_calibration/base/parallel_for.hpp"
 
 namespace sac {
 
@@ -18,6 +21,29 @@ void LiveWindow::linearize(const MotionPoint& point,
                            BalanceEvaluator& evaluator) {
   evaluator.evaluate(span_, term.window, point, order, term.balance);
   linearized_at_ = point.x();
+}
+
+void LiveWindow::linearize(const MotionPoint& point,
+                           const BalanceOrder& order,
+                           std::vector<BalanceEvaluator>& evaluators) {
+  evaluate(point, order, evaluators, term.balance);
+  linearized_at_ = point.x();
+}
+
+void LiveWindow::evaluate(const MotionPoint& point,
+                          const BalanceOrder& order,
+                          std::vector<BalanceEvaluator>& evaluators,
+                          WindowBalance& out) const {
+  // More would rather wait for each other.
+  constexpr std::size_t kMostParts = 4;
+  const std::size_t parts = std::min(evaluators.size(), kMostParts);
+  parallelFor(parts, static_cast<unsigned>(parts), [&](unsigned, std::size_t n) {
+    evaluators[n].sumUp(span_, term.window, point, order, {n, parts});
+  });
+  for (std::size_t n = 1; n < parts; ++n) {
+    evaluators.front().add(evaluators[n]);
+  }
+  evaluators.front().conclude(point, out);
 }
 
 void LiveWindow::linearizeOrientations(const CalibrationModel& model,

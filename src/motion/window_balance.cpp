@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interval_momentum.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -15,46 +16,13 @@ constexpr Eigen::Index kCoulomb = 21;
 constexpr Eigen::Index kResidual = 24;
 constexpr Eigen::Index kBehind = 27;
 
-/// ∂(J u)/∂(xx, yy, zz, xy, xz, yz) of a symmetric J.
-Eigen::Matrix<double, 3, 6> inertiaColumns(const Eigen::Vector3d& u) {
-  Eigen::Matrix<double, 3, 6> columns;
-  columns << u[0], 0.0, 0.0, u[1], u[2], 0.0,  //
-      0.0, u[1], 0.0, u[0], 0.0, u[2],         //
-      0.0, 0.0, u[2], 0.0, u[0], u[1];
-  return columns;
+/// Where a part of so many begins.
+std::size_t beginOf(std::size_t total, const WindowPart& part) {
+  return total * part.index / part.count;
 }
 
-/// The momentum of an interval, and how it changes with the turns of both readings.
-struct IntervalMomentum {
-  Eigen::Vector3d turn;      ///< Δ [rad]
-  Eigen::Vector3d momentum;  ///< A Δ [N·m·s·s]
-  // ∂/∂ξ of the readings after and before.
-  Eigen::Matrix3d turn_after;
-  Eigen::Matrix3d turn_before;
-  Eigen::Matrix3d momentum_after;
-  Eigen::Matrix3d momentum_before;
-  Eigen::Matrix<double, 3, 6> d_inertia;
-
-  IntervalMomentum(const Eigen::Matrix3d& before,
-                   const Eigen::Matrix3d& after,
-                   const Eigen::Matrix3d& inertia);
-};
-
-IntervalMomentum::IntervalMomentum(const Eigen::Matrix3d& before,
-                                   const Eigen::Matrix3d& after,
-                                   const Eigen::Matrix3d& inertia)
-    : turn(rotationLog(after * before.transpose())) {
-  const Eigen::Matrix3d R_half = rotationExp(0.5 * turn);
-  const Eigen::Matrix3d R_middle = R_half * before;
-  const Eigen::Matrix3d A = R_middle * inertia * R_middle.transpose();
-  momentum = A * turn;
-  turn_after = leftJacobianInverse(turn);
-  turn_before = -turn_after * (R_half * R_half);
-  const Eigen::Matrix3d half_left = 0.5 * leftJacobian(0.5 * turn);
-  const Eigen::Matrix3d by_middle = A * skew(turn) - skew(momentum);
-  momentum_after = A * turn_after + by_middle * half_left * turn_after;
-  momentum_before = A * turn_before + by_middle * (half_left * turn_before + R_half);
-  d_inertia = R_middle * inertiaColumns(R_middle.transpose() * turn);
+std::size_t endOf(std::size_t total, const WindowPart& part) {
+  return beginOf(total, {part.index + 1, part.count});
 }
 
 }  // namespace
@@ -113,7 +81,7 @@ void BalanceEvaluator::start(const MotionSpan& span,
   delay_.setZero(3, count_);
   if (wants_noise_) {
     noise_.setZero(3 * count_, 3 * static_cast<Eigen::Index>(readings + 2));
-    current_noise_.setZero(3 * count_, 3 * count_);
+    current_noise_.start(9, count_ * (count_ + 1) / 2);
   }
 }
 
@@ -215,23 +183,27 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
 /// P: the integrand and its slope vanish at both ends, so that the plain sum is of fourth order.
 void BalanceEvaluator::addImpulse(const MotionSpan& span,
                                   const MotionPoint& point,
-                                  const BalanceOrder& order) {
+                                  const BalanceOrder& order,
+                                  const WindowPart& part) {
   const double begin = span.track.time(window_.first);
   const double end = span.track.time(window_.last);
   const double delay = point.currentDelay();
   const std::vector<double>& times = span.current_times;
-  const auto first = static_cast<std::size_t>(
-      std::upper_bound(times.begin(), times.end(), begin + delay) - times.begin());
+  const auto inside = std::upper_bound(times.begin(), times.end(), begin + delay);
+  const auto behind = std::lower_bound(inside, times.end(), end + delay);
   const TestFunctions functions(begin, end, options_.test_functions);
   const Eigen::Index coils = span.streams->currents.cols();
   current_.resize(coils);
   bend_.resize(coils);
   const std::size_t stride = order.stride;
-  for (std::size_t n = std::max(first, stride); n + stride < times.size(); n += stride) {
+  // One has neighbours on both sides.
+  const std::size_t first = std::max(static_cast<std::size_t>(inside - times.begin()), stride);
+  const std::size_t last = std::min(static_cast<std::size_t>(behind - times.begin()),
+                                    std::max(times.size(), stride) - stride);
+  const std::size_t count = last > first ? (last - first + stride - 1) / stride : 0;
+  for (std::size_t m = beginOf(count, part); m < endOf(count, part); ++m) {
+    const std::size_t n = first + m * stride;
     const double time = times[n] - delay;
-    if (time >= end) {
-      break;
-    }
     const std::optional<TrackPoint> track = span.track.at(time);
     if (!track) {
       continue;
@@ -298,15 +270,15 @@ void BalanceEvaluator::addNoise(const TrackPoint& track, double step, const Bala
   }
   const Eigen::Matrix3d squares = (step * step / static_cast<double>(order.stride)) *
                                   torque_.d_coil.lazyProduct(torque_.d_coil.transpose());
-  for (Eigen::Index l = 0; l < count_; ++l) {
-    const Eigen::Matrix3d of_one = test_.value[l] * squares;
-    for (Eigen::Index k = l; k < count_; ++k) {
-      current_noise_.block<3, 3>(3 * k, 3 * l) += test_.value[k] * of_one;
-    }
+  current_noise_.column() = Eigen::Map<const Eigen::VectorXd>(squares.data(), squares.size());
+  auto factors = current_noise_.factors();
+  for (Eigen::Index l = 0, n = 0; l < count_; n += count_ - l, ++l) {
+    factors.segment(n, count_ - l) = test_.value[l] * test_.value.tail(count_ - l).transpose();
   }
+  current_noise_.next();
 }
 
-void BalanceEvaluator::finish(const MotionPoint& point, WindowBalance& out) {
+void BalanceEvaluator::conclude(const MotionPoint& point, WindowBalance& out) {
   const Eigen::Index size = point.space().size();
   const MotionPlaces& places = point.places();
   const Eigen::MatrixXd& momentum = momentum_.result();
@@ -337,6 +309,9 @@ void BalanceEvaluator::finish(const MotionPoint& point, WindowBalance& out) {
         Eigen::Map<const Eigen::Matrix3Xd>(sum.col(k).data(), 3, size);
     out.residual.segment<3>(3 * k) = sum.col(k).tail<3>();
   }
+  if (wants_noise_) {
+    finishNoise(out);
+  }
 }
 
 void BalanceEvaluator::finishNoise(WindowBalance& out) {
@@ -346,7 +321,38 @@ void BalanceEvaluator::finishNoise(WindowBalance& out) {
   Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(3 * count_, 3 * count_);
   lower.selfadjointView<Eigen::Lower>().rankUpdate(noise_);
   out.by_joints = lower.selfadjointView<Eigen::Lower>();
-  out.by_currents = current_noise_.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd& by_currents = current_noise_.result();
+  for (Eigen::Index l = 0, n = 0; l < count_; ++l) {
+    for (Eigen::Index k = l; k < count_; ++k, ++n) {
+      lower.block<3, 3>(3 * k, 3 * l) =
+          Eigen::Map<const Eigen::Matrix3d>(by_currents.col(n).data());
+    }
+  }
+  out.by_currents = lower.selfadjointView<Eigen::Lower>();
+}
+
+void BalanceEvaluator::sumUp(const MotionSpan& span,
+                             const MotionWindow& window,
+                             const MotionPoint& point,
+                             const BalanceOrder& order,
+                             const WindowPart& part) {
+  wants_noise_ = order.covariance;
+  start(span, window, point);
+  const std::size_t intervals = turned_.size() - 1;
+  for (std::size_t n = beginOf(intervals, part); n < endOf(intervals, part); ++n) {
+    addInterval(span, point, n);
+  }
+  addImpulse(span, point, order, part);
+}
+
+void BalanceEvaluator::add(BalanceEvaluator& other) {
+  momentum_.add(other.momentum_);
+  impulse_.add(other.impulse_);
+  delay_ += other.delay_;
+  if (wants_noise_) {
+    noise_ += other.noise_;
+    current_noise_.add(other.current_noise_);
+  }
 }
 
 void BalanceEvaluator::evaluate(const MotionSpan& span,
@@ -354,16 +360,8 @@ void BalanceEvaluator::evaluate(const MotionSpan& span,
                                 const MotionPoint& point,
                                 const BalanceOrder& order,
                                 WindowBalance& out) {
-  wants_noise_ = order.covariance;
-  start(span, window, point);
-  for (std::size_t n = 0; n + 1 < turned_.size(); ++n) {
-    addInterval(span, point, n);
-  }
-  addImpulse(span, point, order);
-  finish(point, out);
-  if (wants_noise_) {
-    finishNoise(out);
-  }
+  sumUp(span, window, point, order, {});
+  conclude(point, out);
 }
 
 }  // namespace sac

@@ -25,6 +25,12 @@ struct BalanceOrder {
   std::size_t stride = 1;
 };
 
+/// One of some parts of a window, of equally many readings each.
+struct WindowPart {
+  std::size_t index = 0;
+  std::size_t count = 1;
+};
+
 /// Evaluates windows of one recording (doc/motion.md). Storage is reused from window to window.
 class BalanceEvaluator {
  public:
@@ -36,6 +42,16 @@ class BalanceEvaluator {
                 const MotionPoint& point,
                 const BalanceOrder& order,
                 WindowBalance& out);
+
+  /// The same by steps, for a window that several evaluators share: each sums up a part of it, one
+  /// takes the sums of the others and concludes.
+  void sumUp(const MotionSpan& span,
+             const MotionWindow& window,
+             const MotionPoint& point,
+             const BalanceOrder& order,
+             const WindowPart& part);
+  void add(BalanceEvaluator& other);
+  void conclude(const MotionPoint& point, WindowBalance& out);
 
  private:
   /// 1/√(ω² + v²) of dry friction, by the turn between two of the readings.
@@ -53,6 +69,7 @@ class BalanceEvaluator {
     auto column() { return batch_.col(batched_); }
     auto factors() { return factors_.row(batched_); }
     void next();
+    void add(ColumnSum& other) { result() += other.result(); }
     /// A column for each test function.
     Eigen::MatrixXd& result();
 
@@ -68,7 +85,10 @@ class BalanceEvaluator {
 
   void start(const MotionSpan& span, const MotionWindow& window, const MotionPoint& point);
   void addInterval(const MotionSpan& span, const MotionPoint& point, std::size_t place);
-  void addImpulse(const MotionSpan& span, const MotionPoint& point, const BalanceOrder& order);
+  void addImpulse(const MotionSpan& span,
+                  const MotionPoint& point,
+                  const BalanceOrder& order,
+                  const WindowPart& part);
   void addCurrents(const TrackPoint& track,
                    const MotionPoint& point,
                    double step,
@@ -76,7 +96,6 @@ class BalanceEvaluator {
   Fading fadingAt(const JointTrack& track, std::size_t place) const;
   void setMomentumFactors(std::size_t place, double h);
   void addNoise(const TrackPoint& track, double step, const BalanceOrder& order);
-  void finish(const MotionPoint& point, WindowBalance& out);
   void finishNoise(WindowBalance& out);
 
   const MotionOptions& options_;
@@ -93,12 +112,12 @@ class BalanceEvaluator {
   Eigen::VectorXd factor_;
   StatorTorque torque_;
   Eigen::VectorXd current_;
-  Eigen::VectorXd bend_;   ///< second derivative of the currents [A/s²]
-  ColumnSum momentum_;     ///< by what turns the rotor, inertia, friction; last the residual
-  ColumnSum impulse_;      ///< by all coordinates; last the residual
-  Eigen::MatrixXd delay_;  ///< 3 × K: by the delay of the currents
-  Eigen::MatrixXd noise_;  ///< 3K × 3 per reading: ∂residual/∂reading
-  Eigen::MatrixXd current_noise_;  ///< 3K × 3K, lower blocks
+  Eigen::VectorXd bend_;     ///< second derivative of the currents [A/s²]
+  ColumnSum momentum_;       ///< by what turns the rotor, inertia, friction; last the residual
+  ColumnSum impulse_;        ///< by all coordinates; last the residual
+  Eigen::MatrixXd delay_;    ///< 3 × K: by the delay of the currents
+  Eigen::MatrixXd noise_;    ///< 3K × 3 per reading: ∂residual/∂reading
+  ColumnSum current_noise_;  ///< of each pair of test functions, its 3 × 3 block by columns
 };
 
 }  // namespace sac

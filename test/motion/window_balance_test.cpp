@@ -69,6 +69,31 @@ TEST_F(WindowBalanceTest, HasTheJacobianOfItsResidual) {
   }
 }
 
+TEST_F(WindowBalanceTest, IsTheSameByEvaluatorsThatShareTheWindow) {
+  const CalibrationModel model = WindowBalanceTest::model({"coil_gains"});
+  const MotionPlaces places(model.space());
+  const MotionPoint point(model, places, somewhere(model.space()));
+  BalanceEvaluator one(options_, Eigen::Vector3d::Constant(1e-5));
+  std::vector<BalanceEvaluator> several(3, one);
+  for (const BalanceOrder& order : {BalanceOrder{true, 1}, BalanceOrder{false, 4}}) {
+    WindowBalance expected;
+    one.evaluate(spans_[0], windows_[1], point, order, expected);
+    for (std::size_t n = 0; n < several.size(); ++n) {
+      several[n].sumUp(spans_[0], windows_[1], point, order, {n, several.size()});
+    }
+    several[0].add(several[1]);
+    several[0].add(several[2]);
+    WindowBalance shared;
+    several[0].conclude(point, shared);
+    EXPECT_TRUE(shared.residual.isApprox(expected.residual, 1e-9));
+    EXPECT_TRUE(shared.jacobian.isApprox(expected.jacobian, 1e-12));
+    if (order.covariance) {
+      EXPECT_TRUE(shared.by_joints.isApprox(expected.by_joints, 1e-12));
+      EXPECT_TRUE(shared.by_currents.isApprox(expected.by_currents, 1e-12));
+    }
+  }
+}
+
 TEST_F(WindowBalanceTest, IsZeroForTheRotorThatMoved) {
   const CalibrationModel model = WindowBalanceTest::model({});
   const MotionPlaces places(model.space());
