@@ -54,6 +54,16 @@ def joint_stddev(joints):
     return worst if math.isfinite(worst) else 0.0
 
 
+def worst_stddev(parameters):
+    """[rad] of the axis or offset of an ActuatorParameters that is known worst; infinite where one is not known."""
+    joints = [max(joint.offset_stddev, *joint.axis_stddev) for joint in parameters.joints]
+    axes = [
+        max(axis.polar_stddev, axis.azimuth_stddev * math.cos(axis.polar))
+        for axis in [*parameters.poles, *parameters.coils]
+    ]
+    return max(joints + axes)
+
+
 def is_same_pattern(one, other):
     """A pattern or its opposite, which tells the same."""
     return one == other or one == tuple(-coil for coil in other)

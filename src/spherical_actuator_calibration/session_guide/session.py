@@ -39,21 +39,22 @@ class Session:
             if is_complete:
                 break
             self._account.say(f"The calibration is not complete: {FURTHER_POSES} poses are added.")
-            self._measure(self._plan(FURTHER_POSES))
+            self._measure(self._plan(FURTHER_POSES, self._options.wanted_stddev))
             is_complete = self._estimate()
+        if is_complete and self._options.wanted_stddev:
+            self._reach_wanted_stddev()
         return self._conclude() and is_complete
 
     # -- measuring -----------------------------------------------------------------------------------
 
     def _wanted_poses(self):
         """Poses of this session, those that the node holds samples of left out or complete."""
-        done = progress.poses_of(self._calibration.measured(), self._calibration.pose_tolerance())
-        training = sum(not pose.validation for pose in done)
+        training = self._training_poses()
         if training:
             self._account.say(f"The session goes on: {training} poses are measured already.")
         planned = list(self._poses_of_files())
         if not planned and training < self._options.poses:
-            planned = self._plan(self._options.poses - training)
+            planned = self._plan(self._options.poses - training, self._options.wanted_stddev)
         if any(pose.validation for pose in planned):
             return planned
         return planned + progress.validation_poses(
@@ -63,6 +64,11 @@ class Session:
             0.8 * self._actuator["workspace"]["tilt_limit"],
             self._options.seed,
         )
+
+    def _training_poses(self):
+        """How many are measured that are not held out."""
+        done = progress.poses_of(self._calibration.measured(), self._calibration.pose_tolerance())
+        return sum(not pose.validation for pose in done)
 
     def _poses_of_files(self):
         plan = self._plan_file
@@ -77,11 +83,11 @@ class Session:
         self._account.say(f"{len(plan.poses)} poses of {source}, coils at {plan.current:g} A.")
         return plan.poses
 
-    def _plan(self, count):
+    def _plan(self, count, wanted_stddev):
         self._account.set(stage=MeasurementProgress.PLANNING)
         poses, message = self._calibration.plan(
             count,
-            self._options.wanted_stddev,
+            wanted_stddev,
             patterns=self._options.patterns,
             current=self._course.current,
             total_current=self._options.total_current,
@@ -131,6 +137,25 @@ class Session:
         status = self._calibration.status()
         self._account.say(status.grade_reason)
         return status.complete
+
+    def _reach_wanted_stddev(self):
+        """Adds poses until every parameter is known as well as wanted, or as many are measured as were asked for: what
+        a plan expects, noise may not hold."""
+        wanted = f"{1e3 * self._options.wanted_stddev:.3g} mrad wanted"
+        while True:
+            worst = progress.worst_stddev(self._calibration.parameters())
+            known = f"The worst standard deviation is {1e3 * worst:.3g} mrad, {wanted}"
+            if worst <= self._options.wanted_stddev:
+                self._account.say(f"{known}: that is reached.")
+                return
+            left = self._options.poses - self._training_poses()
+            if left <= 0:
+                self._account.say(f"{known}: that takes more poses than --poses {self._options.poses}.")
+                return
+            count = min(left, FURTHER_POSES)
+            self._account.say(f"{known}: {count} {'pose is' if count == 1 else 'poses are'} added.")
+            self._measure(self._plan(count, wanted_stddev=0.0))
+            self._estimate()
 
     def _conclude(self):
         """Validates and saves; returns whether the result can be used."""

@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+"""A guided session ends when its parameters are as good as wanted, without ROS."""
+
+import math
+import unittest
+from types import SimpleNamespace
+
+from spherical_actuator_calibration.msg import ActuatorParameters, CoilAxis, JointAxis, PoleAxis
+from spherical_actuator_calibration.session_guide import progress
+from spherical_actuator_calibration.session_guide.options import Options
+from spherical_actuator_calibration.session_guide.session import Session
+
+
+class KnownParameters(unittest.TestCase):
+    def setUp(self):
+        self.parameters = ActuatorParameters(
+            joints=[JointAxis(offset_stddev=1e-4, axis_stddev=[2e-4, 3e-4])],
+            poles=[PoleAxis(polar=0.1, polar_stddev=1e-4, azimuth_stddev=2e-4)],
+            coils=[CoilAxis(polar=0.0, polar_stddev=1e-4, azimuth_stddev=2e-4)],
+        )
+
+    def test_are_as_good_as_the_worst(self):
+        self.assertEqual(progress.worst_stddev(self.parameters), 3e-4)
+        self.parameters.coils[0].azimuth_stddev = 5e-4
+        self.assertEqual(progress.worst_stddev(self.parameters), 5e-4)
+        self.parameters.joints = []
+        self.parameters.poles[0].polar_stddev = math.inf
+        self.assertEqual(progress.worst_stddev(self.parameters), math.inf)
+
+    def test_an_azimuth_counts_by_the_way_of_the_axis(self):
+        self.parameters.poles[0].polar = math.radians(60.0)
+        self.parameters.poles[0].azimuth_stddev = 1e-3
+        self.assertAlmostEqual(progress.worst_stddev(self.parameters), 5e-4)
+
+
+class Rehearsal(Session):
+    """A session whose parameters get better with every pose by the root of their number; one pose is as good as one
+    milliradian."""
+
+    def __init__(self, **options):
+        self.said = []
+        self.poses = 0
+        account = SimpleNamespace(say=self.said.append, set=lambda **fields: None)
+        super().__init__(self, None, {}, Options(validation_poses=0, **options), None, account)
+
+    # What it asks its calibration node.
+    def plan(self, poses, wanted_stddev, **_excitation):
+        expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses
+        return range(min(poses, expected)), "as planned"
+
+    def parameters(self):
+        stddev = 1e-3 / math.sqrt(self.poses)
+        return ActuatorParameters(joints=[JointAxis(offset_stddev=stddev, axis_stddev=[stddev, stddev])])
+
+    # What it does beside.
+    def _measure(self, poses):
+        self.poses += len(poses)
+
+    def _training_poses(self):
+        return self.poses
+
+    def _estimate(self):
+        return True
+
+
+class WantedAccuracy(unittest.TestCase):
+    def session(self, **options):
+        session = Rehearsal(**options)
+        session._measure(session._plan(session._options.poses, session._options.wanted_stddev))
+        session._reach_wanted_stddev()
+        return session
+
+    def test_ends_a_session_only_when_it_is_reached(self):
+        # Expected after four poses, reached after sixteen.
+        session = self.session(poses=40, wanted_stddev=0.25e-3)
+        self.assertEqual(session.poses, 16)
+        self.assertIn("0.5 mrad, 0.25 mrad wanted: 2 poses are added", session.said[1])
+        self.assertIn("0.25 mrad wanted: that is reached", session.said[-1])
+
+    def test_takes_no_more_poses_than_were_asked_for(self):
+        session = self.session(poses=7, wanted_stddev=0.25e-3)
+        self.assertEqual(session.poses, 7)
+        self.assertIn("1 pose is added", "".join(session.said))
+        self.assertIn("that takes more poses than --poses 7", session.said[-1])
+
+
+if __name__ == "__main__":
+    unittest.main()
