@@ -190,7 +190,7 @@ QWidget* CalibrationPanel::makeResults() {
   buttons_.push_back(motion_->forgetButton());
   auto* tabs = new QTabWidget;
   tabs->addTab(parameters_, "In force");
-  tabs->addTab(estimates_, "Last cycle");
+  tabs->addTab(estimates_, "Cycle");
   tabs->addTab(samples_, "Samples");
   tabs->addTab(revisions_, "&Revisions");
   tabs->addTab(chart_, "Convergence");
