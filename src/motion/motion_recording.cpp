@@ -8,17 +8,37 @@
 
 namespace sac {
 
-bool MotionRecorder::isNext(const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine) {
+bool MotionRecorder::isSetBack(Sequence& sequence, Stamp last, Stamp stamp) {
+  constexpr double kFar = 1.0;  // [s]
+  if (secondsBetween(stamp, last) < kFar) {
+    sequence.earlier.reset();
+    return false;
+  }
+  const bool is_confirmed = sequence.earlier && stamp > *sequence.earlier &&
+                            secondsBetween(*sequence.earlier, stamp) < kFar;
+  sequence.earlier = stamp;
+  return is_confirmed;
+}
+
+bool MotionRecorder::isNext(Sequence& sequence,
+                            const std::vector<Stamp>& stamps,
+                            Stamp stamp,
+                            bool is_fine) {
   // Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
   constexpr std::size_t kMost = 1U << 20U;
+  if (is_fine && !stamps.empty() && isSetBack(sequence, stamps.back(), stamp)) {
+    endSpan();
+  }
   const bool is_next =
-      is_fine && (stamps.empty() || stamp > stamps.back()) && stamps.size() < kMost;
+      is_fine && (stamps.empty() || stamp > stamps.back()) && sequence.taken < kMost;
+  sequence.taken += is_next ? 1 : 0;
   recording_.dropped += is_next ? 0 : 1;
   return is_next;
 }
 
 void MotionRecorder::add(const JointMeasurement& measurement) {
-  if (!isNext(streams_.joint_stamps, measurement.stamp, measurement.position.allFinite())) {
+  if (!isNext(
+          joints_, streams_.joint_stamps, measurement.stamp, measurement.position.allFinite())) {
     return;
   }
   streams_.joint_stamps.push_back(measurement.stamp);
@@ -30,7 +50,7 @@ void MotionRecorder::add(const JointMeasurement& measurement) {
 void MotionRecorder::add(const CurrentMeasurement& measurement) {
   const bool is_fine = measurement.current.size() == static_cast<Eigen::Index>(coils_) &&
                        measurement.current.allFinite();
-  if (!isNext(streams_.current_stamps, measurement.stamp, is_fine)) {
+  if (!isNext(coil_currents_, streams_.current_stamps, measurement.stamp, is_fine)) {
     return;
   }
   streams_.current_stamps.push_back(measurement.stamp);
@@ -42,14 +62,14 @@ void MotionRecorder::add(const CurrentMeasurement& measurement) {
 void MotionRecorder::add(const OrientationMeasurement& measurement) {
   const double norm = measurement.q_stator_rotor.norm();
   const bool is_fine = std::isfinite(norm) && norm > 0.5;
-  if (!isNext(streams_.orientation_stamps, measurement.stamp, is_fine)) {
+  if (!isNext(orientations_, streams_.orientation_stamps, measurement.stamp, is_fine)) {
     return;
   }
   streams_.orientation_stamps.push_back(measurement.stamp);
   streams_.orientations.push_back(measurement.q_stator_rotor.normalized());
 }
 
-void MotionRecorder::finish() {
+void MotionRecorder::endSpan() {
   if (!streams_.joints.empty() && !streams_.current_stamps.empty()) {
     const auto rows = static_cast<Eigen::Index>(streams_.current_stamps.size());
     streams_.currents = Eigen::Map<decltype(streams_.currents)>(
@@ -58,6 +78,16 @@ void MotionRecorder::finish() {
   }
   streams_ = MotionStreams();
   currents_ = {};
+  for (Sequence* sequence : {&joints_, &orientations_, &coil_currents_}) {
+    sequence->earlier.reset();
+  }
+}
+
+void MotionRecorder::finish() {
+  endSpan();
+  for (Sequence* sequence : {&joints_, &orientations_, &coil_currents_}) {
+    sequence->taken = 0;
+  }
 }
 
 MotionRecording MotionRecorder::take() {

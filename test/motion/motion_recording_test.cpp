@@ -55,6 +55,40 @@ TEST(MotionRecorder, KeepsSpansApart) {
   EXPECT_EQ(recorder.take().spans.size(), 2U);
 }
 
+TEST(MotionRecorder, BeginsAnotherSpanWhereTheClockIsSetBack) {
+  MotionRecorder recorder(2);
+  constexpr Stamp kSecond = 1'000'000'000;
+  for (const Stamp begin : {100 * kSecond, 50 * kSecond}) {
+    for (Stamp n = 0; n < 1000; ++n) {
+      recorder.add(currents(begin + 1'000'000 * n));
+      recorder.add(joints(begin + 1'000'000 * n, 0.0));
+    }
+  }
+  const MotionRecording recording = recorder.take();
+  ASSERT_EQ(recording.spans.size(), 2U);
+  EXPECT_EQ(recording.spans[0].joints.size(), 1000U);
+  // The first one of each stream looks like a single wrong stamp.
+  EXPECT_GE(recording.spans[1].joints.size(), 998U);
+  EXPECT_GE(recording.spans[1].current_stamps.size(), 998U);
+}
+
+TEST(MotionRecorder, LosesLittleByASingleWrongStamp) {
+  constexpr Stamp kSecond = 1'000'000'000;
+  for (const Stamp jump : {100 * kSecond, -20 * kSecond}) {
+    MotionRecorder recorder(2);
+    for (Stamp n = 0; n < 1000; ++n) {
+      const Stamp stamp = 50 * kSecond + 1'000'000 * n;
+      recorder.add(currents(stamp));
+      recorder.add(joints(stamp + (n == 500 ? jump : 0), 0.0));
+    }
+    std::size_t kept = 0;
+    for (const MotionStreams& streams : recorder.take().spans) {
+      kept += streams.joints.size();
+    }
+    EXPECT_GE(kept, 997U) << jump;
+  }
+}
+
 TEST(MotionRecorder, TellsMotionFromDwells) {
   MotionRecorder moving(2);
   MotionRecorder resting(2);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -58,7 +59,8 @@ class MotionRecorder {
   explicit MotionRecorder(std::size_t coils) : coils_(coils) {}
 
   // What is not finite, not later than the last of its kind, or beyond a million of it, is dropped
-  // and counted.
+  // and counted. Two in a row that are a second and more before the last are of a clock that was
+  // set back, or the last was wrong: another span begins.
   void add(const JointMeasurement& measurement);
   void add(const CurrentMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
@@ -69,9 +71,20 @@ class MotionRecorder {
   MotionRecording take();
 
  private:
-  bool isNext(const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
+  /// Of one kind of measurement.
+  struct Sequence {
+    std::size_t taken = 0;         ///< since finish()
+    std::optional<Stamp> earlier;  ///< the last one, when it was far before the one taken last
+  };
+
+  bool isNext(Sequence& sequence, const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
+  static bool isSetBack(Sequence& sequence, Stamp last, Stamp stamp);
+  void endSpan();
 
   std::size_t coils_;
+  Sequence joints_;
+  Sequence orientations_;
+  Sequence coil_currents_;
   MotionStreams streams_;
   std::vector<float> currents_;
   MotionRecording recording_;
