@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
@@ -96,6 +97,55 @@ bool changesStrength(const PlacedEffect& placed, const ParameterSpace& space) {
          placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
 }
 
+/// Whether a coordinate is a principal moment of inertia, or a relative change of strength: what it
+/// is when it is 0 itself. Nothing: neither.
+std::optional<double> strengthOrInertia(const ParameterSpace& space, Eigen::Index effect) {
+  const PlacedEffect& placed = space.effects().at(effect);
+  if (placed.name == "rotor_inertia") {
+    return effect - placed.first < 3 ? std::optional<double>(0.0) : std::nullopt;
+  }
+  const bool is_strength = placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
+  return is_strength ? std::optional<double>(1.0) : std::nullopt;
+}
+
+/// Momentum tells the ratio of strength and inertia, also where one of them would be negative.
+std::string wrongSign(const ParameterSpace& space,
+                      const Estimate& estimate,
+                      const std::vector<Eigen::Index>& free) {
+  constexpr double kSure = 5.0;  // standard deviations
+  const ParameterBelief& belief = estimate.belief;
+  const Eigen::VectorXd values = space.reportedValues(belief.x);
+  const Eigen::VectorXd stddevs = space.reportedStddevs(belief.x, belief.covariance);
+  for (const Eigen::Index p : free) {
+    if (p < space.effect()) {
+      continue;
+    }
+    const std::optional<double> base = strengthOrInertia(space, p - space.effect());
+    if (base && *base + values[p] + kSure * stddevs[p] < 0.0) {
+      return format(
+          "%s would be %.3g, a %s below zero; check the signs of currents and polarities.",
+          space.name(p).c_str(),
+          values[p],
+          *base == 0.0 ? "moment of inertia" : "strength");
+    }
+  }
+  return {};
+}
+
+std::string tooFewInWords(const MotionSummary& summary) {
+  std::size_t left_out = 0;
+  std::string reasons;
+  for (const WindowsLeftOut& one : summary.left_out) {
+    left_out += one.count;
+    reasons += format("%s%s in %zu", reasons.empty() ? "" : ", ", one.reason.c_str(), one.count);
+  }
+  const std::string others =
+      left_out == 0 ? "" : format(" of %zu (%s)", summary.windows, reasons.c_str());
+  return format("%zu windows%s are too few; record a longer motion with currents in all coils.",
+                summary.windows - left_out,
+                others.c_str());
+}
+
 /// Why an estimate is not to be used; empty: it is.
 std::string failure(const MotionProblem& problem,
                     const MotionEstimate& found,
@@ -103,10 +153,7 @@ std::string failure(const MotionProblem& problem,
   const Estimate& estimate = found.estimate;
   switch (estimate.termination) {
     case Termination::kTooFewObservations:
-      return format(
-          "%zu windows of motion are not enough; record a longer motion with currents in all "
-          "coils.",
-          found.summary.windows);
+      return tooFewInWords(found.summary);
     case Termination::kNothingObservable:
       return "the recording tells nothing about the parameters; record a motion of all joints with "
              "currents in all coils.";
@@ -135,7 +182,8 @@ std::string failure(const MotionProblem& problem,
            (is_balance ? "Check torque curve, strengths, polarities, currents and joint sensors."
                        : "Check joint sensors, frames and the tracker.");
   }
-  return deviation(problem.model->space(), estimate, problem.free, options);
+  const std::string sign = wrongSign(problem.model->space(), estimate, problem.free);
+  return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;
 }
 
 std::vector<std::string> doubts(const MotionEstimate& found) {

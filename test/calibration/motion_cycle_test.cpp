@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -67,6 +69,47 @@ TEST_F(MotionCycleTest, KeepsInertiaFrictionAndUnbalanceInTheDescription) {
   const Actuator again = CalibrationSession(read, {}, CalibrationConfig{}).description({}).actuator;
   EXPECT_TRUE(again.inertia->isApprox(*kept.actuator.inertia, 1e-12));
   EXPECT_NEAR(again.friction->coulomb, kept.actuator.friction->coulomb, 1e-12);
+}
+
+/// With the currents of some coils the other way round.
+MotionRecording turned(MotionRecording recording, const std::vector<Eigen::Index>& coils) {
+  for (MotionStreams& streams : recording.spans) {
+    for (const Eigen::Index coil : coils) {
+      streams.currents.col(coil) *= -1.0F;
+    }
+  }
+  return recording;
+}
+
+// Momentum tells the ratio of strength and inertia: both negative fit as well.
+TEST_F(MotionCycleTest, RefusesAnInertiaOrAStrengthBelowZero) {
+  std::vector<Eigen::Index> all(24);
+  std::iota(all.begin(), all.end(), 0);
+  session_.setMotion(std::make_shared<const MotionRecording>(turned(moving_.record(), all)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  EXPECT_FALSE(report.success);
+  EXPECT_NE(report.message.find("check the signs of currents"), std::string::npos)
+      << report.message;
+  CalibrationConfig config;
+  config.effects["coil_gains"] = true;
+  CalibrationSession with_gains({scenarios::paperNominal()}, {}, config);
+  with_gains.setMotion(std::make_shared<const MotionRecording>(turned(moving_.record(), {4})));
+  const CycleReport other = with_gains.run({Cycle::kMotion});
+  EXPECT_FALSE(other.success);
+  EXPECT_NE(other.message.find("coil_5/gain"), std::string::npos) << other.message;
+}
+
+TEST_F(MotionCycleTest, SaysWhyTooFewWindowsServe) {
+  MotionRecording recording = moving_.record();
+  for (MotionStreams& streams : recording.spans) {
+    std::fill(streams.joints.begin(), streams.joints.end(), streams.joints.front());
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  EXPECT_FALSE(report.success);
+  EXPECT_NE(report.message.find("0 windows of 23 (the rotor rests in 23) are too few"),
+            std::string::npos)
+      << report.message;
 }
 
 TEST_F(MotionCycleTest, WithoutMotionChangesNothing) {
