@@ -121,13 +121,18 @@ void RecordedTopics::requireTypes(const BagFile& file) const {
   }
 }
 
-void RecordedTopics::requireStreams(const BagGroup& group, bool has_joints) const {
+void RecordedTopics::requireStreams(const BagGroup& group,
+                                    bool has_joints,
+                                    bool takes_motion) const {
   const TopicRole reading = has_joints ? TopicRole::kJointStates : TopicRole::kOrientation;
   if (!isRecorded(group, reading)) {
     throw DataError(pathsOf(group) + ": no message of " + name(reading) + "; " +
                     adviceOnNamespace(namespacesWith(group, reading)));
   }
-  if (!isRecorded(group, TopicRole::kOrientation) && !isRecorded(group, TopicRole::kTorque)) {
+  // Momentum tells much without any of both.
+  const bool tells_motion = takes_motion && isRecorded(group, TopicRole::kCurrents);
+  if (!tells_motion && !isRecorded(group, TopicRole::kOrientation) &&
+      !isRecorded(group, TopicRole::kTorque)) {
     throw DataError(pathsOf(group) + ": no message of " + name(TopicRole::kOrientation) +
                     " nor of " + name(TopicRole::kTorque) + "; record at least one of them.");
   }

@@ -31,8 +31,9 @@ class RecordedTopics {
   void requireTypes(const BagFile& file) const;
 
   /// Throws DataError, saying what is missing and where else it is recorded, unless the group has
-  /// joint angles and orientations or torques, without joints orientations.
-  void requireStreams(const BagGroup& group, bool has_joints) const;
+  /// joint angles and orientations or torques, without joints orientations. Where motion is asked
+  /// for, currents will do as well.
+  void requireStreams(const BagGroup& group, bool has_joints, bool takes_motion) const;
 
  private:
   std::string prefix_;

@@ -63,7 +63,7 @@ class Reader {
   void readGroup(const BagGroup& group, const Step& step) {
     const bool from_samples = takesSamples(group);
     if (!from_samples) {
-      topics_.requireStreams(group, nominal_.has_joints);
+      topics_.requireStreams(group, nominal_.has_joints, options_.motion == MotionUse::kAlways);
       streams_.repeat(takenLive(group));
     }
     streams_.keepMotion(options_.motion == MotionUse::kAlways ||

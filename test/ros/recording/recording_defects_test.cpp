@@ -215,6 +215,11 @@ TEST_F(RecordingDefects, TellsWhichTopicIsMissingAndWhereItIs) {
   expectError(edited(bags::without({kJoints3})), "no message of /actuator/joint_states");
   expectError(edited(bags::without({kOrientation, kTorque}), "2.bag"),
               "no message of /actuator/measured_orientation nor of /actuator/measured_torque");
+  // Momentum tells much without them.
+  RecordingOptions motion;
+  motion.motion = MotionUse::kAlways;
+  const std::string joints_and_currents = edited(bags::without({kOrientation, kTorque}), "3.bag");
+  EXPECT_EQ(readRecordings({joints_and_currents}, unit(), motion).motion.spans.size(), 1U);
   RecordingOptions options;
   options.ns = "arm";
   const std::string message =
