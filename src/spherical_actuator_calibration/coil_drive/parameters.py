@@ -10,6 +10,8 @@ from spherical_actuator_calibration.programs import program
 
 PATIENCE = 30.0  # [s] for the node, on however busy a computer
 PERIOD = 0.05  # [s] between two looks
+# For the controller to hear them, too, which it does not confirm [s]: what comes within a motion waits for its end.
+OTHERS = 1.0
 
 
 @contextlib.contextmanager
@@ -31,6 +33,7 @@ def parameters_in_force(ns, path):
             if node.poll() is not None or rospy.get_time() > end:
                 raise RuntimeError(f"The parameters of {path} do not come.")
             rospy.sleep(PERIOD)
+        rospy.sleep(OTHERS)
         yield
     finally:
         subscriber.unregister()
