@@ -219,16 +219,16 @@ def write_samples(path, unit, laboratory, dwells, validation_every=0):
         if dwell.orientation is not None:
             lines += common
             lines.append(f"    orientation_xyzw: {numbers(quaternion_xyzw(dwell.orientation))}")
-            lines.append(f"    orientation_stddev: {laboratory.orientation!r}")
+            lines.append(f"    orientation_stddev: {float(laboratory.orientation)!r}")
         for current, torque in dwell.torques:
             all_currents = np.zeros(len(unit.coils))
             for coil, ampere in current.items():
                 all_currents[coil] = ampere
             lines += common
             lines.append(f"    torque: {numbers(torque)}")
-            lines.append(f"    torque_stddev: {stated_torque_stddev(laboratory)!r}")
+            lines.append(f"    torque_stddev: {float(stated_torque_stddev(laboratory))!r}")
             if laboratory.zero_current:
-                lines.append(f"    torque_shared_stddev: {laboratory.zero_current!r}")
+                lines.append(f"    torque_shared_stddev: {float(laboratory.zero_current)!r}")
             lines.append(f"    current: {numbers(all_currents)}")
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")

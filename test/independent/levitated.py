@@ -115,9 +115,9 @@ def write_samples(path, unit, laboratory, session, ampere=2.0):
 
     for dwell, coil, torque in zip(session.dwell, session.coils, session.torques):
         lines.append(f"  - orientation_xyzw: {numbers(quaternion_xyzw(session.orientations[dwell]))}")
-        lines.append(f"    orientation_stddev: {laboratory.orientation!r}")
+        lines.append(f"    orientation_stddev: {float(laboratory.orientation)!r}")
         lines.append(f"    torque: {numbers(torque)}")
-        lines.append(f"    torque_stddev: {laboratory.torque!r}")
+        lines.append(f"    torque_stddev: {float(laboratory.torque)!r}")
         lines.append(f"    current: {numbers(ampere * (np.arange(len(unit.coils)) == coil))}")
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
