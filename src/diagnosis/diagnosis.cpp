@@ -4,16 +4,19 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
-#include <set>
+#include <iterator>
+#include <optional>
 #include <utility>
 
+#include "levitated_screen.hpp"
+#include "moved_hypotheses.hpp"
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "strength_screen.hpp"
 #include "torque_screen.hpp"
+#include "torque_sensor_screen.hpp"
 #include "wiring_case.hpp"
 
 namespace sac {
@@ -45,16 +48,6 @@ struct Judged {
   }
 };
 
-/// Whether an explanation bends the unit far beyond its tolerances, or leaves misfits: perhaps it
-/// is a part of the right one.
-bool isStrained(const PosteriorFit& fit) {
-  constexpr double kMisfit = 1.5;
-  constexpr double kChance = 1e-4;
-  const double bent = fit.log_likelihood - fit.log_posterior;
-  return fit.scale > kMisfit ||
-         bent > 0.5 * chiSquareLimit(static_cast<double>(fit.x.size()), kChance);
-}
-
 bool isMaterial(const Judged& judged) {
   Eigen::Index at = 0;
   for (const Hypothesis& part : judged.parts) {
@@ -65,23 +58,6 @@ bool isMaterial(const Judged& judged) {
     }
   }
   return true;
-}
-
-/// In any order.
-std::multiset<std::string> family(const Candidate& parts) {
-  std::multiset<std::string> families;
-  for (const Hypothesis& part : parts) {
-    families.insert(part.family);
-  }
-  return families;
-}
-
-std::string causes(const Candidate& parts) {
-  std::string text;
-  for (const Hypothesis& part : parts) {
-    text += (text.empty() ? "" : " with ") + part.cause;
-  }
-  return text;
 }
 
 /// Looks for mistakes in one stream after the other.
@@ -127,14 +103,15 @@ class Diagnostician {
       std::vector<Judged> candidates =
           judged(screenOrientations(case_, config_), base, FittedStream::kOrientations, false);
       std::vector<Judged> found = decided(candidates);
-      if (found.empty() ? base.scale > mostMisfit() : isStrained(found.front().fit)) {
-        for (Judged& pair : judged(screenOrientationPairs(case_, config_),
-                                   base,
-                                   FittedStream::kOrientations,
-                                   false)) {
-          candidates.push_back(std::move(pair));
+      for (int further = 0; further < 2 && isLeftOpen(found, base); ++further) {
+        for (Judged& one : judged(further == 0 ? screenOrientationPairs(case_, config_)
+                                               : screenMovesAndReadings(base),
+                                  base,
+                                  FittedStream::kOrientations,
+                                  false)) {
+          candidates.push_back(std::move(one));
         }
-        found = decided(std::move(candidates));
+        found = decided(candidates);
       }
       if (found.empty()) {
         are_orientations_explained_ = base.scale <= mostMisfit();
@@ -144,11 +121,46 @@ class Diagnostician {
     }
   }
 
+  bool isLeftOpen(const std::vector<Judged>& found, const PosteriorFit& base) const {
+    if (found.empty()) {
+      return base.scale > mostMisfit() || leavesMany(base);
+    }
+    return isStrained(found.front().fit) || leavesMany(found.front().fit);
+  }
+
+  /// Moves at the joints as described, at those that fit most, and at those of the best account of
+  /// both: a small one is lost in their tolerance, and a large one leaves none to fit.
+  std::vector<ScreenedCandidate> screenMovesAndReadings(const PosteriorFit& base) const {
+    std::vector<ScreenedCandidate> all =
+        screenMoved(case_, Eigen::VectorXd::Zero(base.x.size()), config_);
+    PosteriorFit best = base;
+    for (int round = 0; round < 2; ++round) {
+      std::vector<ScreenedCandidate> some = screenMoved(case_, best.x, config_);
+      std::move(some.begin(), some.end(), std::back_inserter(all));
+      for (std::size_t n = 0; round == 0 && n < all.size(); ++n) {
+        const PosteriorFit fit = fitted(all[n].parts, FittedStream::kOrientations);
+        best = fit.log_posterior > best.log_posterior ? fit : best;
+      }
+    }
+    std::vector<ScreenedCandidate> readings = screenReadings(case_, config_);
+    std::move(readings.begin(), readings.end(), std::back_inserter(all));
+    return all;
+  }
+
   void diagnoseTorques(bool with_joints) {
+    PosteriorFit base = fitted({}, FittedStream::kTorques);
+    const std::optional<std::string> stuck =
+        isStrained(base) ? stuckTorques(case_.samples) : std::nullopt;
+    if (stuck) {
+      constexpr double kToTheLastDigit = 10.0;  // nats of each repeated torque, and more
+      result_.mistakes.push_back(
+          {"torque_stuck", *stuck, kToTheLastDigit * static_cast<double>(torques_)});
+      result_.beyond_description.emplace_back("torque_stuck");
+      return;
+    }
     const WiringCase before = case_;
     const WiringDiagnosis result_before = result_;
     const std::vector<Redescription> redescriptions_before = redescriptions_;
-    PosteriorFit base = fitted({}, FittedStream::kTorques);
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<Judged> found =
           decided(judged(screenedTorques(base, with_joints), base, FittedStream::kTorques, true));
@@ -171,11 +183,12 @@ class Diagnostician {
   std::vector<ScreenedCandidate> screenedTorques(const PosteriorFit& base, bool with_joints) const {
     std::vector<ScreenedCandidate> all = screenTorques(case_, config_, with_joints);
     const WiringCase fitted{ParameterSpace(case_.actuator).actuatorAt(base.x), case_.samples};
-    std::vector<ScreenedCandidate> further = screenMisfittingCoils(case_, fitted, config_);
-    for (ScreenedCandidate& candidate : screenStrengths(case_, base, config_)) {
-      further.push_back(std::move(candidate));
+    addUnknown(screenMisfittingCoils(case_, fitted, config_), all);
+    addUnknown(screenStrengths(case_, base, config_), all);
+    addUnknown(screenTorqueSensor(case_, config_), all);
+    if (isStrained(base) && !case_.actuator.has_joints) {
+      addUnknown(screenTrackerByTorques(case_, config_), all);
     }
-    addUnknown(std::move(further), all);
     addUnknown(simplerOnes(all), all);
     return all;
   }
@@ -190,19 +203,6 @@ class Diagnostician {
         all.push_back(std::move(candidate));
       }
     }
-  }
-
-  /// What single candidates contain: others may have crowded it out.
-  static std::vector<ScreenedCandidate> simplerOnes(const std::vector<ScreenedCandidate>& all) {
-    std::vector<ScreenedCandidate> simpler;
-    for (const ScreenedCandidate& candidate : all) {
-      if (candidate.parts.size() == 1) {
-        for (const Hypothesis& one : candidate.parts.front().simpler) {
-          simpler.push_back({{one}, candidate.gain});
-        }
-      }
-    }
-    return simpler;
   }
 
   double mostMisfit() const { return std::sqrt(config_.estimation.max_reduced_chi_square); }
@@ -224,6 +224,9 @@ class Diagnostician {
       const double by_chance =
           gainByChance(one.fit.values.size()) * static_cast<double>(one.parts.size());
       one.gain = one.fit.log_posterior - base.log_posterior;
+      for (const Hypothesis& part : one.parts) {
+        one.gain -= part.cost;
+      }
       if (one.gain > by_chance && one.gain < kDoubtful) {
         // Perhaps what was described had found another optimum only.
         const PosteriorFit again =

@@ -288,6 +288,23 @@ double gainByChance(Eigen::Index values) {
   return 0.5 * chiSquareLimit(static_cast<double>(values), level);
 }
 
+bool isStrained(const PosteriorFit& fit) {
+  constexpr double kMisfit = 1.5;
+  constexpr double kChance = 1e-4;
+  const double bent = fit.log_likelihood - fit.log_posterior;
+  return fit.scale > kMisfit ||
+         bent > 0.5 * chiSquareLimit(static_cast<double>(fit.x.size()), kChance);
+}
+
+bool leavesMany(const PosteriorFit& fit) {
+  constexpr double kFarOff = 100.0;
+  constexpr double kMany = 0.1;
+  const auto many = std::count_if(fit.squared_misfits.begin(),
+                                  fit.squared_misfits.end(),
+                                  [](double misfit) { return misfit > kFarOff; });
+  return static_cast<double>(many) > kMany * static_cast<double>(fit.squared_misfits.size());
+}
+
 double studentLoss(double squared_misfit) {
   return 0.5 * (kStudentFreedom + 3.0) * std::log1p(squared_misfit / kStudentFreedom);
 }

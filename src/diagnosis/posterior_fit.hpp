@@ -40,6 +40,13 @@ struct PosteriorFit {
   std::vector<double> squared_misfits;
 };
 
+/// Whether an explanation bends the unit far beyond its tolerances, or leaves misfits: perhaps it
+/// is a part of the right one.
+bool isStrained(const PosteriorFit& fit);
+/// Whether so many misfits are far off that another mistake may be behind them: half of a session
+/// that fits is enough for a fit of heavy tails.
+bool leavesMany(const PosteriorFit& fit);
+
 /// What a misfit of the right wiring may have beside the stated noise: no laboratory keeps all of
 /// it in mind.
 struct ModelAllowance {

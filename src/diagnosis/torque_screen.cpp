@@ -39,6 +39,8 @@ class TorqueScreen {
     }
   }
 
+  double loss() const { return loss_; }
+
   std::vector<ScreenedCandidate> run(bool with_joints) {
     addSensors();
     addCurrents();
@@ -307,7 +309,7 @@ class TorqueScreen {
     for (const Hypothesis& hypothesis : jointHypotheses(described_.actuator, config_.tolerance)) {
       if (hypothesis.start.size() == 0) {
         const WiringCase mended = corrected(described_, {hypothesis}, hypothesis.start);
-        add({hypothesis}, loss_ - TorqueScreen(mended, config_).loss_);
+        add({hypothesis}, loss_ - torqueLoss(mended, config_));
       }
     }
   }
@@ -326,6 +328,10 @@ std::vector<ScreenedCandidate> screenTorques(const WiringCase& described,
                                              const CalibrationConfig& config,
                                              bool with_joints) {
   return TorqueScreen(described, config).run(with_joints);
+}
+
+double torqueLoss(const WiringCase& given, const CalibrationConfig& config) {
+  return TorqueScreen(given, config).loss();
 }
 
 std::vector<ScreenedCandidate> screenMisfittingCoils(const WiringCase& described,

@@ -14,6 +14,9 @@ std::vector<ScreenedCandidate> screenTorques(const WiringCase& described,
                                              const CalibrationConfig& config,
                                              bool with_joints);
 
+/// Misfit of a case's torques at the nominal description, as expected within the tolerance [nats].
+double torqueLoss(const WiringCase& given, const CalibrationConfig& config);
+
 /// Strengths of the few coils whose torques misfit most where all others may fit: angles that took
 /// up a wrong strength hide it from a screen. `fitted`: the case with the parameters that explain
 /// its torques best as described.

@@ -4,6 +4,22 @@
 
 namespace sac {
 
+std::multiset<std::string> family(const Candidate& parts) {
+  std::multiset<std::string> families;
+  for (const Hypothesis& part : parts) {
+    families.insert(part.family);
+  }
+  return families;
+}
+
+std::string causes(const Candidate& parts) {
+  std::string text;
+  for (const Hypothesis& part : parts) {
+    text += (text.empty() ? "" : " with ") + part.cause;
+  }
+  return text;
+}
+
 Eigen::VectorXd startOf(const Candidate& candidate) {
   Eigen::Index size = 0;
   for (const Hypothesis& part : candidate) {
@@ -40,6 +56,18 @@ double torqueFactor(const Candidate& candidate, const Eigen::VectorXd& values) {
     at += part.start.size();
   }
   return factor;
+}
+
+std::vector<ScreenedCandidate> simplerOnes(const std::vector<ScreenedCandidate>& all) {
+  std::vector<ScreenedCandidate> simpler;
+  for (const ScreenedCandidate& candidate : all) {
+    if (candidate.parts.size() == 1) {
+      for (const Hypothesis& one : candidate.parts.front().simpler) {
+        simpler.push_back({{one}, candidate.gain});
+      }
+    }
+  }
+  return simpler;
 }
 
 void keepBest(std::vector<ScreenedCandidate>& candidates, std::size_t most) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,12 +38,19 @@ struct Hypothesis {
   std::vector<Hypothesis> simpler = {};
   /// The same correction in the description alone, where that can hold it.
   std::function<void(Actuator&, const Eigen::VectorXd& values)> redescribe = nullptr;
+  /// Logarithm of the number of choices that it makes by the samples themselves [nats].
+  double cost = 0.0;
   /// Factor on measured torques: 1 but for units.
   std::function<double(const Eigen::VectorXd& values)> torque_factor = nullptr;
 };
 
 /// Mistakes made together; none: the wiring as described.
 using Candidate = std::vector<Hypothesis>;
+
+/// Families of its parts, in any order.
+std::multiset<std::string> family(const Candidate& parts);
+/// Causes of its parts, in words.
+std::string causes(const Candidate& parts);
 
 /// All continuous values of a candidate at their start, one after the other.
 Eigen::VectorXd startOf(const Candidate& candidate);
@@ -60,6 +68,9 @@ struct ScreenedCandidate {
   Candidate parts;
   double gain = 0.0;  ///< against the wiring as described [nats]
 };
+
+/// What single candidates contain: others may have crowded it out.
+std::vector<ScreenedCandidate> simplerOnes(const std::vector<ScreenedCandidate>& all);
 
 /// The most promising first, `most` at the most.
 void keepBest(std::vector<ScreenedCandidate>& candidates, std::size_t most);

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 
+#include <cmath>
 #include <random>
 #include <set>
 #include <string>
@@ -225,9 +226,14 @@ TEST_F(TwoMistakesAtAJoint, OfTwoJointsAreNotOneAndABentUnit) {
   EXPECT_EQ(named(turned), (std::vector<std::string>{"joint_index:1", "joint_index:2"}));
 }
 
-TEST_F(TwoMistakesAtAJoint, NobodyKnowsOfAReadingThatJumpsAndBlamesNoCoil) {
+TEST_F(TwoMistakesAtAJoint, AreNotAReadingThatJumps) {
   const auto jumps = [](Eigen::Vector3d& q, bool early) { q[0] += early ? 0.6 : 0.0; };
-  EXPECT_EQ(named(jumps), std::vector<std::string>{});
+  EXPECT_EQ(named(jumps), std::vector<std::string>{"joint_slipped:1"});
+}
+
+TEST_F(TwoMistakesAtAJoint, NobodyKnowsOfAReadingThatIsBentAndBlamesNoCoil) {
+  const auto bent = [](Eigen::Vector3d& q, bool) { q[0] += 0.6 * std::sin(9.0 * q[2]); };
+  EXPECT_EQ(named(bent), std::vector<std::string>{});
 }
 
 class Redescription : public SessionDiagnosis {

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     for (int n = first; n < argc; n += 2) {
       const sac::Actuator actuator = sac::loadActuator(argv[n]);
       const std::vector<sac::Sample> samples =
-          sac::loadSamples(argv[n + 1], sac::modelledCoils(actuator));
+          sac::loadSamples(argv[n + 1], sac::modelledCoils(actuator), actuator.has_joints);
       const sac::CalibrationSession session({actuator}, samples, {});
       const std::clock_t begin = std::clock();
       const std::vector<sac::Diagnosis> diagnoses =

@@ -20,8 +20,9 @@ import numpy as np
 from wired_laboratory import Noise, actuator_yaml, drawing, made, samples_yaml, session
 from further_mistakes import FURTHER_LEVEL_1, FURTHER_LEVEL_2
 from mistakes import EVERYTHING, LEVEL_1, is_named
+from sensor_mistakes import SENSORS_LEVEL_1, SENSORS_LEVEL_2
 
-ALL_MISTAKES = {**EVERYTHING, **FURTHER_LEVEL_1, **FURTHER_LEVEL_2}
+ALL_MISTAKES = {**EVERYTHING, **FURTHER_LEVEL_1, **FURTHER_LEVEL_2, **SENSORS_LEVEL_1, **SENSORS_LEVEL_2}
 
 # With the numbers of orientations and torques of a session.
 DRAWINGS = {
@@ -39,8 +40,10 @@ BATCH = 40  # sessions given to the program at once
 
 def sensible(mistake, machine):
     """Whether a drawing can have a mistake that the samples tell apart from none."""
+    if mistake.startswith("tilt sensor") and abs(machine.axes[0] @ machine.axes[1]) > 0.1:
+        return False  # such a sensor measures about axes at right angles
     if not len(machine.coils):
-        return mistake in LEVEL_1 or mistake in FURTHER_LEVEL_1
+        return mistake in LEVEL_1 or mistake in FURTHER_LEVEL_1 or mistake in SENSORS_LEVEL_1
     return not (mistake == "layers exchanged" and len(machine.coils) % 2)
 
 

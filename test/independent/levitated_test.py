@@ -7,10 +7,21 @@ import unittest
 
 import cases
 import laboratory
+import levitated
 import levitated_study
 import numpy as np
 
 UNITS = 100
+X, Y, Z = np.eye(3)
+# What is done to the measured orientation, and the cause that must be named. Torques alone contradict it.
+TRACKER_MISTAKES = {
+    "inverse": (lambda R: R.T, "orientation_inverted"),
+    "tracker by 90 degrees": (lambda R: laboratory.rotation(X * np.pi / 2) @ R, "tracker_frame"),
+    "tracker by 180 degrees": (lambda R: laboratory.rotation(Z * np.pi) @ R, "tracker_frame"),
+    "tracker askew": (lambda R: laboratory.rotation(np.array([0.2, 0.3, -0.25])) @ R, "tracker_frame"),
+    "marker by 90 degrees": (lambda R: R @ laboratory.rotation(Z * np.pi / 2), "marker_frame"),
+    "marker askew": (lambda R: R @ laboratory.rotation(np.array([0.2, 0.2, 0.2])), "marker_frame"),
+}
 SMALL = """actuator:
   name: small
   joints:
@@ -41,6 +52,29 @@ class Levitated(unittest.TestCase):
 
     def test_a_tracker_whose_errors_prevail(self):
         self.check("coarse_tracker")
+
+
+class TrackerOfALevitatedRotor(unittest.TestCase):
+    def test_mistakes_are_named(self):
+        unit, sensors, sessions = levitated.reaction_sphere(), levitated.Laboratory(), []
+        for seed, (change, _) in enumerate(TRACKER_MISTAKES.values()):
+            rng = np.random.default_rng([seed, 77])
+            errors = rng.uniform(-0.03, 0.03, unit.size())
+            orientations = levitated.random_orientations(24, 0.6, rng)
+            coils = levitated.chosen_coils(unit, orientations, 8, rng)
+            session = levitated.measured_session(unit, errors, sensors, orientations, coils, rng)
+            session.orientations = np.array([change(R) for R in session.orientations])
+            sessions.append(session)
+        outcomes = cases.calibrate_written(
+            unit.names(),
+            sessions,
+            lambda path, session: levitated.write_samples(path, unit, sensors, session),
+            cases.registration_config((0.0, 0.0, 0.0)),
+            levitated_study.SPHERE,
+        )
+        for (name, (_, cause)), outcome in zip(TRACKER_MISTAKES.items(), outcomes):
+            with self.subTest(mistake=name):
+                self.assertEqual([named for named, _ in outcome.diagnoses], [cause])
 
 
 class SmallActuator(unittest.TestCase):
