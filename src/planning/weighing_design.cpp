@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -81,6 +84,7 @@ void WeighingDesign::exchange() {
   }
   for (int pass = 0; pass < kMostPasses && exchangePatterns(); ++pass) {
   }
+  spreadCoils();
 }
 
 bool WeighingDesign::exchangePatterns() {
@@ -146,6 +150,75 @@ DesignedPose WeighingDesign::designedAt(std::size_t candidate, Eigen::MatrixXd& 
     observe(patternObservation(at, pose.patterns.back()), 1.0, covariance);
   }
   return pose;
+}
+
+void WeighingDesign::spreadCoils() {
+  std::vector<std::size_t> alone = coilsOfOnePose();
+  for (std::size_t tries = alone.size(); tries > 0 && !alone.empty() && !isTimeUp(); --tries) {
+    if (!exciteElsewhere(alone.back())) {
+      alone.pop_back();
+      continue;
+    }
+    alone = coilsOfOnePose();
+  }
+}
+
+std::vector<std::size_t> WeighingDesign::coilsOfOnePose() const {
+  std::map<std::size_t, std::set<std::size_t>> places;
+  for (std::size_t place = 0; place < poses_.size(); ++place) {
+    for (const TermPattern& pattern : poses_[place].patterns) {
+      for (const SignedTerm& term : pattern) {
+        places[candidates_[poses_[place].candidate].coils[term.term]].insert(place);
+      }
+    }
+  }
+  std::vector<std::size_t> coils;
+  for (const auto& [coil, of_coil] : places) {
+    if (of_coil.size() == 1) {
+      coils.push_back(coil);
+    }
+  }
+  return coils;
+}
+
+bool WeighingDesign::exciteElsewhere(std::size_t coil) {
+  const std::size_t before = coilsOfOnePose().size();
+  double reached = std::numeric_limits<double>::infinity();
+  std::vector<DesignedPose> best;
+  const std::vector<DesignedPose> present = poses_;
+  for (std::size_t place = 0; place < present.size(); ++place) {
+    const PoseCandidate& at = candidates_[present[place].candidate];
+    const auto found = std::find(at.coils.begin(), at.coils.end(), coil);
+    if (found == at.coils.end()) {
+      continue;
+    }
+    const auto term = static_cast<std::size_t>(found - at.coils.begin());
+    const Eigen::MatrixXd covariance = covarianceAtPose(task_, candidates_, present, place);
+    for (std::size_t n = 0; n < present[place].patterns.size(); ++n) {
+      const TermPattern& pattern = present[place].patterns[n];
+      Eigen::MatrixXd without = covariance;
+      observe(patternObservation(at, pattern), -1.0, without);
+      for (std::size_t k = 0; k < 2 * pattern.size(); ++k) {
+        TermPattern changed = pattern;
+        changed[k / 2] = {term, k % 2 == 0 ? 1 : -1};
+        poses_[place].patterns[n] = changed;
+        const bool serves = coilsOfOnePose().size() < before;
+        poses_[place].patterns[n] = pattern;
+        Eigen::MatrixXd with = without;
+        observe(patternObservation(at, changed), 1.0, with);
+        const double merit = serves ? meritOf(with) : reached;
+        if (merit < reached) {
+          reached = merit;
+          best = present;
+          best[place].patterns[n] = std::move(changed);
+        }
+      }
+    }
+  }
+  if (!best.empty()) {
+    poses_ = std::move(best);
+  }
+  return !best.empty();
 }
 
 std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) {

@@ -68,6 +68,12 @@ class PlannedSession(unittest.TestCase):
             self.assertLessEqual(sum(map(abs, current.values())), TOTAL_CURRENT)
         self.assertTrue(any(ampere < 0.0 for current in torques for ampere in current.values()))
 
+    def test_excites_every_coil_at_two_poses_or_more(self):
+        # Of one pose, another place of the coil explains the torques nearly as well.
+        poses = [{coil for current in torques for coil in current} for _, torques in visits(self.plan)]
+        for coil in range(24):
+            self.assertGreater(sum(coil in pose for pose in poses), 1, f"coil {coil + 1}")
+
     def test_expects_what_another_model_of_the_actuator_says(self):
         drawn = np.zeros(self.unit.size())
         covariance = laboratory.bound(self.unit, drawn, SENSORS, measured(self.unit, drawn, self.plan, None))
