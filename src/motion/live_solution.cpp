@@ -16,12 +16,13 @@ Eigen::MatrixXd LiveMotionWork::information() const {
 }
 
 void LiveMotionWork::solve() {
-  const Eigen::MatrixXd told = information();
-  const Eigen::MatrixXd all = (told + prior_information_)(free_, free_);
+  const Eigen::MatrixXd told = information() + prior_information_;
+  const Eigen::MatrixXd all = told(free_, free_);
   Eigen::VectorXd slope = balance_.gradient() + prior_information_ * (anchor_ - prior_.x);
   slope(orienting_) += orientation_.gradient();
   const Eigen::LLT<Eigen::MatrixXd> factor(all);
-  const Eigen::VectorXd step = factor.solve(slope(free_));
+  const Eigen::VectorXd slope_of_free = slope(free_);
+  const Eigen::VectorXd step = factor.solve(slope_of_free);
   if (factor.info() != Eigen::Success || !step.allFinite()) {
     return;
   }
