@@ -25,6 +25,12 @@ std::size_t endOf(std::size_t total, const WindowPart& part) {
   return beginOf(total, {part.index + 1, part.count});
 }
 
+/// Readings on either side of an interval that the rate of dry friction is taken from.
+std::size_t frictionReach(const JointTrack& track) {
+  constexpr double kSpan = 0.01;  // [s]
+  return static_cast<std::size_t>(kSpan / (2.0 * track.step()));
+}
+
 }  // namespace
 
 void BalanceEvaluator::ColumnSum::start(Eigen::Index rows, Eigen::Index functions) {
@@ -52,7 +58,8 @@ Eigen::MatrixXd& BalanceEvaluator::ColumnSum::result() {
 
 void BalanceEvaluator::start(const MotionSpan& span,
                              const MotionWindow& window,
-                             const MotionPoint& point) {
+                             const MotionPoint& point,
+                             const WindowPart& part) {
   window_ = window;
   count_ = options_.test_functions;
   turning_ = 3 * static_cast<Eigen::Index>(point.turning().size());
@@ -61,9 +68,15 @@ void BalanceEvaluator::start(const MotionSpan& span,
   const TestFunctions functions(
       span.track.time(window.first), span.track.time(window.last), options_.test_functions);
   middle_.resize(readings - 1);
+  // Of those around its intervals alone a part asks.
+  const std::size_t reach = frictionReach(span.track);
+  const std::size_t begin = beginOf(readings - 1, part);
+  const std::size_t end = endOf(readings - 1, part) + reach + 1;
   for (std::size_t n = 0; n < readings; ++n) {
     const std::size_t reading = window.first - 1 + n;
-    point.turn(span.track.reading(reading), turned_[n]);
+    if (n + reach >= begin && n < end) {
+      point.turn(span.track.reading(reading), turned_[n]);
+    }
     if (n == 0 || n + 2 >= readings) {
       continue;
     }
@@ -101,8 +114,7 @@ void BalanceEvaluator::setMomentumFactors(std::size_t place, double h) {
 /// interval alone.
 BalanceEvaluator::Fading BalanceEvaluator::fadingAt(const JointTrack& track,
                                                     std::size_t place) const {
-  constexpr double kSpan = 0.01;  // [s]
-  const auto reach = static_cast<std::size_t>(kSpan / (2.0 * track.step()));
+  const std::size_t reach = frictionReach(track);
   Fading fading;
   fading.first = place - std::min(place, reach);
   fading.last = std::min(turned_.size() - 1, place + 1 + reach);
@@ -337,7 +349,7 @@ void BalanceEvaluator::sumUp(const MotionSpan& span,
                              const BalanceOrder& order,
                              const WindowPart& part) {
   wants_noise_ = order.covariance;
-  start(span, window, point);
+  start(span, window, point, part);
   const std::size_t intervals = turned_.size() - 1;
   for (std::size_t n = beginOf(intervals, part); n < endOf(intervals, part); ++n) {
     addInterval(span, point, n);

@@ -83,7 +83,10 @@ class BalanceEvaluator {
     Eigen::Index batched_ = 0;
   };
 
-  void start(const MotionSpan& span, const MotionWindow& window, const MotionPoint& point);
+  void start(const MotionSpan& span,
+             const MotionWindow& window,
+             const MotionPoint& point,
+             const WindowPart& part);
   void addInterval(const MotionSpan& span, const MotionPoint& point, std::size_t place);
   void addImpulse(const MotionSpan& span,
                   const MotionPoint& point,
