@@ -215,10 +215,11 @@ bool WeighingDesign::exciteElsewhere(std::size_t coil) {
       }
     }
   }
-  if (!best.empty()) {
-    poses_ = std::move(best);
+  if (best.empty()) {
+    return false;
   }
-  return !best.empty();
+  poses_ = std::move(best);
+  return true;
 }
 
 std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) {
