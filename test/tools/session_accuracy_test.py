@@ -77,6 +77,16 @@ class WantedAccuracy(unittest.TestCase):
         self.assertIn("0.5 mrad, 0.25 mrad wanted: 2 poses are added", session.said[1])
         self.assertIn("0.25 mrad wanted: that is reached", session.said[-1])
 
+    def test_ends_where_poses_fall_on_earlier_ones(self):
+        class Repeated(Rehearsal):
+            def _training_poses(self):
+                return 1
+
+        session = Repeated(poses=5, wanted_stddev=1e-6)
+        session._measure(range(1))
+        session._reach_wanted_stddev()
+        self.assertIn("that takes more poses than --poses 5", session.said[-1])
+
     def test_takes_no_more_poses_than_were_asked_for(self):
         session = self.session(poses=7, wanted_stddev=0.25e-3)
         self.assertEqual(session.poses, 7)

@@ -119,7 +119,7 @@ def _add_how_it_is_measured(add, default):
         "--wanted-stddev",
         type=float,
         default=default.wanted_stddev,
-        help="end as soon as every parameter is known so well [rad], with at most --poses (%(default)s: all of them)",
+        help="fewer poses where parameters get this good [rad], up to --poses where not (%(default)s: all)",
     )
     add(
         "--drive-fixture",

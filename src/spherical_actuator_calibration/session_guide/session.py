@@ -142,18 +142,20 @@ class Session:
         """Adds poses until every parameter is known as well as wanted, or as many are measured as were asked for: what
         a plan expects, noise may not hold."""
         wanted = f"{1e3 * self._options.wanted_stddev:.3g} mrad wanted"
+        left = self._options.poses - self._training_poses()
         while True:
             worst = progress.worst_stddev(self._calibration.parameters())
             known = f"The worst standard deviation is {1e3 * worst:.3g} mrad, {wanted}"
             if worst <= self._options.wanted_stddev:
                 self._account.say(f"{known}: that is reached.")
                 return
-            left = self._options.poses - self._training_poses()
             if left <= 0:
                 self._account.say(f"{known}: that takes more poses than --poses {self._options.poses}.")
                 return
             count = min(left, FURTHER_POSES)
             self._account.say(f"{known}: {count} {'pose is' if count == 1 else 'poses are'} added.")
+            # Planned, not measured: a pose at the place of an earlier one counts, too.
+            left -= count
             self._measure(self._plan(count, wanted_stddev=0.0))
             self._estimate()
 
