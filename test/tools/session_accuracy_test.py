@@ -10,6 +10,8 @@ from spherical_actuator_calibration.session_guide import progress
 from spherical_actuator_calibration.session_guide.options import Options
 from spherical_actuator_calibration.session_guide.session import Session
 
+AT_ZERO = progress.Pose((0.0, 0.0, 0.0), ())
+
 
 class KnownParameters(unittest.TestCase):
     def setUp(self):
@@ -41,12 +43,13 @@ class Rehearsal(Session):
         self.said = []
         self.poses = 0
         account = SimpleNamespace(say=self.said.append, set=lambda **fields: None)
-        super().__init__(self, None, {}, Options(validation_poses=0, **options), None, account)
+        actuator = {"workspace": {"tilt_limit": 0.3}}
+        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account)
 
     # What it asks its calibration node.
     def plan(self, poses, wanted_stddev, **_excitation):
         expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses
-        return range(min(poses, expected)), "as planned"
+        return [AT_ZERO] * min(poses, expected), "as planned"
 
     def parameters(self):
         stddev = 1e-3 / math.sqrt(self.poses)
@@ -62,6 +65,12 @@ class Rehearsal(Session):
     def _estimate(self):
         return True
 
+    def _conclude(self):
+        return True
+
+    def wait_until_up(self):
+        self._course.require_current = lambda poses: None
+
 
 class WantedAccuracy(unittest.TestCase):
     def session(self, **options):
@@ -76,6 +85,18 @@ class WantedAccuracy(unittest.TestCase):
         self.assertEqual(session.poses, 16)
         self.assertIn("0.5 mrad, 0.25 mrad wanted: 2 poses are added", session.said[1])
         self.assertIn("0.25 mrad wanted: that is reached", session.said[-1])
+
+    def test_is_planned_by_the_noise_that_the_first_pose_has(self):
+        class Quiet(Rehearsal):
+            def plan(self, poses, wanted_stddev, **_excitation):
+                return [AT_ZERO] * (3 if self.poses else poses), "as planned"
+
+        session = Quiet(poses=40, wanted_stddev=0.5e-3)
+        self.assertTrue(session.run())
+        self.assertEqual(session.poses, 4)
+        session = Quiet(poses=40)
+        session.run()
+        self.assertEqual(session.poses, 40)
 
     def test_ends_where_poses_fall_on_earlier_ones(self):
         class Repeated(Rehearsal):

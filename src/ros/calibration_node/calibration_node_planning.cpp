@@ -3,6 +3,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -10,6 +11,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/planning/measured_noise.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -122,6 +124,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
           held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
     }
     problem.held = &held;
+    plan_options = withMeasuredNoise(std::move(plan_options), held);
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);

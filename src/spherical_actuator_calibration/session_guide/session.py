@@ -33,6 +33,8 @@ class Session:
         self._calibration.wait_until_up()
         poses = self._wanted_poses()
         self._course.require_current(poses)
+        if self._options.wanted_stddev and not (self._asks_for_files() or self._training_poses()):
+            poses = self._learn_the_noise(poses)
         self._measure(poses)
         is_complete = self._estimate()
         for _ in range(MOST_ROUNDS):
@@ -51,7 +53,8 @@ class Session:
         """Poses of this session, those that the node holds samples of left out or complete."""
         training = self._training_poses()
         if training:
-            self._account.say(f"The session goes on: {training} poses are measured already.")
+            measured = "1 pose is" if training == 1 else f"{training} poses are"
+            self._account.say(f"The session goes on: {measured} measured already.")
         planned = list(self._poses_of_files())
         if not planned and training < self._options.poses:
             planned = self._plan(self._options.poses - training, self._options.wanted_stddev)
@@ -64,6 +67,16 @@ class Session:
             0.8 * self._actuator["workspace"]["tilt_limit"],
             self._options.seed,
         )
+
+    def _asks_for_files(self):
+        return bool(self._options.plan or self._options.repeat)
+
+    def _learn_the_noise(self, poses):
+        """Measures the first pose, and plans the others by the noise of its samples: how many poses a wanted accuracy
+        takes is known only then."""
+        self._account.say("The first pose tells the noise of the sensors; the others are planned after it.")
+        self._measure(poses[:1])
+        return self._wanted_poses()
 
     def _training_poses(self):
         """How many are measured that are not held out."""
