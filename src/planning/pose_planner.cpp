@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "coil_visits.hpp"
 #include "design_bound.hpp"
 #include "design_task.hpp"
 #include "pose_candidates.hpp"
@@ -167,6 +168,10 @@ class Planner {
       }
     }
     task.reported = reportedDerivative(space, problem_.state.belief.x, coordinates_);
+    task.visited = measuredVisits(*problem_.held,
+                                  space.coils(),
+                                  problem_.estimation.current_threshold,
+                                  options_.minimum_spacing);
     task.patterns_per_pose = options_.coils_per_pose;
     task.coils_per_pattern = coilsPerPattern(options_);
     task.minimum_spacing = options_.minimum_spacing;

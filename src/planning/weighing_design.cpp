@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
+#include "coil_visits.hpp"
 #include "pattern_bound.hpp"
 #include "pattern_search.hpp"
 
@@ -153,72 +153,60 @@ DesignedPose WeighingDesign::designedAt(std::size_t candidate, Eigen::MatrixXd& 
 }
 
 void WeighingDesign::spreadCoils() {
-  std::vector<std::size_t> alone = coilsOfOnePose();
-  for (std::size_t tries = alone.size(); tries > 0 && !alone.empty() && !isTimeUp(); --tries) {
-    if (!exciteElsewhere(alone.back())) {
-      alone.pop_back();
-      continue;
+  // A coil may lack more than one visit.
+  const std::size_t most = kLeastVisits * task_.visited.size();
+  std::set<std::size_t> hopeless;
+  for (std::size_t tries = 0; tries < most && !isTimeUp(); ++tries) {
+    const std::vector<std::size_t> lacking = CoilVisits(task_, candidates_, poses_).lacking();
+    const auto next = std::find_if(lacking.begin(), lacking.end(), [&](std::size_t coil) {
+      return hopeless.count(coil) == 0;
+    });
+    if (next == lacking.end()) {
+      return;
     }
-    alone = coilsOfOnePose();
-  }
-}
-
-std::vector<std::size_t> WeighingDesign::coilsOfOnePose() const {
-  std::map<std::size_t, std::set<std::size_t>> places;
-  for (std::size_t place = 0; place < poses_.size(); ++place) {
-    for (const TermPattern& pattern : poses_[place].patterns) {
-      for (const SignedTerm& term : pattern) {
-        places[candidates_[poses_[place].candidate].coils[term.term]].insert(place);
-      }
+    if (!exciteElsewhere(*next)) {
+      hopeless.insert(*next);
     }
   }
-  std::vector<std::size_t> coils;
-  for (const auto& [coil, of_coil] : places) {
-    if (of_coil.size() == 1) {
-      coils.push_back(coil);
-    }
-  }
-  return coils;
 }
 
 bool WeighingDesign::exciteElsewhere(std::size_t coil) {
-  const std::size_t before = coilsOfOnePose().size();
+  const CoilVisits visits(task_, candidates_, poses_);
   double reached = std::numeric_limits<double>::infinity();
-  std::vector<DesignedPose> best;
-  const std::vector<DesignedPose> present = poses_;
-  for (std::size_t place = 0; place < present.size(); ++place) {
-    const PoseCandidate& at = candidates_[present[place].candidate];
+  TermPattern best;
+  TermPattern* changes = nullptr;
+  for (std::size_t place = 0; place < poses_.size(); ++place) {
+    const PoseCandidate& at = candidates_[poses_[place].candidate];
     const auto found = std::find(at.coils.begin(), at.coils.end(), coil);
-    if (found == at.coils.end()) {
+    if (found == at.coils.end() || visits.isExcitedAt(coil, place)) {
       continue;
     }
     const auto term = static_cast<std::size_t>(found - at.coils.begin());
-    const Eigen::MatrixXd covariance = covarianceAtPose(task_, candidates_, present, place);
-    for (std::size_t n = 0; n < present[place].patterns.size(); ++n) {
-      const TermPattern& pattern = present[place].patterns[n];
+    const Eigen::MatrixXd covariance = covarianceAtPose(task_, candidates_, poses_, place);
+    for (TermPattern& pattern : poses_[place].patterns) {
       Eigen::MatrixXd without = covariance;
       observe(patternObservation(at, pattern), -1.0, without);
       for (std::size_t k = 0; k < 2 * pattern.size(); ++k) {
+        if (!visits.isSpareAt(at.coils[pattern[k / 2].term], place)) {
+          continue;
+        }
         TermPattern changed = pattern;
         changed[k / 2] = {term, k % 2 == 0 ? 1 : -1};
-        poses_[place].patterns[n] = changed;
-        const bool serves = coilsOfOnePose().size() < before;
-        poses_[place].patterns[n] = pattern;
         Eigen::MatrixXd with = without;
         observe(patternObservation(at, changed), 1.0, with);
-        const double merit = serves ? meritOf(with) : reached;
+        const double merit = meritOf(with);
         if (merit < reached) {
           reached = merit;
-          best = present;
-          best[place].patterns[n] = std::move(changed);
+          best = std::move(changed);
+          changes = &pattern;
         }
       }
     }
   }
-  if (best.empty()) {
+  if (changes == nullptr) {
     return false;
   }
-  poses_ = std::move(best);
+  *changes = std::move(best);
   return true;
 }
 

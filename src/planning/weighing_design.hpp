@@ -15,7 +15,7 @@ namespace sac {
 /// patterns are exchanged one by one at the poses as they are; then each pose, with all of its
 /// patterns, for the few candidates that promise most to first order. It ends where no exchange
 /// gains anything, a plan from which no single exchange leads on, though others may be better. At
-/// last coils of one pose are excited at a second one.
+/// last coils of too few poses are excited at further ones.
 class WeighingDesign {
  public:
   /// Keeps references to task and candidates. `poses`: candidates to begin with.
@@ -38,13 +38,10 @@ class WeighingDesign {
  private:
   bool exchangePatterns();
   bool exchangePoses();
-  /// Excites coils of one pose at a second one, at the least cost of merit: variances do not tell
-  /// that another place of a coil may explain torques of one pose nearly as well.
+  /// Excites coils at as many poses as they are to be (CoilVisits), as far as that can be.
   void spreadCoils();
-  /// Coils, counted from 0, that patterns of one pose only excite.
-  std::vector<std::size_t> coilsOfOnePose() const;
-  /// Exchanges a term of another pose for the coil, so that fewer are of one pose; false where none
-  /// does.
+  /// Exchanges a term that can be spared for the coil, at a pose that does not excite it yet, at
+  /// the least cost of merit; false where there is none.
   bool exciteElsewhere(std::size_t coil);
   /// The best patterns at a candidate, one after the other, for a covariance, which they shrink.
   DesignedPose designedAt(std::size_t candidate, Eigen::MatrixXd& covariance) const;

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <gtest/gtest.h>
 
+#include "coil_visits.hpp"
 #include "design_bound.hpp"
 #include "pattern_bound.hpp"
 #include "pattern_search.hpp"
@@ -44,6 +46,7 @@ class WeighingPlan : public PlanningFixture {
     DesignTask task;
     task.known = 1e3 * Eigen::MatrixXd::Identity(count, count);
     task.reported = reportedDerivative(model_.space(), problem_.state.belief.x, coordinates);
+    task.visited.assign(model_.space().coils(), 0);
     return task;
   }
 };
@@ -97,6 +100,45 @@ TEST_F(WeighingPlan, OfTenPosesAndSixtyTorquesBeatsOneCoilAtATimeAndComesNearThe
       << plan.message;
   options_.patterns = PlanPatterns::kSingle;
   EXPECT_LT(plan.worst_stddev, 0.9 * planPoses(problem_, options_).worst_stddev);
+}
+
+TEST_F(WeighingPlan, OfFewPosesExcitesCoilsOnceAPatternAndAtTwoPoses) {
+  for (const std::size_t poses : {2U, 4U, 8U}) {
+    options_.max_poses = poses;
+    std::vector<std::size_t> visits(model_.space().coils(), 0);
+    for (const PlannedPose& pose : planPoses(problem_, options_).poses) {
+      for (const std::size_t coil : pose.coils) {
+        ++visits[coil];
+      }
+      for (const CoilPattern& pattern : pose.patterns) {
+        std::set<std::size_t> coils;
+        for (const SignedCoil& coil : pattern) {
+          EXPECT_TRUE(coils.insert(coil.coil).second) << "coil " << coil.coil << " twice";
+        }
+      }
+    }
+    // Fewer poses do not see every coil well at two of them.
+    if (poses > 4) {
+      EXPECT_GE(*std::min_element(visits.begin(), visits.end()), 2U) << poses << " poses";
+    }
+  }
+}
+
+TEST_F(WeighingPlan, CountsPosesThatAreMeasuredForEachCoil) {
+  Sample sample;
+  sample.has_torque = true;
+  sample.current = Eigen::VectorXd::Zero(3);
+  sample.current[0] = -2.0;
+  std::vector<Sample> samples(5, sample);
+  samples[1].joint_position.x() = 0.05;
+  samples[2].joint_position.x() = 0.2;
+  samples[2].current[1] = 0.04;
+  samples[3].joint_position.x() = 0.4;
+  samples[3].current[1] = 2.0;
+  samples[4].joint_position.x() = -0.4;
+  samples[4].current[2] = 2.0;
+  samples[4].validation = true;
+  EXPECT_EQ(measuredVisits(samples, 3, 0.05, 0.1), (std::vector<std::size_t>{2, 1, 0}));
 }
 
 TEST_F(WeighingPlan, ExpectsTheCramerRaoBoundOfTheSamplesThatItAsksFor) {
