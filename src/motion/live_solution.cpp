@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "factor_inverse.hpp"
 #include "live_motion_work.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
@@ -28,12 +29,7 @@ void LiveMotionWork::solve() {
   }
   x_ = anchor_;
   x_(free_) -= step;
-  const auto count = static_cast<Eigen::Index>(free_.size());
-  Eigen::MatrixXd root = Eigen::MatrixXd::Identity(count, count);
-  factor.matrixLLT().triangularView<Eigen::Lower>().solveInPlace(root);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
-  inverse.selfadjointView<Eigen::Lower>().rankUpdate(root.transpose());
-  tell(Eigen::MatrixXd(inverse.selfadjointView<Eigen::Lower>()));
+  tell(inverseOfSquare(factor.matrixLLT()));
 }
 
 double LiveMotionWork::chiSquare() const {
@@ -95,8 +91,8 @@ void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
   Eigen::MatrixXd own = windows * inverse;
   if (orientations != windows) {
     const Eigen::MatrixXd by_orientations = orientingColumns(inverse);
-    own += (orientations - windows) *
-           (by_orientations * orientation_.information() * by_orientations.transpose());
+    const Eigen::MatrixXd more = (orientations - windows) * orientation_.information();
+    own.noalias() += (by_orientations * more) * by_orientations.transpose();
   }
   ParameterBelief& belief = estimate_.belief;
   belief.x = x_;
