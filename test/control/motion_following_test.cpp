@@ -241,10 +241,12 @@ TEST_F(MotionFollowingTest, NewParametersWaitForTheEnd) {
   runIntoMotion(examplePlan(0.1));
   const Eigen::VectorXd before = controller_->update(now_);
   controller_->setParameters(truth);
+  EXPECT_TRUE(controller_->hasParametersToCome());
   EXPECT_LT((controller_->update(now_) - before).norm(), 1e-9);
   controller_->endMotion();
   runWhile(MotionPhase::kEnding);
   runWhile(MotionPhase::kSettling);
+  EXPECT_FALSE(controller_->hasParametersToCome());
   // By the true parameters the same motion is followed far better.
   const auto largest_error = [this] {
     controller_->enable(now_);

@@ -16,7 +16,7 @@ from calibration_client import NAMESPACE, PACKAGE, run_tool, wait_for
 from controller_client import Controller, description
 from driver_node import DriverNode
 from sensor_msgs.msg import JointState
-from spherical_actuator_calibration.coil_drive.parameters import parameters_in_force
+from spherical_actuator_calibration.coil_drive.parameters import parameters_in_force, wait_for_control_by
 from spherical_actuator_calibration.msg import CoilCurrents
 from tf2_msgs.msg import TFMessage
 
@@ -158,9 +158,10 @@ class AppliedParameters(unittest.TestCase):
     def expect_applied(self, unit):
         saved = Predictions(self.folder, unit)
         drawing = Predictions(tempfile.mkdtemp(dir=self.folder), description())
-        with parameters_in_force(NAMESPACE, saved.path):
+        with parameters_in_force(NAMESPACE, saved.path) as parameters:
             nodes = [Controller(largest_age=PATIENT, disturbance={"bandwidth": 0.0}), DriverNode("visualization", {})]
             try:
+                wait_for_control_by(NAMESPACE, parameters)
                 for reading in READINGS:
                     self.rest_at(reading)
                     currents = self.held_currents(nodes[0])

@@ -43,6 +43,8 @@ class OrientationController {
   /// within a second; during a motion plan, those before stay in force until it has ended. Throws
   /// ConfigError when they are not valid.
   void setParameters(const Actuator& parameters);
+  /// Whether those of the last call wait for the end of a motion.
+  bool hasParametersToCome() const { return parameters_to_come_.has_value(); }
   /// A reading of the joint sensors; false when it is not newer than the last, and changes nothing.
   /// After a jump of the clock it begins anew. Throws DataError when it cannot be an angle.
   bool receive(const JointMeasurement& joints);

@@ -62,6 +62,9 @@ OrientationControllerNode::OrientationControllerNode(
   ros::NodeHandle handle = node;
   ros::NodeHandle private_handle = private_node;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
+  // Before the parameters come.
+  parameters_publisher_ =
+      private_handle.advertise<msg::ActuatorParameters>("parameters_in_force", 1, true);
   const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(subscribeChecked<msg::ActuatorParameters>(
       handle,
@@ -93,9 +96,11 @@ OrientationControllerNode::OrientationControllerNode(
       private_handle.advertiseService(
           "follow_motion", &OrientationControllerNode::followMotion, this),
       private_handle.advertiseService("end_motion", &OrientationControllerNode::endMotion, this)};
-  motion_timer_ = private_handle.createWallTimer(
-      ros::WallDuration(kStatusPeriod),
-      [this](const ros::WallTimerEvent& /*event*/) { tellMotion(); });
+  motion_timer_ = private_handle.createWallTimer(ros::WallDuration(kStatusPeriod),
+                                                 [this](const ros::WallTimerEvent& /*event*/) {
+                                                   tellParameters();
+                                                   tellMotion();
+                                                 });
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
   handle.setCallbackQueue(&reading_queue_);
   if (design.has_joints) {
@@ -117,7 +122,6 @@ OrientationControllerNode::~OrientationControllerNode() {
 void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters& message) {
   // Before the control loop has to wait: a large map takes its time.
   const std::optional<Actuator> parameters = actuatorFromRos(message, design_);
-  const std::lock_guard<std::mutex> lock(mutex_);
   if (!parameters) {
     ROS_ERROR_STREAM("The parameters of " << printable(message.actuator)
                                           << " do not fit the description of " << design_.name
@@ -125,11 +129,28 @@ void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters&
     return;
   }
   try {
+    const std::lock_guard<std::mutex> lock(mutex_);
     controller_.setParameters(*parameters);
-    ROS_INFO_STREAM("Revision " << message.revision << " of the parameters ("
-                                << printable(message.source) << ") is in force.");
+    parameters_to_tell_ = message;
   } catch (const Error& error) {
     ROS_ERROR_STREAM("The parameters are refused: " << printable(error.what()));
+  }
+  tellParameters();
+}
+
+void OrientationControllerNode::tellParameters() {
+  std::optional<msg::ActuatorParameters> message;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (controller_.hasParametersToCome()) {
+      return;
+    }
+    message.swap(parameters_to_tell_);
+  }
+  if (message) {
+    parameters_publisher_.publish(*message);
+    ROS_INFO_STREAM("Revision " << message->revision << " of the parameters ("
+                                << printable(message->source) << ") is in force.");
   }
 }
 

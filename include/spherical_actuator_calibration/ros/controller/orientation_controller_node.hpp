@@ -44,7 +44,8 @@ namespace sac {
 ///
 /// Enabled, it follows a motion plan instead: the private service `follow_motion` begins it,
 /// `end_motion` slows it down to its end before its time, and the private topic `motion_status`
-/// tells how far it is. At the end of a motion it is not enabled any more.
+/// tells how far it is. At the end of a motion it is not enabled any more. The private topic
+/// `parameters_in_force`, latched, has the message of `parameters` that it controls by.
 class OrientationControllerNode {
  public:
   /// Throws ConfigError when the description has no torque model or an option is not valid.
@@ -58,6 +59,8 @@ class OrientationControllerNode {
 
  private:
   void receiveParameters(const msg::ActuatorParameters& message);
+  /// Says which parameters are in force, once they are.
+  void tellParameters();
   template <typename Message>
   void followReadings(ros::NodeHandle& handle, const std::string& topic);
   template <typename Message>
@@ -96,6 +99,7 @@ class OrientationControllerNode {
   std::string last_refusal_;
   bool was_active_ = false;
   MotionPhase told_phase_ = MotionPhase::kNone;
+  std::optional<msg::ActuatorParameters> parameters_to_tell_;
   Stamp last_stamp_ = 0;       ///< of the newest reading; 0: none
   double last_reading_ = 0.0;  ///< when it came, by a clock that never jumps [s]
   double last_command_ = 0.0;  ///< likewise [s]
@@ -103,6 +107,7 @@ class OrientationControllerNode {
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher motion_publisher_;
+  ros::Publisher parameters_publisher_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer motion_timer_;
   NodeDiagnostics diagnostics_;
