@@ -31,6 +31,7 @@ PosePlanOptions withMeasuredNoise(PosePlanOptions options, const std::vector<Sam
   options.torque_stddev = medianTold(of_torques, options.torque_stddev);
   for (Eigen::Index joint = 0; joint < options.joint_stddev.size(); ++joint) {
     std::vector<double> of_joint;
+    of_joint.reserve(held.size());
     for (const Sample& sample : held) {
       of_joint.push_back(sample.joint_stddev[joint]);
     }
