@@ -9,9 +9,9 @@
 #include "coil_visits.hpp"
 #include "design_bound.hpp"
 #include "design_task.hpp"
+#include "plan_sentence.hpp"
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
-#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -320,7 +320,7 @@ class Planner {
       return;
     }
     if (!outcome_.report.success || !isAllObservable(plan)) {
-      plan.message = "The planned samples do not determine everything. " + outcome_.report.message;
+      plan.message = openSentence(plan);
       return;
     }
     if (plan.reached_wanted) {
@@ -331,33 +331,7 @@ class Planner {
           static_cast<std::size_t>(std::ceil(static_cast<double>(poses) * ratio * ratio));
     }
     plan.stddev_bound = bound_;
-    plan.message = sentence(plan, poses);
-  }
-
-  std::string sentence(const PosePlan& plan, std::size_t poses) const {
-    if (poses == 0) {
-      return format("No pose is needed: the samples held give a standard deviation of %.3g mrad.",
-                    1e3 * plan.worst_stddev);
-    }
-    std::string text = format(
-        "%zu poses, %zu orientations and %zu torques: the worst parameter, %s, is expected "
-        "at a standard deviation of %.3g mrad.",
-        poses,
-        plan.orientation_samples,
-        plan.torque_samples,
-        plan.worst_parameter.c_str(),
-        1e3 * plan.worst_stddev);
-    if (plan.stddev_bound) {
-      text += format(
-          " That is within %.1f %% of what any plan of as many poses and torques could reach.",
-          std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)));
-    }
-    if (options_.wanted_stddev > 0.0 && !plan.reached_wanted) {
-      text += format(" About %zu poses are needed for %.3g mrad.",
-                     *plan.poses_needed,
-                     1e3 * options_.wanted_stddev);
-    }
-    return text;
+    plan.message = planSentence(plan, options_);
   }
 
   const PlanningProblem& problem_;

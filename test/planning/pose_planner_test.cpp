@@ -230,7 +230,19 @@ TEST_F(PosePlanner, SaysWhichParametersStayOpen) {
   const PosePlan plan = planPoses(problem_, options_);
   EXPECT_FALSE(isAllObservable(plan));
   EXPECT_FALSE(plan.poses_needed.has_value());
-  EXPECT_NE(plan.message.find("do not determine everything"), std::string::npos) << plan.message;
+  EXPECT_EQ(plan.message,
+            "The planned samples do not determine everything: further poses are needed.");
+}
+
+TEST_F(PosePlanner, NamesParametersThatStayOpen) {
+  // One coil is excited at each of these poses.
+  options_.max_poses = 12;
+  options_.coils_per_pose = 1;
+  const PosePlan plan = planPoses(problem_, options_);
+  ASSERT_FALSE(isAllObservable(plan));
+  EXPECT_NE(plan.message.find(" of 73 parameters stay open (pole_"), std::string::npos)
+      << plan.message;
+  EXPECT_NE(plan.message.find("further poses are needed"), std::string::npos) << plan.message;
 }
 
 TEST_F(PosePlanner, PlansJointsOfAnActuatorWithoutTorqueModel) {
