@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -24,7 +25,6 @@ namespace {
 constexpr std::size_t kFewestOnOneSide = 3;
 /// More rows than so many are tried in steps.
 constexpr std::size_t kMostPlaces = 60;
-constexpr std::size_t kMostFitted = 1;
 
 std::string number(std::size_t index) {
   return std::to_string(numberOf(index));
@@ -113,19 +113,43 @@ Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& sum) {
   return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, handed).asDiagonal() * svd.matrixV().transpose();
 }
 
+/// An orientation that was measured, and what the description makes of its joint angles.
+struct Place {
+  std::size_t row = 0;  ///< of its sample
+  Eigen::Matrix3d expected;
+  double loss = 0.0;  ///< as described
+};
+
+/// Sums over the places before each one, and at the end over all.
+template <typename Sum>
+std::vector<Sum> runningSums(std::size_t count,
+                             const Sum& zero,
+                             const std::function<Sum(std::size_t)>& term) {
+  std::vector<Sum> sums = {zero};
+  for (std::size_t k = 0; k < count; ++k) {
+    sums.push_back(sums.back() + term(k));
+  }
+  return sums;
+}
+
 /// Tries every row from which on something may have moved.
 class MovedScreen {
  public:
   MovedScreen(const WiringCase& described, const CalibrationConfig& config)
-      : described_(described),
-        config_(config),
-        joints_(jointGeometry(described.actuator)),
-        unchanged_(orientationLoss(described, config)) {
+      : described_(described), config_(config), joints_(jointGeometry(described.actuator)) {
     for (std::size_t n = 0; n < described.samples.size(); ++n) {
-      if (described.samples[n].has_orientation) {
-        places_.push_back(n);
+      const Sample& sample = described.samples[n];
+      if (sample.has_orientation) {
+        const Eigen::Matrix3d R = rotorOrientation(joints_, sample.joint_position);
+        const double loss = orientationLoss(sample.R_stator_rotor * R.transpose(),
+                                            sample.joint_position,
+                                            sample.orientation_stddev,
+                                            config);
+        places_.push_back({n, R, loss});
       }
     }
+    losses_ =
+        runningSums<double>(places_.size(), 0.0, [this](std::size_t k) { return places_[k].loss; });
   }
 
   std::vector<ScreenedCandidate> run() {
@@ -133,107 +157,135 @@ class MovedScreen {
       return {};
     }
     std::vector<ScreenedCandidate> all;
-    for (int kind = 0; kind < 2 + static_cast<int>(kJoints); ++kind) {
-      const std::vector<std::size_t> rows = rowsFor(kind);
-      std::vector<ScreenedCandidate> best;
-      for (const std::size_t row : rows) {
-        add(row, kind, best);
+    for (kind_ = 0; kind_ < 2 + static_cast<int>(kJoints); ++kind_) {
+      sumMisfits();
+      const Move best = bestMove();
+      if (best.gain > 0.0) {
+        all.push_back({{hypothesisOf(best)}, best.gain});
       }
-      keepBest(best, kMostFitted);
-      all.insert(all.end(), best.begin(), best.end());
     }
     return all;
   }
 
  private:
-  /// Of many only those near the best of some.
-  std::vector<std::size_t> rowsFor(int kind) {
+  /// What undoes a move of the samples on one side of a place.
+  struct Move {
+    std::size_t place = 0;
+    bool is_late = true;
+    Eigen::Vector3d back = Eigen::Vector3d::Zero();  ///< a slip: the first number of it
+    double gain = 0.0;
+  };
+
+  const Sample& sampleAt(std::size_t k) const { return described_.samples[places_[k].row]; }
+
+  /// Of the measured orientations, in the form that the kind of move needs.
+  void sumMisfits() {
+    if (kind_ < 2) {
+      turns_ = runningSums<Eigen::Matrix3d>(
+          places_.size(), Eigen::Matrix3d::Zero(), [this](std::size_t k) {
+            const Eigen::Matrix3d& R = places_[k].expected;
+            const Eigen::Matrix3d& measured = sampleAt(k).R_stator_rotor;
+            return kind_ == 1 ? Eigen::Matrix3d(measured * R.transpose())
+                              : Eigen::Matrix3d(R.transpose() * measured);
+          });
+    } else {
+      slips_ = runningSums<double>(places_.size(), 0.0, [this](std::size_t k) {
+        const JointLinearization at =
+            linearizeRotorOrientation(joints_, sampleAt(k).joint_position);
+        return at.d_offset.col(kind_ - 2).dot(
+            rotationLog(sampleAt(k).R_stator_rotor * at.R_stator_rotor.transpose()));
+      });
+    }
+  }
+
+  /// Of many places only those near the best of some.
+  Move bestMove() const {
     const std::size_t end = places_.size() - kFewestOnOneSide + 1;
     const std::size_t step = places_.size() / kMostPlaces + 1;
-    std::vector<std::size_t> rows = range(kFewestOnOneSide, end, step);
-    if (step == 1) {
-      return rows;
+    const Move best = bestOf(kFewestOnOneSide, end, step);
+    if (step == 1 || best.gain == 0.0) {
+      return best;
     }
-    std::size_t best_row = rows.front();
-    double best_gain = 0.0;
-    for (const std::size_t row : rows) {
-      std::vector<ScreenedCandidate> one;
-      add(row, kind, one);
-      if (!one.empty() && one.front().gain > best_gain) {
-        best_gain = one.front().gain;
-        best_row = row;
+    return bestOf(std::max(kFewestOnOneSide, best.place - std::min(best.place, step)),
+                  std::min(end, best.place + step),
+                  1);
+  }
+
+  /// Either side of a place may be that which is as described.
+  Move bestOf(std::size_t begin, std::size_t end, std::size_t step) const {
+    Move best;
+    for (std::size_t place = begin; place < end; place += step) {
+      const Eigen::Vector3d back = kind_ < 2 ? turnedBack(place) : slippedBack(place);
+      for (const bool is_late : {true, false}) {
+        Move move{place, is_late, is_late ? back : Eigen::Vector3d(-back), 0.0};
+        move.gain = gainOf(move);
+        if (move.gain > best.gain) {
+          best = move;
+        }
       }
     }
-    return range(std::max(kFewestOnOneSide, best_row - std::min(best_row, step)),
-                 std::min(end, best_row + step),
-                 1);
+    return best;
   }
 
-  static std::vector<std::size_t> range(std::size_t begin, std::size_t end, std::size_t step) {
-    std::vector<std::size_t> rows;
-    for (std::size_t row = begin; row < end; row += step) {
-      rows.push_back(row);
-    }
-    return rows;
-  }
-
-  /// Either side of a row may be that which is as described.
-  void add(std::size_t row, int kind, std::vector<ScreenedCandidate>& candidates) const {
-    const Eigen::VectorXd back = kind < 2 ? Eigen::VectorXd(turnedBack(row, kind == 1))
-                                          : Eigen::VectorXd::Constant(1, slipBack(row, kind - 2));
-    const std::size_t border = places_[row];
-    for (const bool is_late : {true, false}) {
-      const Rows rows{is_late ? border : 0, is_late ? described_.samples.size() : border, border};
-      Hypothesis hypothesis =
-          kind == 0   ? movedMarker(described_, rows)
-          : kind == 1 ? movedTracker(described_, rows)
-                      : slippedJoint(described_, rows, static_cast<std::size_t>(kind - 2));
-      hypothesis.start = is_late ? back : Eigen::VectorXd(-back);
-      hypothesis.cost = std::log(static_cast<double>(places_.size()));
-      const double gain =
-          unchanged_ -
-          orientationLoss(corrected(described_, {hypothesis}, hypothesis.start), config_);
-      if (gain > 0.0) {
-        candidates.push_back({{std::move(hypothesis)}, gain});
+  double gainOf(const Move& move) const {
+    const std::size_t begin = move.is_late ? move.place : 0;
+    const std::size_t end = move.is_late ? places_.size() : move.place;
+    const Eigen::Matrix3d back = rotationExp(move.back);
+    double loss = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Sample& sample = sampleAt(k);
+      Eigen::Vector3d q = sample.joint_position;
+      Eigen::Matrix3d R = places_[k].expected;
+      Eigen::Matrix3d measured = sample.R_stator_rotor;
+      if (kind_ == 0) {
+        measured = measured * back;
+      } else if (kind_ == 1) {
+        measured = back * measured;
+      } else {
+        q[kind_ - 2] += move.back[0];
+        R = rotorOrientation(joints_, q);
       }
+      loss += orientationLoss(measured * R.transpose(), q, sample.orientation_stddev, config_);
     }
+    return losses_[end] - losses_[begin] - loss;
   }
 
-  /// What the mean after a row must be turned by to be that before it.
-  Eigen::Vector3d turnedBack(std::size_t row, bool is_tracker) const {
-    Eigen::Matrix3d before = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d after = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const Sample& sample = described_.samples[places_[k]];
-      const Eigen::Matrix3d R = rotorOrientation(joints_, sample.joint_position);
-      (k < row ? before : after) += is_tracker
-                                        ? Eigen::Matrix3d(sample.R_stator_rotor * R.transpose())
-                                        : Eigen::Matrix3d(R.transpose() * sample.R_stator_rotor);
-    }
-    before = nearestRotation(before);
-    after = nearestRotation(after);
-    return rotationLog(is_tracker ? Eigen::Matrix3d(before * after.transpose())
+  Hypothesis hypothesisOf(const Move& move) const {
+    const std::size_t border = places_[move.place].row;
+    const Rows rows{
+        move.is_late ? border : 0, move.is_late ? described_.samples.size() : border, border};
+    Hypothesis hypothesis =
+        kind_ == 0   ? movedMarker(described_, rows)
+        : kind_ == 1 ? movedTracker(described_, rows)
+                     : slippedJoint(described_, rows, static_cast<std::size_t>(kind_ - 2));
+    hypothesis.start = move.back.head(hypothesis.start.size());
+    hypothesis.cost = std::log(static_cast<double>(places_.size()));
+    return hypothesis;
+  }
+
+  /// What the mean from a place on must be turned by to be that before it.
+  Eigen::Vector3d turnedBack(std::size_t place) const {
+    const Eigen::Matrix3d before = nearestRotation(turns_[place]);
+    const Eigen::Matrix3d after = nearestRotation(turns_.back() - turns_[place]);
+    return rotationLog(kind_ == 1 ? Eigen::Matrix3d(before * after.transpose())
                                   : Eigen::Matrix3d(after.transpose() * before));
   }
 
-  double slipBack(std::size_t row, int joint) const {
-    double before = 0.0;
-    double after = 0.0;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const Sample& sample = described_.samples[places_[k]];
-      const JointLinearization at = linearizeRotorOrientation(joints_, sample.joint_position);
-      const double misfit = at.d_offset.col(joint).dot(
-          rotationLog(sample.R_stator_rotor * at.R_stator_rotor.transpose()));
-      (k < row ? before : after) += misfit;
-    }
-    return after / static_cast<double>(places_.size() - row) - before / static_cast<double>(row);
+  Eigen::Vector3d slippedBack(std::size_t place) const {
+    const double before = slips_[place] / static_cast<double>(place);
+    const double after =
+        (slips_.back() - slips_[place]) / static_cast<double>(places_.size() - place);
+    return {after - before, 0.0, 0.0};
   }
 
   const WiringCase& described_;
   const CalibrationConfig& config_;
   const JointGeometry joints_;
-  const double unchanged_;
-  std::vector<std::size_t> places_;
+  std::vector<Place> places_;
+  std::vector<double> losses_;
+  int kind_ = 0;  ///< 0 marker, 1 tracker, then the joints
+  std::vector<Eigen::Matrix3d> turns_;
+  std::vector<double> slips_;
 };
 
 }  // namespace

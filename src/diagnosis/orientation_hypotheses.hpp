@@ -26,6 +26,11 @@ std::vector<Hypothesis> shiftHypotheses(Quantity stream);
 /// Misfit of a case's orientations at the nominal joints, as expected within the tolerance: Σ of
 /// studentLoss() [nats].
 double orientationLoss(const WiringCase& given, const CalibrationConfig& config);
+/// Of one orientation alone, by how far it is turned from the expected one.
+double orientationLoss(const Eigen::Matrix3d& turn,
+                       const Eigen::Vector3d& joint_position,
+                       double orientation_stddev,
+                       const CalibrationConfig& config);
 
 /// The candidates for the orientations of a case that are worth a fit: singles, and pairs where no
 /// single will do.

@@ -104,6 +104,25 @@ void scanRotation(Hypothesis& hypothesis,
   }
 }
 
+/// Moves the start of a turn of readings to where the orientations fit best: Σ tr(R R_measuredᵀ) is
+/// a sine of it, which three values tell.
+void turnToBest(Hypothesis& hypothesis, const WiringCase& few) {
+  const JointGeometry joints = jointGeometry(few.actuator);
+  double cosine = 0.0;
+  double sine = 0.0;
+  for (const double angle : {0.0, 2.0 * kPi / 3.0, 4.0 * kPi / 3.0}) {
+    double trace = 0.0;
+    const WiringCase turned = corrected(few, {hypothesis}, Eigen::VectorXd::Constant(1, angle));
+    for (const Sample& sample : turned.samples) {
+      trace +=
+          rotorOrientation(joints, sample.joint_position).cwiseProduct(sample.R_stator_rotor).sum();
+    }
+    cosine += trace * std::cos(angle);
+    sine += trace * std::sin(angle);
+  }
+  hypothesis.start[0] = std::atan2(sine, cosine);
+}
+
 std::vector<Hypothesis> singles(const WiringCase& few, const CalibrationConfig& config) {
   std::vector<Hypothesis> all = jointHypotheses(few.actuator, config.tolerance);
   for (Hypothesis& hypothesis : all) {
@@ -199,7 +218,7 @@ class PairScreen {
       const WiringCase mended = corrected(few_, {first}, {});
       for (Hypothesis second : joints_) {
         if (isOf(second, "joint_index")) {
-          scan(second, angleGrid(), mended, config_);
+          turnToBest(second, mended);
           add(first, second);
         }
       }
@@ -225,7 +244,7 @@ class PairScreen {
     const WiringCase mended = corrected(few_, {first}, first.start);
     for (Hypothesis second : joints_) {
       if (isOf(second, "joint_index") && second.cause > first.cause) {
-        scan(second, angleGrid(), mended, config_);
+        turnToBest(second, mended);
         add(first, second);
       }
     }
@@ -292,23 +311,32 @@ class PairScreen {
 
 }  // namespace
 
+double orientationLoss(const Eigen::Matrix3d& turn,
+                       const Eigen::Vector3d& joint_position,
+                       double orientation_stddev,
+                       const CalibrationConfig& config) {
+  const ManufacturingTolerance& tolerance = config.tolerance;
+  // An offset turns the rotor by itself, a tangential error δ of an axis by 2 sin(q/2) δ.
+  const double sines = 0.5 * (1.0 - joint_position.array().cos()).sum();
+  constexpr double kAxes = 8.0 / 3.0;
+  const double variance = tolerance.joint_offset * tolerance.joint_offset +
+                          kAxes * tolerance.joint_axis * tolerance.joint_axis * sines +
+                          orientation_stddev * orientation_stddev +
+                          std::pow(ModelAllowance{}.orientation, 2);
+  return studentLoss(rotationLog(turn).squaredNorm() / variance);
+}
+
 double orientationLoss(const WiringCase& given, const CalibrationConfig& config) {
   const JointGeometry joints = jointGeometry(given.actuator);
-  const ManufacturingTolerance& tolerance = config.tolerance;
   double loss = 0.0;
   for (const Sample& sample : given.samples) {
-    if (!sample.has_orientation) {
-      continue;
+    if (sample.has_orientation) {
+      const Eigen::Matrix3d R = rotorOrientation(joints, sample.joint_position);
+      loss += orientationLoss(sample.R_stator_rotor * R.transpose(),
+                              sample.joint_position,
+                              sample.orientation_stddev,
+                              config);
     }
-    const Eigen::Matrix3d R = rotorOrientation(joints, sample.joint_position);
-    // An offset turns the rotor by itself, a tangential error δ of an axis by 2 sin(q/2) δ.
-    const double sines = (0.5 * sample.joint_position).array().sin().square().sum();
-    const double variance = std::pow(tolerance.joint_offset, 2) +
-                            8.0 / 3.0 * std::pow(tolerance.joint_axis, 2) * sines +
-                            std::pow(sample.orientation_stddev, 2) +
-                            std::pow(ModelAllowance{}.orientation, 2);
-    loss +=
-        studentLoss(rotationLog(sample.R_stator_rotor * R.transpose()).squaredNorm() / variance);
   }
   return loss;
 }
