@@ -219,8 +219,9 @@ std::vector<BudgetEntry> Budget::propagated() {
   const Eigen::MatrixXd reported = chosen * InformationFactor(information).inverse();
   std::vector<BudgetEntry> entries;
   for (const std::string& source : sources_) {
+    // None is below zero but for rounding.
     const Eigen::VectorXd variance =
-        (reported * meat_[source]).cwiseProduct(reported).rowwise().sum();
+        (reported * meat_[source]).cwiseProduct(reported).rowwise().sum().cwiseMax(0.0);
     if (variance.maxCoeff() > 0.0) {
       entries.push_back({source, variance});
     }

@@ -13,8 +13,11 @@
 namespace sac {
 namespace {
 
-/// Calibrated with readings of joints that each dwell shares, and a marker known to 1 mrad.
-CalibrationSession calibratedSession(double joint_stddev, double marker, Cycle cycle) {
+/// Calibrated with readings of joints that each dwell shares, and registrations known as well as
+/// that [rad]: of tracker, marker and force/torque sensor.
+CalibrationSession calibratedSession(double joint_stddev,
+                                     const RegistrationUncertainty& registration,
+                                     Cycle cycle) {
   scenarios::Generator generator(4);
   std::vector<Sample> samples =
       scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
@@ -27,14 +30,14 @@ CalibrationSession calibratedSession(double joint_stddev, double marker, Cycle c
     sample.torque_shared_stddev = 0.3 * sample.torque_stddev;
   }
   CalibrationConfig config;
-  stateRegistration(config, {0.0, marker, 0.0});
+  stateRegistration(config, registration);
   CalibrationSession session({scenarios::paperNominal()}, samples, config);
   session.run({cycle});
   return session;
 }
 
 CalibrationSession refinedSession(double joint_stddev, double marker) {
-  return calibratedSession(joint_stddev, marker, Cycle::kRefine);
+  return calibratedSession(joint_stddev, {0.0, marker, 0.0}, Cycle::kRefine);
 }
 
 double largestShare(const CalibrationSession& session, const std::string& source) {
@@ -69,7 +72,7 @@ TEST(UncertaintyBudget, SumsUpToTheStatedVariances) {
 
 TEST(UncertaintyBudget, NamesWhatLimits) {
   // Orientations alone take a turn of the marker for offsets of the joints.
-  const CalibrationSession marker = calibratedSession(0.0, 1e-2, Cycle::kJoint);
+  const CalibrationSession marker = calibratedSession(0.0, {0.0, 1e-2, 0.0}, Cycle::kJoint);
   EXPECT_GT(largestShare(marker, "marker_registration"), 0.9);
   EXPECT_EQ(largestShare(marker, "joint_reading"), 0.0);
   EXPECT_EQ(largestShare(marker, "tracker_registration"), 0.0);
@@ -79,10 +82,12 @@ TEST(UncertaintyBudget, NamesWhatLimits) {
 }
 
 TEST(UncertaintyBudget, HasSharesThatSumUpToOne) {
-  const Eigen::MatrixXd shares = budgetShares(uncertaintyBudget(refinedSession(2e-4, 1e-3)));
+  const Eigen::MatrixXd shares =
+      budgetShares(uncertaintyBudget(calibratedSession(2e-4, {1e-3, 1e-3, 1e-3}, Cycle::kRefine)));
   for (Eigen::Index p = 0; p < shares.rows(); ++p) {
     const double sum = shares.row(p).sum();
     EXPECT_TRUE(sum == 0.0 || std::abs(sum - 1.0) < 1e-12) << p;
+    EXPECT_GE(shares.row(p).minCoeff(), 0.0) << p;
   }
 }
 
