@@ -34,6 +34,12 @@ class Guide {
       return "The parameters in force are saved, and no sample is in use: there is nothing to do. "
              "To calibrate anew, capture at new poses.";
     }
+    if (progress_.refused && progress_.samples > 0) {
+      return "The last cycle was refused, and would be again: its report says what contradicts. "
+             "Call "
+             "diagnose and mend what it names, or remove those samples and capture at new poses; "
+             "then run it again.";
+    }
     if (!progress_.joint_done) {
       return jointStep();
     }
@@ -118,7 +124,8 @@ class Guide {
 
   std::string closingStep() const {
     if (progress_.contradicted) {
-      return "Do not use the parameters: held-out samples contradict them. Call diagnose, look at "
+      return "Do not use the parameters: the grade says what contradicts them. Call diagnose, look "
+             "at "
              "the rejected samples, then calibrate with more poses and call validate again.";
     }
     if (!progress_.judged) {

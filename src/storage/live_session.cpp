@@ -179,6 +179,10 @@ void LiveSession::restore(std::uint32_t number, const std::string& date) {
 SessionProgress LiveSession::progress() const {
   SessionProgress progress = counter_->progress();
   progress.refined = revision_.refined;
+  const std::vector<CycleReport>& reports = session_.reports();
+  // What a cycle of poles or of a coil makes of few samples, a refinement may mend.
+  progress.refused = !reports.empty() && reports.back().contradicted &&
+                     reports.back().cycle != Cycle::kPoles && reports.back().cycle != Cycle::kCoil;
   // A session without a cycle leaves nothing open that it was asked for, and is not done.
   progress.complete = progress.isAllIdentified() && is_complete_;
   return progress;

@@ -93,6 +93,20 @@ TEST(SessionGuidance, WhatIsContradictedIsNeverDone) {
   }
 }
 
+TEST(SessionGuidance, ARefusedCycleIsNotToBeRepeatedAsItIs) {
+  CalibrationSession session = paperSession();
+  SessionProgress progress = progressOf(session);
+  const std::string before = nextStep(session, progress);
+  progress.refused = true;
+  EXPECT_NE(nextStep(session, progress).find("was refused"), std::string::npos);
+  progress.samples = 0;
+  progress.refused = false;
+  const std::string without = nextStep(session, progress);
+  EXPECT_EQ(before, without);
+  progress.refused = true;
+  EXPECT_EQ(nextStep(session, progress), without);
+}
+
 TEST(SessionGuidance, WithoutSamplesWhatWasSavedStays) {
   const CalibrationSession session({scenarios::paperNominal()}, {}, {});
   SessionProgress progress = progressOf(session);

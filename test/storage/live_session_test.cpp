@@ -154,6 +154,27 @@ TEST_F(LiveSessionTest, ProgressAndGradeAreUpToDateAfterEachStep) {
   expectUpToDate(session, "clearing");
 }
 
+TEST_F(LiveSessionTest, TellsOfARefusedCycleUntilItIsMended) {
+  LiveSession session = open();
+  addAll(session);
+  EXPECT_FALSE(session.progress().refused);
+  std::vector<std::uint32_t> wrong;
+  for (Sample sample : samples()) {
+    if (sample.has_orientation) {
+      sample.R_stator_rotor.transposeInPlace();
+      sample.stamp += 100'000'000'000;
+      wrong.push_back(session.addSample(sample, kDate).id);
+    }
+  }
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).contradicted);
+  EXPECT_TRUE(session.progress().refused);
+  for (const std::uint32_t id : wrong) {
+    ASSERT_TRUE(session.removeSample(id, kDate));
+  }
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  EXPECT_FALSE(session.progress().refused);
+}
+
 TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
   {
     LiveSession session = open();

@@ -42,6 +42,7 @@ struct SessionProgress {
   bool refined = false;                       ///< by the refinement, since the last other cycle
   bool complete = false;                      ///< all is identified, and isComplete() (session)
   bool saved = false;                         ///< the parameters in force are in a file
+  bool refused = false;                       ///< the last cycle: samples contradict something
   bool contradicted = false;                  ///< held-out samples disagree with what is in force
   bool judged = false;                        ///< they agree, and judge all of it
   bool good = false;                          ///< and nothing else speaks against it
@@ -64,7 +65,7 @@ class ProgressCounter {
   void add(const std::vector<Sample>& samples);
 
   /// What samples and parameters tell of the progress; `refined`, `complete`, `saved`,
-  /// `contradicted`, `judged`, `good` and `plan_step` are not in them.
+  /// `refused`, `contradicted`, `judged`, `good` and `plan_step` are not in them.
   SessionProgress progress() const;
 
  private:
