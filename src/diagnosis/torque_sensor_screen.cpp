@@ -58,6 +58,12 @@ struct Rails {
     return sample.has_torque &&
            ((most - sample.torque.cwiseAbs()).array() <= least && most.array() > 2.0 * least).any();
   }
+  /// To the last digit, as no noise is: nothing was taken off it afterwards.
+  bool isReachedExactly(const Sample& sample) const {
+    return isReached(sample) && (sample.torque.cwiseAbs().array() == most.array()).any();
+  }
+  /// Standard deviation of what was cut off, and of the other components beside it [N·m].
+  double unknown() const { return 0.5 * most.maxCoeff(); }
 };
 
 /// Torques at the end of the range tell nothing but that: they all are the same number up to noise.
@@ -66,17 +72,23 @@ Hypothesis torqueClipped(const Rails& rails, const std::vector<Sample>& samples)
   result.cause = "torque_clipped";
   result.family = result.cause;
   std::size_t count = 0;
+  const auto exact = static_cast<std::size_t>(
+      std::count_if(samples.begin(), samples.end(), [&rails](const Sample& sample) {
+        return rails.isReachedExactly(sample);
+      }));
   for (const Sample& sample : samples) {
     if (rails.isReached(sample)) {
       ++count;
-      const double width = std::max(kNear * sample.torque_stddev, kFinest * rails.most.maxCoeff());
-      result.cost -= std::log(rails.most.maxCoeff() / width);
+      const bool is_exact = exact >= kFewestAlike && rails.isReachedExactly(sample);
+      const double width =
+          std::max(is_exact ? 0.0 : kNear * sample.torque_stddev, kFinest * rails.most.maxCoeff());
+      result.cost -= std::log(rails.unknown() / width);
     }
   }
   result.correct = [rails](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
     for (Sample& sample : wiring.samples) {
       if (rails.isReached(sample)) {
-        sample.torque_stddev = rails.most.maxCoeff();
+        sample.torque_stddev = rails.unknown();
       }
     }
   };

@@ -51,12 +51,13 @@ def channel(axis, factor):
     return torques_changed(lambda T, _R: T * np.where(np.arange(3) == axis, factor, 1.0))
 
 
-def clipped(share):
-    """At a share of the largest component."""
+def clipped(share, bias=0.0):
+    """At a share of the largest component. `bias`: standard deviation of what is taken off each torque afterwards."""
 
     def apply(samples, machine):
         end = share * max(np.abs(sample.torque).max() for sample in samples if sample.torque is not None)
-        torques_changed(lambda T, _R: np.clip(T, -end, end))(samples, machine)
+        generator = np.random.default_rng(len(samples))
+        torques_changed(lambda T, _R: np.clip(T, -end, end) + bias * generator.standard_normal(3))(samples, machine)
 
     return apply
 
@@ -90,6 +91,8 @@ SENSORS_LEVEL_2 = {
     "z torque of another sign": (channel(2, -1.0), ["torque_axis:3"]),
     "y torque 30 % more": (channel(1, 1.3), ["torque_axis:2"]),
     "x torque half": (channel(0, 0.5), ["torque_axis:1"]),
+    "torques clipped at 0.8": (clipped(0.8), ["torque_clipped"]),
+    "torques clipped at 0.7, bias taken off": (clipped(0.7, 2e-4), ["torque_clipped"]),
     "torques clipped at 0.7": (clipped(0.7), ["torque_clipped"]),
     "torques clipped at 0.5": (clipped(0.5), ["torque_clipped"]),
     "torques all alike": (stuck([0, 1, 2]), ["torque_stuck"]),
