@@ -234,7 +234,7 @@ def write_samples(path, unit, laboratory, dwells, validation_every=0):
         file.write("\n".join(lines) + "\n")
 
 
-def _predicted(unit, x, dwell):
+def predicted(unit, x, dwell):
     """Stacked prediction of a dwell at x = (errors, registrations, errors of the reading, bias, its drift)."""
     size = unit.size()
     errors, tracker, marker, sensor = x[:size], x[size : size + 3], x[size + 3 : size + 6], x[size + 6 : size + 9]
@@ -267,7 +267,7 @@ def bound(unit, errors, laboratory, dwells, registered=None):
         for p in range(count):
             step = np.zeros(count)
             step[p] = 1e-6
-            columns.append((_predicted(unit, x + step, dwell) - _predicted(unit, x - step, dwell)) / 2e-6)
+            columns.append((predicted(unit, x + step, dwell) - predicted(unit, x - step, dwell)) / 2e-6)
         J = np.stack(columns, axis=1)
         variances = [laboratory.orientation**2] * 3 if dwell.orientation is not None else []
         variances += [laboratory.torque**2] * (3 * len(dwell.torques))
