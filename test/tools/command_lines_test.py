@@ -72,6 +72,18 @@ class CommandLines(unittest.TestCase):
                     self.assertIn("; --help tells the options", result.stderr)
             self.assertEqual(os.listdir(folder), [])
 
+    def test_demonstrations_start_nothing_where_they_are_asked_for_help(self):
+        for name in ("motion_demo", "tracking_demo"):
+            for argument, status in (("--help", 0), ("-h", 0), ("--seed", 2)):
+                with self.subTest(name, argument=argument), tempfile.TemporaryDirectory() as folder:
+                    # What is built and shown stays here.
+                    places = {**os.environ, "BUILD_DIR": folder, "DEMO_DIR": os.path.join(folder, "demo")}
+                    command = [SOURCE / "scripts" / name, argument]
+                    result = subprocess.run(command, capture_output=True, text=True, check=False, env=places, timeout=20)
+                    self.assertEqual(result.returncode, status, result.stderr)
+                    self.assertIn(f"scripts/{name}", result.stdout + result.stderr)
+                    self.assertEqual(os.listdir(folder), [])
+
     def test_no_program_parses_by_itself(self):
         for folder in ("scripts", "src"):
             for path in sorted((SOURCE / folder).rglob("*")):

@@ -1,5 +1,7 @@
 """The rotor under control of its coils, as a program sees it."""
 
+import contextlib
+
 import rospy
 from geometry_msgs.msg import QuaternionStamped
 from sensor_msgs.msg import JointState
@@ -12,6 +14,7 @@ from .rotations import quaternion_of, rotation_of
 TARGET_RATE = 100.0  # [Hz]
 STARTING = 5.0  # [s] for the inputs of the controller
 PATIENCE = 30.0  # [s] for topics and services that must be there
+STOPPING = 3.0  # [s] for services that may have gone when all is to stop
 
 
 class CoilDrive:
@@ -30,10 +33,10 @@ class CoilDrive:
     def _keep_parameters(self, message):
         self.parameters = message
 
-    def _set(self, service, value):
+    def _set(self, service, value, patience=PATIENCE):
         name = f"{self._ns}/{service}"
         try:
-            rospy.wait_for_service(name, PATIENCE)
+            rospy.wait_for_service(name, patience)
             answer = rospy.ServiceProxy(name, SetBool)(value)
         except (rospy.ServiceException, rospy.ROSException) as error:
             raise RuntimeError(f"{name} does not answer: {error}") from error
@@ -67,9 +70,17 @@ class CoilDrive:
         """The fixture takes the rotor, then the currents go to zero, whatever becomes of the fixture."""
         try:
             if fixture:
-                self._set(f"{fixture}/release_fixture", False)
+                self._set(f"{fixture}/release_fixture", False, STOPPING)
         finally:
-            self._set("orientation_controller/enable", False)
+            self._set("orientation_controller/enable", False, STOPPING)
+
+    def stop_after(self, fixture, error):
+        """Likewise, and raises the RuntimeError that was the reason: what fails in stopping comes of that. Without a
+        fixture nothing holds the rotor then."""
+        with contextlib.suppress(RuntimeError):
+            self.stop(fixture)
+        held = "" if fixture else " Without currents nothing holds the rotor: it coasts or falls; keep away until it rests."
+        raise RuntimeError(f"{error}{held}") from error
 
     def joints(self):
         """Joint angles [rad]; raises RuntimeError without fresh ones."""
