@@ -250,6 +250,11 @@ bool LiveMotionWork::contradicts(const LiveWindow& window) const {
   }
   const Eigen::MatrixXd jacobian = window.whitenedJacobian();
   Eigen::MatrixXd spread = jacobian * estimate_.belief.covariance * jacobian.transpose();
+  if (by_steps_ > 0.0) {
+    // The delay that is estimated takes up what this tells of.
+    const Eigen::VectorXd delay = jacobian.col(places_.current_delay);
+    spread.noalias() -= by_steps_ * (delay * delay.transpose());
+  }
   spread.diagonal().array() += 1.0;
   return residual.dot(spread.llt().solve(residual)) > limit;
 }
@@ -287,6 +292,7 @@ void LiveMotionWork::add(MotionSlice slice) {
   // So many that contradict an estimate put it into doubt.
   constexpr std::size_t kManyLeftOut = 8;
   ++estimate_.windows;
+  steps_.add(slice.streams);
   kept_.emplace_back(std::move(slice));
   if (kept_.size() > live_.kept_windows) {
     freezeOldest();

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "current_steps.hpp"
 #include "live_window.hpp"
 #include "noise_factors.hpp"
 #include "spherical_actuator_calibration/motion/live_estimate.hpp"
@@ -45,6 +46,7 @@ class LiveMotionWork {
   void solve();
   Eigen::MatrixXd orientingColumns(const Eigen::MatrixXd& of_free) const;
   void tell(const Eigen::MatrixXd& inverse);
+  void tellWithHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own);
   double chiSquare() const;
   double orientationChiSquare() const;
   void countServing();
@@ -62,6 +64,8 @@ class LiveMotionWork {
 
   StreamNoise noise_;
   NoiseFactors factors_;
+  CurrentSteps steps_;                        ///< of all windows
+  double by_steps_ = 0.0;                     ///< variance of the current's delay by them
   std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
   WindowBalance probe_;
   double scale_ = 1.0;  ///< squared misfit of usual windows, over that of noise

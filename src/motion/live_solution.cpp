@@ -1,5 +1,6 @@
 // What a LiveMotion knows from its sums.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -103,9 +104,17 @@ void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
   }
   if (!holds_uncertain_) {
     belief.covariance(free_, free_) = own;
-    return;
+  } else {
+    tellWithHeld(inverse, own);
   }
-  // What is held is as uncertain as before, and what is estimated because of it, too.
+  const double noise = std::sqrt(factors_.currents) * noise_.current;
+  by_steps_ = steps_.widen(model_->space(), noise, belief);
+}
+
+/// What is held is as uncertain as before, and what is estimated because of it, too. `own`: the
+/// covariance of what is free, without that.
+void LiveMotionWork::tellWithHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own) {
+  ParameterBelief& belief = estimate_.belief;
   Eigen::MatrixXd others = information()(free_, Eigen::all);
   others(Eigen::all, free_).setZero();
   const Eigen::MatrixXd gain = -inverse * others;

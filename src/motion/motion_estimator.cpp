@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "current_steps.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
@@ -371,6 +372,11 @@ MotionEstimate Estimator::run() {
   if (estimate.termination == Termination::kConverged) {
     judgeMisfit();
     findCovariance();
+    CurrentSteps steps;
+    for (const MotionSpan& span : terms_.spans()) {
+      steps.add(*span.streams);
+    }
+    steps.widen(problem_.model->space(), result_.summary.current_stddev, estimate.belief);
   }
   estimate.solve_time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -45,6 +45,12 @@ class Motion(unittest.TestCase):
         self.assertGreaterEqual(outcome.held_out, 4)
         self.assertGreater(outcome.probability, 1e-3)
 
+    def check_current_delay(self, outcome, expected, largest):
+        """Its stated uncertainty has what sampling of steps does to it."""
+        value, stddev, _ = outcome.parameters["current_delay"]
+        self.assertLess(abs(value - expected), 2.0 * stddev)
+        self.assertLess(stddev, largest)
+
     def test_finds_all_parameters_and_what_else_moves_the_rotor(self):
         outcome = calibrate(self.record(current_delay=-0.04, tracker_delay=0.05))
         self.check(outcome, 1e-4)
@@ -58,6 +64,7 @@ class Motion(unittest.TestCase):
         # Currents that step at the instants of the samples and lag seem to be later by h^2 / (12 lag).
         quadrature = 1e-6 / (12.0 * self.machine.lag)
         self.assertAlmostEqual(outcome.value("current_delay"), -0.04 + quadrature, delta=2e-5)
+        self.check_current_delay(outcome, -0.04, 6e-5)
         # A hand touched the rotor for a fifth of a second.
         touched = [count for reason, count in outcome.left_out.items() if "something else" in reason]
         self.assertEqual(len(touched), 1)
@@ -75,7 +82,9 @@ class Motion(unittest.TestCase):
             self.assertLess(outcome.live["ratios"][1], 1.05)
 
     def test_two_hundred_hertz(self):
-        self.check(calibrate(self.record(joint_rate=200.0, current_rate=200.0)), 1.6e-4)
+        outcome = calibrate(self.record(joint_rate=200.0, current_rate=200.0))
+        self.check(outcome, 1.6e-4)
+        self.check_current_delay(outcome, 0.0, 1.5e-3)
 
     def test_a_wrong_torque_curve_is_told(self):
         with open(NOMINAL, encoding="utf-8") as file:

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/parameter_space.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+
+namespace sac {
+
+/// How well currents that are sampled tell when they act. What a current does between two samples
+/// nobody knows: where it steps and then lags, its mean over a time is that of samples that are
+/// earlier or later, by up to half an interval.
+class CurrentSteps {
+ public:
+  /// More currents.
+  void add(const MotionStreams& streams);
+  /// Standard deviation of their delay by that alone [s]. `noise`: of a current [A].
+  double delayStddev(double noise) const;
+  /// Adds it to the uncertainty of the delay, where that was estimated; the variance added, in the
+  /// unit of the coordinate.
+  double widen(const ParameterSpace& space, double noise, ParameterBelief& belief) const;
+
+ private:
+  double changes_ = 0.0;  ///< sum of squared differences
+  double bends_ = 0.0;    ///< of those of differences
+  double duration_ = 0.0;
+  double intervals_ = 0.0;
+  double values_ = 0.0;  ///< in either sum
+};
+
+}  // namespace sac

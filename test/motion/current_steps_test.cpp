@@ -1,0 +1,86 @@
+#include "current_steps.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace sac {
+namespace {
+
+constexpr double kLag = 2e-3;   // [s] of currents behind their setpoints
+constexpr double kHold = 5e-3;  // [s] from one setpoint to the next
+constexpr double kStep = 0.05;  // [A]
+
+/// Currents of two coils that step up or down and lag, sampled.
+MotionStreams stepping(double interval, double phase, double noise) {
+  constexpr double kDuration = 20.0;
+  std::mt19937 generator(1);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  MotionStreams streams;
+  const auto count = static_cast<Eigen::Index>(std::lround(kDuration / interval));
+  streams.currents.resize(count, 2);
+  Eigen::Vector2d setpoint = Eigen::Vector2d::Zero();
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();
+  long step = 0;
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const double time = phase + static_cast<double>(n) * interval;
+    for (; static_cast<double>(step + 1) * kHold <= time; ++step) {
+      before = setpoint + (before - setpoint) * std::exp(-kHold / kLag);
+      setpoint = kStep * Eigen::Vector2d(normal(generator), normal(generator));
+    }
+    const double share = std::exp(-(time - static_cast<double>(step) * kHold) / kLag);
+    const Eigen::Vector2d current = setpoint + share * (before - setpoint) +
+                                    noise * Eigen::Vector2d(normal(generator), normal(generator));
+    streams.current_stamps.push_back(static_cast<Stamp>(std::llround(time * 1e9)));
+    streams.currents.row(n) = current.transpose().cast<float>();
+  }
+  return streams;
+}
+
+double delayStddev(const MotionStreams& streams, double noise) {
+  CurrentSteps steps;
+  steps.add(streams);
+  return steps.delayStddev(noise);
+}
+
+TEST(CurrentSteps, LeaveTheDelayAsUncertainAsTheyShiftIt) {
+  // At most by the interval squared over twelve times the lag.
+  for (const double noise : {0.0, 1e-3}) {
+    EXPECT_NEAR(delayStddev(stepping(1e-3, 0.0, noise), noise), 42e-6, 8e-6);
+    EXPECT_GT(delayStddev(stepping(1e-3, 0.5e-3, noise), noise), 15e-6);
+    EXPECT_LT(delayStddev(stepping(0.5e-3, 0.0, noise), noise), 15e-6);
+  }
+}
+
+TEST(CurrentSteps, AreNotThoseOverAGap) {
+  const MotionStreams whole = stepping(1e-3, 0.0, 0.0);
+  MotionStreams streams = whole;
+  const Eigen::Index half = streams.currents.rows() / 2;
+  for (auto n = static_cast<std::size_t>(half); n < streams.current_stamps.size(); ++n) {
+    streams.current_stamps[n] += 5'000'000'000;
+  }
+  streams.currents.bottomRows(half).array() += 5.0F;
+  EXPECT_NEAR(delayStddev(streams, 0.0), delayStddev(whole, 0.0), 1e-7);
+}
+
+TEST(CurrentSteps, OnceASampleLookSmooth) {
+  MotionStreams streams;
+  constexpr double kInterval = 5e-3;
+  streams.currents.resize(2000, 1);
+  for (Eigen::Index n = 0; n < 2000; ++n) {
+    streams.current_stamps.push_back(static_cast<Stamp>(n) * 5'000'000);
+    streams.currents(n, 0) = static_cast<float>(0.3 * std::sin(0.05 * static_cast<double>(n)));
+  }
+  EXPECT_NEAR(delayStddev(streams, 0.0), kInterval / std::sqrt(12.0), 1e-6);
+}
+
+TEST(CurrentSteps, AreNeverMoreThanHalfAnIntervalOff) {
+  const double worst = delayStddev(stepping(5e-3, 0.0, 0.0), 0.0);
+  EXPECT_GT(worst, 0.9e-3);
+  EXPECT_LE(worst, 2.5e-3 * (1.0 + 1e-9));
+  EXPECT_EQ(delayStddev({}, 0.0), 0.0);
+}
+
+}  // namespace
+}  // namespace sac
