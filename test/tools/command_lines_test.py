@@ -84,6 +84,13 @@ class CommandLines(unittest.TestCase):
                     self.assertIn(f"scripts/{name}", result.stdout + result.stderr)
                     self.assertEqual(os.listdir(folder), [])
 
+    def test_demonstrations_take_a_description_of_the_callers_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            command = [SOURCE / "scripts" / "demo", "--actuator", "./own.yaml"]
+            result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertIn(f"there is no {os.path.realpath(folder)}/own.yaml,", result.stderr)
+
     def test_no_program_parses_by_itself(self):
         for folder in ("scripts", "src"):
             for path in sorted((SOURCE / folder).rglob("*")):
