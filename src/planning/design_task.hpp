@@ -31,7 +31,7 @@ struct DesignedPose {
 struct DesignTask {
   Eigen::MatrixXd known;  ///< information before the first pose, F×F, positive definite
   Eigen::SparseMatrix<double> reported;  ///< ∂(values for people)/∂(coordinates), F×F
-  std::vector<std::size_t> visited;  ///< per coil: measuredVisits()
+  std::vector<std::size_t> visited;      ///< per coil: measuredVisits()
   std::size_t patterns_per_pose = 6;
   std::size_t coils_per_pattern = 4;
   double minimum_spacing = 0.1;  ///< rotation angle between two poses [rad]
