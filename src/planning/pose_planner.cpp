@@ -9,11 +9,11 @@
 #include "coil_visits.hpp"
 #include "design_bound.hpp"
 #include "design_task.hpp"
-#include "plan_sentence.hpp"
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "travel_order.hpp"
 #include "weighing_design.hpp"
@@ -331,7 +331,7 @@ class Planner {
           static_cast<std::size_t>(std::ceil(static_cast<double>(poses) * ratio * ratio));
     }
     plan.stddev_bound = bound_;
-    plan.message = planSentence(plan, options_);
+    plan.message = planSentence(plan, options_.wanted_stddev);
   }
 
   const PlanningProblem& problem_;

@@ -11,6 +11,7 @@
 namespace sac {
 
 struct PlannedPose;
+struct PosePlan;
 
 /// What of a plan is measured, by samples that come one after the other. A pose is measured when
 /// samples at it, held out or not, have each of its patterns or its opposite, or when one is there
@@ -53,5 +54,11 @@ std::string planStep(const std::vector<PlannedPose>& poses,
                      const std::vector<Sample>& samples,
                      double current_threshold,
                      bool has_joints = true);
+
+/// What a plan of poses gives, for an operator. `wanted_stddev` [rad]: 0 where none was wanted.
+std::string planSentence(const PosePlan& plan, double wanted_stddev);
+
+/// What a plan leaves open, and that more is needed.
+std::string openSentence(const PosePlan& plan);
 
 }  // namespace sac

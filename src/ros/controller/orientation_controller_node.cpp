@@ -8,7 +8,6 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/measurement/motion_plan_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -26,25 +25,6 @@ constexpr double kWatchRate = 200.0;
 /// Between two commands [s].
 constexpr double kLeastPeriod = 2e-4;
 
-const char* inWords(MotionPhase phase) {
-  switch (phase) {
-    case MotionPhase::kNone:
-      return "No motion was begun.";
-    case MotionPhase::kApproach:
-      return "The rotor turns to where the motion begins.";
-    case MotionPhase::kMotion:
-      return "The rotor follows the motion.";
-    case MotionPhase::kEnding:
-    case MotionPhase::kSettling:
-      return "The motion slows down to rest.";
-    case MotionPhase::kDone:
-      return "The motion is over, the currents are zero.";
-    case MotionPhase::kStopped:
-      return "The motion has stopped, the currents are zero";
-  }
-  return "";
-}
-
 }  // namespace
 
 OrientationControllerNode::OrientationControllerNode(
@@ -61,46 +41,8 @@ OrientationControllerNode::OrientationControllerNode(
       control_(1, &reading_queue_) {
   ros::NodeHandle handle = node;
   ros::NodeHandle private_handle = private_node;
-  publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
-  // Before the parameters come.
-  parameters_publisher_ =
-      private_handle.advertise<msg::ActuatorParameters>("parameters_in_force", 1, true);
-  const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
-  subscribers_.push_back(subscribeChecked<msg::ActuatorParameters>(
-      handle,
-      "parameters",
-      1,
-      [this](const msg::ActuatorParameters::ConstPtr& message) { receiveParameters(*message); },
-      tellRefusal("parameters")));
-  subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
-      handle,
-      "orientation_target",
-      kQueueLength,
-      [this](const geometry_msgs::QuaternionStamped::ConstPtr& message) {
-        receiveTarget(*message);
-      },
-      tellRefusal("orientation_target"),
-      at_once));
-  if (design.has_joints) {
-    subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
-        handle,
-        "joint_target",
-        kQueueLength,
-        [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJointTarget(*message); },
-        tellRefusal("joint_target"),
-        at_once));
-  }
-  motion_publisher_ = private_handle.advertise<msg::MotionStatus>("motion_status", 10, true);
-  services_ = {
-      private_handle.advertiseService("enable", &OrientationControllerNode::enable, this),
-      private_handle.advertiseService(
-          "follow_motion", &OrientationControllerNode::followMotion, this),
-      private_handle.advertiseService("end_motion", &OrientationControllerNode::endMotion, this)};
-  motion_timer_ = private_handle.createWallTimer(ros::WallDuration(kStatusPeriod),
-                                                 [this](const ros::WallTimerEvent& /*event*/) {
-                                                   tellParameters();
-                                                   tellMotion();
-                                                 });
+  advertise(handle, private_handle);
+  subscribe(handle);
   diagnostics_.add("control", [this](DiagnosticStatus& status) { diagnose(status); });
   handle.setCallbackQueue(&reading_queue_);
   if (design.has_joints) {
@@ -117,6 +59,52 @@ OrientationControllerNode::~OrientationControllerNode() {
   control_.stop();
   controller_.disable();
   commandEnd();
+}
+
+void OrientationControllerNode::advertise(ros::NodeHandle& handle,
+                                          ros::NodeHandle& private_handle) {
+  publisher_ = handle.advertise<msg::CoilCurrents>("coil_command", 1);
+  parameters_publisher_ =
+      private_handle.advertise<msg::ActuatorParameters>("parameters_in_force", 1, true);
+  motion_publisher_ = private_handle.advertise<msg::MotionStatus>("motion_status", 10, true);
+  services_ = {
+      private_handle.advertiseService("enable", &OrientationControllerNode::enable, this),
+      private_handle.advertiseService(
+          "follow_motion", &OrientationControllerNode::followMotion, this),
+      private_handle.advertiseService("end_motion", &OrientationControllerNode::endMotion, this)};
+  motion_timer_ = private_handle.createWallTimer(ros::WallDuration(kStatusPeriod),
+                                                 [this](const ros::WallTimerEvent& /*event*/) {
+                                                   tellParameters();
+                                                   tellMotion();
+                                                 });
+}
+
+void OrientationControllerNode::subscribe(ros::NodeHandle& handle) {
+  const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
+  subscribers_.push_back(subscribeChecked<msg::ActuatorParameters>(
+      handle,
+      "parameters",
+      1,
+      [this](const msg::ActuatorParameters::ConstPtr& message) { receiveParameters(*message); },
+      tellRefusal("parameters")));
+  subscribers_.push_back(subscribeChecked<geometry_msgs::QuaternionStamped>(
+      handle,
+      "orientation_target",
+      kQueueLength,
+      [this](const geometry_msgs::QuaternionStamped::ConstPtr& message) {
+        receiveTarget(*message);
+      },
+      tellRefusal("orientation_target"),
+      at_once));
+  if (design_.has_joints) {
+    subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
+        handle,
+        "joint_target",
+        kQueueLength,
+        [this](const sensor_msgs::JointState::ConstPtr& message) { receiveJointTarget(*message); },
+        tellRefusal("joint_target"),
+        at_once));
+  }
 }
 
 void OrientationControllerNode::receiveParameters(const msg::ActuatorParameters& message) {
@@ -251,66 +239,6 @@ bool OrientationControllerNode::enable(std_srvs::SetBool::Request& request,
     response.message = std::string("Not enabled: ") + error.what() + ".";
   }
   return true;
-}
-
-bool OrientationControllerNode::followMotion(msg::FollowMotion::Request& request,
-                                             msg::FollowMotion::Response& response) {
-  constexpr std::size_t kLongestPlan = 1U << 20U;  // [byte]
-  try {
-    if (request.plan.size() > kLongestPlan) {
-      throw DataError("The motion plan is longer than 1 MB.");
-    }
-    // Read without the mutex: the control goes on.
-    const MotionPlan plan = parseMotionPlan(request.plan, "plan").plan;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    controller_.follow(plan);
-    // So that an end before the next report is told as well.
-    told_phase_ = MotionPhase::kNone;
-    response.success = 1;
-    response.message = "The rotor turns to where the motion begins, and follows it.";
-  } catch (const Error& error) {
-    response.success = 0;
-    response.message = "The motion is refused: " + printable(error.what());
-    const std::lock_guard<std::mutex> lock(mutex_);
-    last_refusal_ = "follow_motion: " + printable(error.what());
-  }
-  return true;
-}
-
-bool OrientationControllerNode::endMotion(std_srvs::Trigger::Request& /*request*/,
-                                          std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  controller_.endMotion();
-  commandEnd();
-  response.success = 1;
-  response.message = "No motion goes on, or it slows down to its end.";
-  return true;
-}
-
-void OrientationControllerNode::tellMotion() {
-  msg::MotionStatus message;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const MotionProgress progress = controller_.motionProgress();
-    if (progress.phase == told_phase_ && !isRunning(progress.phase)) {
-      return;
-    }
-    told_phase_ = progress.phase;
-    message.phase = motionPhaseName(progress.phase);
-    message.message = inWords(progress.phase);
-    if (progress.phase == MotionPhase::kStopped) {
-      message.message +=
-          ": " + (controller_.stopReason().empty() ? "disabled" : controller_.stopReason());
-    }
-    message.elapsed = progress.elapsed;
-    message.duration = progress.duration;
-    message.tracking_error = controller_.trackingError();
-    message.largest_tracking_error = progress.largest_tracking_error;
-    message.excitation_share = progress.least_excitation_share;
-    message.torque_share = progress.least_torque_share;
-  }
-  message.header.stamp = ros::Time::now();
-  motion_publisher_.publish(message);
 }
 
 void OrientationControllerNode::command(double reading_interval) {

@@ -58,6 +58,9 @@ class OrientationControllerNode {
   OrientationControllerNode& operator=(const OrientationControllerNode&) = delete;
 
  private:
+  void advertise(ros::NodeHandle& handle, ros::NodeHandle& private_handle);
+  /// To all but the readings, after what is told of them is advertised.
+  void subscribe(ros::NodeHandle& handle);
   void receiveParameters(const msg::ActuatorParameters& message);
   /// Says which parameters are in force, once they are.
   void tellParameters();
