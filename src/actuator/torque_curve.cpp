@@ -25,8 +25,7 @@ bool isOddAtZero(const TorqueTable& table) {
   return table.angles.front() == 0.0 && table.torques.front() == 0.0;
 }
 
-void validateTable(const TorqueCurveDescription& description) {
-  const TorqueTable& table = description.table;
+void validateTable(const TorqueTable& table) {
   const std::size_t points = table.angles.size();
   if (table.torques.size() != points ||
       (!table.stddevs.empty() && table.stddevs.size() != points)) {
@@ -50,10 +49,6 @@ void validateTable(const TorqueCurveDescription& description) {
   if (std::any_of(
           table.stddevs.begin(), table.stddevs.end(), [](double stddev) { return stddev < 0.0; })) {
     throw ConfigError("torque_curve.table: standard deviations must not be negative.");
-  }
-  if (description.blend_start < table.angles.front() ||
-      description.support_begin > table.angles.back()) {
-    throw ConfigError("torque_curve.table: its angles must reach from blend_start to support[0].");
   }
 }
 
@@ -201,6 +196,11 @@ void validate(const TorqueCurveDescription& description) {
   if (!areFinite(description.coefficients)) {
     throw ConfigError("torque_curve.coefficients: every coefficient must be finite.");
   }
+  // First, as the angles below may be those of the table.
+  const TorqueTable& table = description.table;
+  if (!table.empty()) {
+    validateTable(table);
+  }
   const double scale = radiansPerUnit(description.angle_unit);
   const bool ordered =
       0.0 < description.blend_start && description.blend_start < description.support_begin &&
@@ -209,8 +209,9 @@ void validate(const TorqueCurveDescription& description) {
     throw ConfigError(
         "torque_curve: angles must satisfy 0 < blend_start < support[0] < support[1] < 180 deg.");
   }
-  if (!description.table.empty()) {
-    validateTable(description);
+  if (!table.empty() && (description.blend_start < table.angles.front() ||
+                         description.support_begin > table.angles.back())) {
+    throw ConfigError("torque_curve.table: its angles must reach from blend_start to support[0].");
   }
 }
 

@@ -167,6 +167,8 @@ TEST_F(TableFile, IsRefusedByFileAndLine) {
   EXPECT_NE(errorOf("{table: none.csv}", kTable).find("none.csv"), std::string::npos);
   const std::string falls = errorOf("{table: curve.csv}", "0,0\n9,0.2\n5,0.1\n20,0\n");
   EXPECT_NE(falls.find("a.yaml:13: actuator.torque_curve"), std::string::npos) << falls;
+  const std::string short_one = errorOf("{table: curve.csv}", "5,0.2\n");
+  EXPECT_NE(short_one.find("1 points"), std::string::npos) << short_one;
   EXPECT_NE(errorOf("{table: 5}", kTable).find("torque_curve.table"), std::string::npos);
 }
 
