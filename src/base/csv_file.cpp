@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <string>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
@@ -14,6 +15,8 @@ namespace sac {
 namespace {
 
 constexpr char kBlanks[] = " \t\r";
+/// Of UTF-8: spreadsheets and tools of Windows write it before the first line.
+constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
 
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(kBlanks);
@@ -72,6 +75,9 @@ void CsvRow::fail(const std::string& sentence) const {
 
 CsvFile loadCsv(const std::string& path, std::size_t most_rows) {
   std::istringstream text(readInputFile(path));
+  if (text.str().rfind(kByteOrderMark, 0) == 0) {
+    text.ignore(std::char_traits<char>::length(kByteOrderMark));
+  }
   CsvFile file;
   bool may_be_heading = true;
   std::string line;

@@ -36,6 +36,20 @@ TEST_F(Csv, ReadsLinesOfNumbers) {
   EXPECT_FALSE(load("1,2").has_heading);
 }
 
+TEST_F(Csv, SkipsAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  // Of one column, the first number would be taken for a name, and lost without a word.
+  for (const char* text : {"1\n2\n", "1,5\n2,6\n", "q1\n1\n2\n"}) {
+    const CsvFile marked = load(mark + text);
+    const CsvFile plain = load(text);
+    EXPECT_EQ(marked.has_heading, plain.has_heading) << text;
+    ASSERT_EQ(marked.rows.size(), 2U) << text;
+    EXPECT_EQ(marked.rows[0].values, plain.rows[0].values) << text;
+  }
+  EXPECT_NE(errorOf(mark).find("there is no line of numbers"), std::string::npos);
+  EXPECT_THROW(load("1\n" + mark + "2\n"), ConfigError);
+}
+
 TEST_F(Csv, NamesTheLineOfWhatIsNoNumber) {
   EXPECT_NE(errorOf("1,2\n1,x\n").find("numbers.csv:2: \"x\" is not a finite number"),
             std::string::npos);
