@@ -35,6 +35,11 @@ MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptio
   return limited;
 }
 
+std::string singularity(const AllocatedCurrents& allocated) {
+  return format("the coils make no torque in some direction here (%.2g N.m/A)",
+                allocated.smallest_singular_value);
+}
+
 }  // namespace
 
 OrientationController::OrientationController(const Actuator& design,
@@ -140,8 +145,16 @@ void OrientationController::enable(Stamp now) {
   if (!defect.empty()) {
     throw DataError(defect);
   }
-  q_ = measured_->position;
-  reference_.reset(rotorAt(q_).R_stator_rotor);
+  const Eigen::Vector3d q = measured_->position;
+  const Eigen::Matrix3d R_stator_rotor = rotorAt(q).R_stator_rotor;
+  const AllocatedCurrents none = allocateCurrents(torquePerAmpere(curve_, torques_, R_stator_rotor),
+                                                  Eigen::Vector3d::Zero(),
+                                                  options_.allocation);
+  if (none.outcome == Allocation::kSingular) {
+    throw DataError(singularity(none));
+  }
+  q_ = q;
+  reference_.reset(R_stator_rotor);
   last_update_.reset();
   stop_reason_.clear();
   state_ = ControlState::kActive;
@@ -255,8 +268,7 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
       computedTorque(options_.rotor, rotor, desired, gains()) - disturbance_.torque();
   const AllocatedCurrents allocated = allocateCurrents(torque_per_ampere, torque, allocation);
   if (allocated.outcome == Allocation::kSingular) {
-    stop(format("the coils make no torque in some direction here (%.2g N.m/A)",
-                allocated.smallest_singular_value));
+    stop(singularity(allocated));
     return;
   }
   share_ = allocated.share;

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/emulation/free_rotor.hpp"
+#include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -204,11 +205,22 @@ TEST_F(OrientationControllerTest, StopsOutsideTheWorkspace) {
 }
 
 TEST_F(OrientationControllerTest, StopsWhereTheCoilsMakeNoTorqueInSomeDirection) {
-  options_.allocation.least_singular_value = 10.0;
-  restart();
   start(truth_);
   run(0.002);
+  // A curve without torque, as parameters that come while the rotor is held.
+  Actuator weak = truth_;
+  weak.torque_curve->coefficients.assign(7, 0.0);
+  controller_->setParameters(weak);
+  run(0.002);
   expectStopped("no torque in some direction");
+}
+
+TEST_F(OrientationControllerTest, IsNotEnabledWhereTheCoilsCannotHoldTheRotor) {
+  options_.allocation.least_singular_value = 10.0;
+  restart();
+  const std::string said = errorMessage<DataError>([&] { start(truth_); });
+  EXPECT_NE(said.find("no torque in some direction here"), std::string::npos) << said;
+  EXPECT_EQ(controller_->state(), ControlState::kIdle);
 }
 
 TEST_F(OrientationControllerTest, StopsWhenTheRotorDoesNotFollow) {
