@@ -202,7 +202,7 @@ class MovedScreen {
   Move bestMove() const {
     const std::size_t end = places_.size() - kFewestOnOneSide + 1;
     const std::size_t step = places_.size() / kMostPlaces + 1;
-    const Move best = bestOf(kFewestOnOneSide, end, step);
+    Move best = bestOf(kFewestOnOneSide, end, step);
     if (step == 1 || best.gain == 0.0) {
       return best;
     }
