@@ -78,10 +78,10 @@ struct PosePlanOptions {
 /// Throws ConfigError that names the option, its value and the allowed range for this problem.
 void validate(const PosePlanOptions& options, const PlanningProblem& problem);
 
-/// The options with the standard deviations that samples at hand have, instead of those that are
-/// expected before anything is measured: the median of the samples, of each kind of reading on its
-/// own, held-out ones included. What no sample tells stays as it is. So a plan promises what this
-/// machine and this length of capture give.
+/// The options with the standard deviations that samples at hand have (angles [rad], torques
+/// [N·m]), instead of those that are expected before anything is measured: the median of the
+/// samples, of each kind of reading on its own, held-out ones included. What no sample tells stays
+/// as it is. So a plan promises what this machine and this length of capture give.
 PosePlanOptions withMeasuredNoise(PosePlanOptions options, const std::vector<Sample>& held);
 
 }  // namespace sac

@@ -50,7 +50,8 @@ def wait_for_control_by(ns, parameters):
         while not told or told[-1].header.stamp != parameters.header.stamp:
             if rospy.get_time() > end:
                 raise RuntimeError(
-                    f"{ns}/orientation_controller does not control by the parameters: is it there, and not in a motion?"
+                    f"{ns}/orientation_controller does not control by the parameters: start it, or wait for the end of "
+                    "its motion, then run this again."
                 )
             rospy.sleep(PERIOD)
     finally:
