@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "problem_check.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
@@ -25,20 +23,8 @@ IncrementalEstimate::IncrementalEstimate(const CalibrationModel& model,
 void IncrementalEstimate::restart(const Eigen::VectorXd& at) {
   at_ = at;
   point_.emplace(model_, at_);
-  mean_.setZero(size() + kSharedErrors);
-  mean_.head(size()) = prior_.x - at_;
-  covariance_.setZero(mean_.size(), mean_.size());
-  covariance_.topLeftCorner(size(), size()) = prior_.covariance;
+  update_.emplace(prior_.x - at_, prior_.covariance);
   dwell_.reset();
-  forgetDwell();
-}
-
-/// The errors of the next dwell are independent of everything before.
-void IncrementalEstimate::forgetDwell() {
-  mean_.tail<kSharedErrors>().setZero();
-  covariance_.rightCols<kSharedErrors>().setZero();
-  covariance_.bottomRows<kSharedErrors>().setZero();
-  covariance_.bottomRightCorner<kSharedErrors, kSharedErrors>().setIdentity();
 }
 
 void IncrementalEstimate::add(const Sample& sample) {
@@ -56,7 +42,7 @@ void IncrementalEstimate::add(const Sample& sample) {
   checkProblem(problem);
   const bool shares = options_.shared_errors && hasSharedErrors(sample, model_);
   if (!shares || !dwell_ || !isSameDwell(*dwell_, sample)) {
-    forgetDwell();
+    update_->beginDwell();
     dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;
   }
   const ObservationEvaluator evaluator(problem, options_);
@@ -65,43 +51,25 @@ void IncrementalEstimate::add(const Sample& sample) {
     const Eigen::Matrix3d W =
         whiteningOf(shares ? evaluator.ownNoise(n, linear_) : evaluator.noise(n, linear_));
     whiten(linear_, W, every_, whitened_);
-    observe(shares ? SharedLoading(W * evaluator.sharedErrors(n, linear_))
-                   : SharedLoading(SharedLoading::Zero()));
+    update_->observe(whitened_,
+                     shares ? SharedLoading(W * evaluator.sharedErrors(n, linear_))
+                            : SharedLoading(SharedLoading::Zero()));
   }
-}
-
-/// Takes in W r(at + δ) = residual + J δ = noise + G u, with unit noise: with H = (J, −G), S = 1 +
-/// H P Hᵀ = LLᵀ and K = P Hᵀ L⁻ᵀ the mean goes by −K L⁻¹ (residual + H mean), the covariance P by
-/// −K Kᵀ.
-void IncrementalEstimate::observe(const SharedLoading& loading) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-  Rows spread = -covariance_.rightCols<kSharedErrors>() * loading.transpose();
-  spread += whitened_.timesTransposed(covariance_);
-  Eigen::Matrix3d S = whitened_.times(spread) - loading * spread.bottomRows<kSharedErrors>();
-  S.diagonal().array() += 1.0;
-  Eigen::Vector3d residual = whitened_.residual - loading * mean_.tail<kSharedErrors>();
-  for (std::size_t k = 0; k < whitened_.columns.size(); ++k) {
-    residual += whitened_.jacobian.col(static_cast<Eigen::Index>(k)) * mean_[whitened_.columns[k]];
-  }
-  const Eigen::LLT<Eigen::Matrix3d> factor(S);
-  mean_.noalias() -= spread * factor.solve(residual);
-  const Rows gain = factor.matrixL().solve(spread.transpose()).transpose();
-  covariance_.noalias() -= gain * gain.transpose();
 }
 
 ParameterBelief IncrementalEstimate::belief() const {
-  return {at_ + mean_.head(size()), covariance_.topLeftCorner(size(), size())};
+  return {at_ + update_->mean(), update_->covariance()};
 }
 
 bool IncrementalEstimate::hasMovedFar() const {
   // The torque curve bends over some 0.1 rad: within a thirtieth of that, the slope it was
   // linearised with is good to a few per cent of the step.
   constexpr double kFar = 3e-3;
-  return mean_.head(size()).cwiseAbs().maxCoeff() > kFar;
+  return update_->mean().cwiseAbs().maxCoeff() > kFar;
 }
 
 void IncrementalEstimate::relinearize(const std::vector<Sample>& samples) {
-  restart(at_ + mean_.head(size()));
+  restart(at_ + update_->mean());
   for (const Sample& sample : samples) {
     add(sample);
   }

@@ -6,15 +6,14 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
-#include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/sequential_update.hpp"
 
 namespace sac {
 
 /// What samples tell, one after the other: the estimate of all coordinates and their covariance
 /// after each, for a small part of the time of an estimation over all of them. Both are those of
 /// one Gauss–Newton step over all samples and the prior from the point of linearisation, with the
-/// weights of that point, errors that a dwell shares included (Kalman's filter in coordinates and
-/// these errors, which are forgotten when the dwell ends).
+/// weights of that point, errors that a dwell shares included (SequentialUpdate).
 ///
 /// Rounding grows with the variance of the prior over that of the noise. Against normal equations
 /// of 80 samples, from tolerances of manufacture: 1e-11 rad and 1e-9 of the covariance with noise
@@ -47,20 +46,15 @@ class IncrementalEstimate {
 
  private:
   void restart(const Eigen::VectorXd& at);
-  void forgetDwell();
-  void observe(const SharedLoading& loading);
-  Eigen::Index size() const { return prior_.x.size(); }
 
   const CalibrationModel& model_;
   EstimationOptions options_;
   ParameterBelief prior_;
   std::vector<bool> nothing_held_;
   ChosenCoordinates every_;
-  Eigen::VectorXd at_;               ///< the point of linearisation
-  std::optional<ModelPoint> point_;  ///< the model there
-  /// Of the P coordinates, less at_, and of the kSharedErrors errors of the present dwell.
-  Eigen::VectorXd mean_;
-  Eigen::MatrixXd covariance_;
+  Eigen::VectorXd at_;                      ///< the point of linearisation
+  std::optional<ModelPoint> point_;         ///< the model there
+  std::optional<SequentialUpdate> update_;  ///< of the coordinates, less at_
   std::optional<Sample> dwell_;   ///< the first sample of the dwell, where it shares errors
   LinearizedObservation linear_;  ///< of the observation at hand
   WhitenedObservation whitened_;
