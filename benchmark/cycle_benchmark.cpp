@@ -4,8 +4,10 @@
 #include <benchmark/benchmark.h>
 
 #include "cycle_scenarios.hpp"
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/calibration/session_progress.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
@@ -114,6 +116,44 @@ void statusManyCoils(benchmark::State& state) {
   }
 }
 
+/// What a sample that is held out tells of the grade, beside 4000 in use and 100 to 200 that are
+/// held out, of all coils.
+void gradeManyCoils(benchmark::State& state) {
+  constexpr std::size_t kSamples = 4000;
+  constexpr std::size_t kHeldOut = 100;
+  constexpr std::size_t kBetween = 19;
+  const CycleScenario scenario =
+      manyCoilsScenario(static_cast<std::size_t>(state.range(0)), kSamples);
+  CalibrationSession refined({scenario.model.space().nominal()}, scenario.samples, {});
+  refined.run({Cycle::kRefine});
+  std::vector<Sample> held_out;
+  for (std::size_t n = 0; held_out.size() < 2 * kHeldOut; n += kBetween) {
+    held_out.push_back(scenario.samples[n]);
+    held_out.back().validation = true;
+  }
+  std::optional<CalibrationSession> session;
+  std::optional<CalibrationGrader> grader;
+  std::size_t next = held_out.size();
+  GradedCalibration graded;
+  for (auto _ : state) {
+    if (next == held_out.size()) {
+      state.PauseTiming();
+      session.emplace(refined);
+      grader.emplace(*session);
+      std::for_each_n(held_out.begin(), kHeldOut, [&](const Sample& one) { session->add(one); });
+      next = kHeldOut;
+      grader->grade();
+      state.ResumeTiming();
+    }
+    state.PauseTiming();
+    grader->settle();
+    state.ResumeTiming();
+    session->add(held_out[next++]);
+    graded = grader->grade();
+  }
+  state.SetLabel(gradeName(graded.grade));
+}
+
 constexpr int kMany = 100000;
 
 BENCHMARK_CAPTURE(iterate, joint, Cycle::kJoint)->Arg(30)->Unit(benchmark::kMillisecond);
@@ -133,6 +173,7 @@ BENCHMARK(refineManyCoils)
     ->Arg(400)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(statusManyCoils)->Arg(24)->Arg(400)->Unit(benchmark::kMicrosecond);
+BENCHMARK(gradeManyCoils)->Arg(24)->Arg(400)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(runWholeCycle, joint, Cycle::kJoint)
     ->Arg(30)
     ->Arg(kMany)

@@ -242,6 +242,11 @@ def list_session(times, report):
         report.at_most(
             f"status after a capture, {coils} coils, 4000 samples [us]", 1e6 * times[f"statusManyCoils/{coils}"], STATUS_AIM
         )
+        report.at_most(
+            f"grade after one that is held out, beside 100 to 200 others, {coils} coils [us]",
+            1e6 * times[f"gradeManyCoils/{coils}"],
+            STATUS_AIM,
+        )
 
 
 def list_control(times, report):

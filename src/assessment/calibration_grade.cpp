@@ -17,29 +17,43 @@ std::string number(std::size_t value) {
   return std::to_string(value);
 }
 
+}  // namespace
+
 /// Collects what speaks for and against one session.
-class Examiner {
+class CalibrationGrader::Examiner {
  public:
-  explicit Examiner(const CalibrationSession& session)
-      : session_(session), parameters_(session.parameters()) {
-    identified_ = static_cast<std::size_t>(
-        std::count_if(parameters_.begin(), parameters_.end(), [](const ParameterEstimate& one) {
-          return one.observable;
-        }));
-    if (identified_ > 0) {  // else there is nothing to judge
-      validation_ = session.validation();
-    }
+  explicit Examiner(const CalibrationSession& session) : session_(session) {
     for (const CycleReport& report : session.reports()) {
       last_success_ = report.success ? &report : last_success_;
       // Mended: a refinement, for instance, takes all samples.
       const bool is_mended = refused_ != nullptr && mends(report, *refused_);
       refused_ = report.contradicted ? &report : (is_mended ? nullptr : refused_);
     }
+    const std::vector<ParameterEstimate> parameters = session.parameters();
+    parameters_ = parameters.size();
+    identified_ = static_cast<std::size_t>(
+        std::count_if(parameters.begin(), parameters.end(), [](const ParameterEstimate& one) {
+          return one.observable;
+        }));
+    if (identified_ > 0) {  // else there is nothing to judge
+      judge_.emplace(session.heldOutJudge());
+      shortcoming_ = shortcoming(parameters);
+      expected_errors_ = expectedErrors();
+    }
   }
 
-  GradedCalibration graded() const {
+  GradedCalibration graded() {
+    if (judge_) {
+      validation_ = session_.validation(*judge_);
+    }
     const Grade grade = this->grade();
     return {grade, reason(grade)};
+  }
+
+  void settle() {
+    if (judge_) {
+      judge_->settle();
+    }
   }
 
  private:
@@ -55,7 +69,7 @@ class Examiner {
     if (!isValidated()) {
       return Grade::kNotValidated;
     }
-    return shortcoming().empty() ? Grade::kGood : Grade::kUsable;
+    return shortcoming_.empty() ? Grade::kGood : Grade::kUsable;
   }
 
   bool isContradicted() const {
@@ -78,7 +92,7 @@ class Examiner {
   }
 
   /// What keeps a calibration that held-out samples agree with from being good; empty: nothing.
-  std::string shortcoming() const {
+  std::string shortcoming(const std::vector<ParameterEstimate>& parameters) const {
     // What is open says nothing of whether the rest is right.
     const std::string open = unidentified();
     const std::vector<std::string> doubts = doubtsInForce();
@@ -94,7 +108,7 @@ class Examiner {
       return ", but no refinement asked all samples together whether something is not modelled: "
              "run refine";
     }
-    const std::string confounded = confoundedRegistration();
+    const std::string confounded = confoundedRegistration(parameters);
     return confounded.empty() ? unstatedRegistration() : confounded;
   }
 
@@ -103,7 +117,7 @@ class Examiner {
     if (!open.empty()) {
       return ", " + number(open.size()) + " that were asked for are not";
     }
-    return identified_ < parameters_.size() ? ", the others are not" : "";
+    return identified_ < parameters_ ? ", the others are not" : "";
   }
 
   /// A sentence as a part of another one.
@@ -137,7 +151,7 @@ class Examiner {
   /// A registration that the samples find elsewhere than it is stated. Turning the marker or the
   /// force/torque sensor by opposite angles looks the same in all samples; which of both it was
   /// decides where joints and poles are.
-  std::string confoundedRegistration() const {
+  std::string confoundedRegistration(const std::vector<ParameterEstimate>& parameters) const {
     constexpr double kSignificant = 5.0;  // standard deviations
     for (const auto& [found, other] : {std::pair{"torque_registration", "marker_registration"},
                                        std::pair{"marker_registration", "torque_registration"}}) {
@@ -148,7 +162,7 @@ class Examiner {
       double square = 0.0;
       double variance = 0.0;
       bool is_significant = false;
-      for (const ParameterEstimate& one : parameters_) {
+      for (const ParameterEstimate& one : parameters) {
         if (one.name.rfind(found, 0) == 0 && one.observable) {
           square += one.value * one.value;
           variance = std::max(variance, one.stddev * one.stddev);
@@ -221,16 +235,16 @@ class Examiner {
         return "Do not use this calibration yet: " + identified() +
                ", but the held-out samples contradict them.";
       case Grade::kNotValidated:
-        return "The calibration is not validated: " + identified() + shortcoming() + unjudged() +
-               expectedErrors();
+        return "The calibration is not validated: " + identified() + shortcoming_ + unjudged() +
+               expected_errors_;
       case Grade::kUsable:
-        return "The calibration can be used as far as it goes: " + identified() + shortcoming() +
-               "; held-out samples agree" + outliers() + "." + expectedErrors();
+        return "The calibration can be used as far as it goes: " + identified() + shortcoming_ +
+               "; held-out samples agree" + outliers() + "." + expected_errors_;
       case Grade::kGood:
         break;
     }
     return "The calibration is good to use: " + identified() + ", and held-out samples agree" +
-           outliers() + "." + expectedErrors();
+           outliers() + "." + expected_errors_;
   }
 
   std::string outliers() const {
@@ -245,10 +259,9 @@ class Examiner {
   }
 
   std::string identified() const {
-    return identified_ == parameters_.size()
-               ? "all " + number(parameters_.size()) + " parameters are identified"
-               : number(identified_) + " of " + number(parameters_.size()) +
-                     " parameters are identified";
+    return identified_ == parameters_
+               ? "all " + number(parameters_) + " parameters are identified"
+               : number(identified_) + " of " + number(parameters_) + " parameters are identified";
   }
 
   /// Of the last successful cycle; a description that was calibrated before tells none.
@@ -269,14 +282,30 @@ class Examiner {
   }
 
   const CalibrationSession& session_;
-  const std::vector<ParameterEstimate> parameters_;
-  std::optional<HeldOutValidation> validation_;
+  std::size_t parameters_ = 0;
   std::size_t identified_ = 0;
+  std::string shortcoming_;      ///< see shortcoming()
+  std::string expected_errors_;  ///< see expectedErrors()
+  std::optional<HeldOutJudge> judge_;
+  std::optional<HeldOutValidation> validation_;
   const CycleReport* last_success_ = nullptr;
   const CycleReport* refused_ = nullptr;
 };
 
-}  // namespace
+CalibrationGrader::CalibrationGrader(const CalibrationSession& session)
+    : examiner_(std::make_unique<Examiner>(session)) {}
+
+CalibrationGrader::~CalibrationGrader() = default;
+CalibrationGrader::CalibrationGrader(CalibrationGrader&& other) noexcept = default;
+CalibrationGrader& CalibrationGrader::operator=(CalibrationGrader&& other) noexcept = default;
+
+GradedCalibration CalibrationGrader::grade() {
+  return examiner_->graded();
+}
+
+void CalibrationGrader::settle() {
+  examiner_->settle();
+}
 
 std::string gradeName(Grade grade) {
   switch (grade) {
@@ -295,7 +324,7 @@ std::string gradeName(Grade grade) {
 }
 
 GradedCalibration gradeCalibration(const CalibrationSession& session) {
-  return Examiner(session).graded();
+  return CalibrationGrader(session).grade();
 }
 
 }  // namespace sac

@@ -252,24 +252,35 @@ Actuator CalibrationSession::actuator() const {
   return model_.space().actuatorAt(state_.belief.x);
 }
 
-std::optional<HeldOutValidation> CalibrationSession::validation() const {
+const CycleReport* CalibrationSession::lastSuccess() const {
   const auto last = std::find_if(
       reports_.rbegin(), reports_.rend(), [](const CycleReport& one) { return one.success; });
-  const bool is_motion = last != reports_.rend() && last->motion;
-  const bool joins_motion =
-      last != reports_.rend() && last->cycle == Cycle::kRefine && motion_evidence_;
+  return last == reports_.rend() ? nullptr : &*last;
+}
+
+HeldOutJudge CalibrationSession::heldOutJudge() const {
+  const CycleReport* last = lastSuccess();
+  const bool has_residuals = last != nullptr && !last->residuals.empty();
+  return {model_, state_, config_.estimation, has_residuals ? outlierRate(*last) : 0.0};
+}
+
+std::optional<HeldOutValidation> CalibrationSession::validation() const {
+  HeldOutJudge judge = heldOutJudge();
+  return validation(judge);
+}
+
+std::optional<HeldOutValidation> CalibrationSession::validation(HeldOutJudge& judge) const {
+  const CycleReport* last = lastSuccess();
+  const bool is_motion = last != nullptr && last->motion;
+  const bool joins_motion = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
   HeldOutValidation result;
   if (!is_motion) {
-    result = validateHeldOut(
-        model_,
-        samples_,
-        state_,
-        config_.estimation,
-        last != reports_.rend() && !last->residuals.empty() ? outlierRate(*last) : 0.0);
+    result = judge.judge(samples_);
   }
   if (is_motion || joins_motion) {
-    const auto motion = std::find_if(
-        last, reports_.rend(), [](const CycleReport& one) { return one.success && one.motion; });
+    const auto motion = std::find_if(reports_.rbegin(), reports_.rend(), [](const auto& one) {
+      return one.success && one.motion;
+    });
     if (motion != reports_.rend()) {
       result = severer(result, validationOf(motion->motion->held_out));
     }

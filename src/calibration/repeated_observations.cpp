@@ -23,6 +23,9 @@ double stddevOf(double stated, double assumed) {
   return stated > 0.0 ? stated : assumed;
 }
 
+/// The sum of the weights of keyOf(): so many tolerances are keys of equal vectors apart at most.
+constexpr double kSumOfWeights = 4.1;  // 1 / (1 − ratio)
+
 /// The measurements of one quantity.
 class Measurements {
  public:
@@ -53,6 +56,24 @@ class Measurements {
     return all;
   }
 
+  bool standsOut(std::uint32_t place) const {
+    constexpr double kStandsOut = 10.0;  // standard deviations
+    const Sample& sample = this->sample(place);
+    return quantity_ != Quantity::kTorque || sample.torque.norm() >= kStandsOut * stddev(sample);
+  }
+
+  double keyOf(std::uint32_t place) const {
+    // Weights without a common measure: only equal vectors have equal keys, but for rare chance.
+    constexpr double kRatio = 0.7548776662466927;
+    double key = 0.0;
+    double weight = 1.0;
+    for (const double number : numbers(place)) {
+      key += weight * number;
+      weight *= kRatio;
+    }
+    return key;
+  }
+
   bool areEqual(std::uint32_t a, std::uint32_t b) const {
     const double most = std::min(tolerance(a), tolerance(b));
     const Numbers of_a = numbers(a);
@@ -77,12 +98,6 @@ class Measurements {
                : stddevOf(sample.orientation_stddev, options_.default_orientation_stddev);
   }
 
-  bool standsOut(std::uint32_t place) const {
-    constexpr double kStandsOut = 10.0;  // standard deviations
-    const Sample& sample = this->sample(place);
-    return quantity_ != Quantity::kTorque || sample.torque.norm() >= kStandsOut * stddev(sample);
-  }
-
   Numbers numbers(std::uint32_t place) const {
     const Sample& sample = this->sample(place);
     Numbers numbers{};
@@ -94,18 +109,6 @@ class Measurements {
     return numbers;
   }
 
-  double keyOf(std::uint32_t place) const {
-    // Weights without a common measure: only equal vectors have equal keys, but for rare chance.
-    constexpr double kRatio = 0.7548776662466927;
-    double key = 0.0;
-    double weight = 1.0;
-    for (const double number : numbers(place)) {
-      key += weight * number;
-      weight *= kRatio;
-    }
-    return key;
-  }
-
   const std::vector<Sample>& samples_;
   const std::vector<Observation>& observations_;
   const Quantity quantity_;
@@ -113,7 +116,6 @@ class Measurements {
 };
 
 void addRepeated(const Measurements& measurements, std::vector<RepeatedObservation>& repeated) {
-  constexpr double kSumOfWeights = 4.1;  // 1 / (1 − ratio)
   const std::vector<Keyed> by_key = measurements.sorted();
   // Per measurement the first, by its key, that it is equal to; of that the earliest place.
   std::vector<std::uint32_t> groups(by_key.size());
@@ -171,6 +173,29 @@ std::vector<RepeatedObservation> repeatedObservations(const std::vector<Sample>&
     return a.place < b.place;
   });
   return repeated;
+}
+
+std::optional<std::size_t> RepeatSearch::add(const std::vector<Sample>& samples,
+                                             const std::vector<Observation>& observations) {
+  const auto place = static_cast<std::uint32_t>(observations.size() - 1);
+  const Quantity quantity = observations.back().quantity;
+  const Measurements measurements(samples, observations, quantity, options_);
+  if (!measurements.standsOut(place)) {
+    return std::nullopt;
+  }
+  std::multimap<double, std::uint32_t>& by_key =
+      quantity == Quantity::kTorque ? torques_ : orientations_;
+  const double key = measurements.keyOf(place);
+  const double reach = kSumOfWeights * measurements.tolerance(place);
+  std::optional<std::size_t> earlier;
+  const auto end = by_key.upper_bound(key + reach);
+  for (auto one = by_key.lower_bound(key - reach); one != end; ++one) {
+    if (measurements.areEqual(place, one->second)) {
+      earlier = std::min<std::size_t>(earlier.value_or(one->second), one->second);
+    }
+  }
+  by_key.emplace(key, place);
+  return earlier;
 }
 
 std::vector<Observation> withoutRepeated(const std::vector<Observation>& observations,

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +25,23 @@ struct RepeatedObservation {
 std::vector<RepeatedObservation> repeatedObservations(const std::vector<Sample>& samples,
                                                       const std::vector<Observation>& observations,
                                                       const EstimationOptions& options);
+
+/// The same for observations that come one after the other.
+class RepeatSearch {
+ public:
+  explicit RepeatSearch(const EstimationOptions& options) : options_(options) {}
+
+  /// Takes the last of `observations`, all others being taken before it; returns the place of the
+  /// earliest one that it repeats.
+  std::optional<std::size_t> add(const std::vector<Sample>& samples,
+                                 const std::vector<Observation>& observations);
+
+ private:
+  EstimationOptions options_;
+  // Places by a number that is nearly equal where vectors are.
+  std::multimap<double, std::uint32_t> orientations_;
+  std::multimap<double, std::uint32_t> torques_;
+};
 
 /// The observations without those that repeat others.
 std::vector<Observation> withoutRepeated(const std::vector<Observation>& observations,

@@ -94,9 +94,10 @@ Sample LiveSession::addSample(const Sample& sample, const std::string& date) {
   counter_->add(stored);
   linearity_search_.add(stored);
   linearity_ = linearity_search_.best();
-  if (stored.validation) {
-    grade_.reset();
+  if (grader_) {
+    grader_->settle();
   }
+  grade_.reset();
   return stored;
 }
 
@@ -190,7 +191,10 @@ SessionProgress LiveSession::progress() const {
 
 const GradedCalibration& LiveSession::grade() const {
   if (!grade_) {
-    grade_ = gradeCalibration(session_);
+    if (!grader_) {
+      grader_.emplace(session_);
+    }
+    grade_ = grader_->grade();
   }
   return *grade_;
 }
@@ -200,6 +204,7 @@ void LiveSession::countAnew() {
   counter_.emplace(session_.model(), session_.state(), session_.config().estimation);
   counter_->add(session_.samples());
   is_complete_ = session_.isComplete();
+  grader_.reset();
   grade_.reset();
 }
 

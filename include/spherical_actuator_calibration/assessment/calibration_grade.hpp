@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
@@ -28,5 +29,26 @@ struct GradedCalibration {
 /// Grades the parameters in force of a session, by what is identified and what held-out samples
 /// say. A cycle that failed changed nothing, and does not count.
 GradedCalibration gradeCalibration(const CalibrationSession& session);
+
+/// The same of a session whose samples come one after the other, in the time that a new one takes:
+/// what the parameters in force say by themselves is found once.
+class CalibrationGrader {
+ public:
+  /// Keeps a reference; of use until a sample goes or other parameters come into force.
+  explicit CalibrationGrader(const CalibrationSession& session);
+  ~CalibrationGrader();
+  CalibrationGrader(CalibrationGrader&& other) noexcept;
+  CalibrationGrader& operator=(CalibrationGrader&& other) noexcept;
+
+  /// By all samples of the session so far.
+  GradedCalibration grade();
+  /// Does now what the next grade() needs, see HeldOutJudge::settle().
+  void settle();
+
+ private:
+  class Examiner;
+
+  std::unique_ptr<Examiner> examiner_;
+};
 
 }  // namespace sac

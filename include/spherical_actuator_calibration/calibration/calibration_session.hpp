@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_judge.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 #include "spherical_actuator_calibration/calibration/orientation_map_choice.hpp"
@@ -118,12 +119,17 @@ class CalibrationSession {
   /// Judges the samples that were held out, or tells how windows of a motion judged it; where both
   /// have a part in what is in force, the worse of both verdicts. Nothing where none was held out.
   std::optional<HeldOutValidation> validation() const;
+  /// The same by a judge of the parameters in force, which has seen the samples before.
+  std::optional<HeldOutValidation> validation(HeldOutJudge& judge) const;
+  /// Of the parameters in force; it refers to model(), and has seen no sample.
+  HeldOutJudge heldOutJudge() const;
 
   /// The calibrated description. Axes and offsets that were not identified are those of the start,
   /// to the last bit.
   CalibratedDescription description(const CalibrationOrigin& origin) const;
 
  private:
+  const CycleReport* lastSuccess() const;
   const OrientationMapChoice& mapOfSamples();
   OrientationMapChoice mapOfReports() const;
   OrientationMapChoice chosenMap(const std::vector<Sample>& samples) const;

@@ -5,10 +5,6 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
-#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
-#include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/motion/motion_summary.hpp"
 
 namespace sac {
@@ -40,17 +36,6 @@ struct HeldOutValidation {
   /// Whether any observation took part in the test.
   bool hasVerdict() const { return residuals.size() > unjudged_torques; }
 };
-
-/// Judges the held-out samples under a state. Orientations always count, torques where some coil
-/// is excited and the model has torque; those of coils that are not identified have a residual but
-/// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
-/// `outlier_rate`: at which single outliers come by accident, as among the samples in use; 0: none
-/// is excused. Throws DataError on malformed samples.
-HeldOutValidation validateHeldOut(const CalibrationModel& model,
-                                  const std::vector<Sample>& samples,
-                                  const CalibrationState& state,
-                                  const EstimationOptions& options,
-                                  double outlier_rate = 0.0);
 
 /// Rate at which a cycle rejected outliers; 0: none, so that none is excused elsewhere.
 double outlierRate(const CycleReport& report);

@@ -102,7 +102,8 @@ class LiveSession {
   // Kept up to date, as they are asked for at every capture.
   std::optional<ProgressCounter> counter_;
   bool is_complete_ = false;
-  mutable std::optional<GradedCalibration> grade_;
+  mutable std::optional<CalibrationGrader> grader_;  ///< nothing: not asked for yet
+  mutable std::optional<GradedCalibration> grade_;   ///< nothing: not asked for since it changed
   LinearitySearch linearity_search_;
   std::optional<TorqueLinearity> linearity_;
 };

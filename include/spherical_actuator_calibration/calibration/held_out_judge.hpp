@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// Judges the held-out samples of a session as they come, in the time that the new ones take.
+class HeldOutJudge {
+ public:
+  /// Keeps a reference to the model. Parameters as validateHeldOut().
+  HeldOutJudge(const CalibrationModel& model,
+               const CalibrationState& state,
+               const EstimationOptions& options,
+               double outlier_rate);
+  ~HeldOutJudge();
+  HeldOutJudge(HeldOutJudge&& other) noexcept;
+  HeldOutJudge& operator=(HeldOutJudge&& other) noexcept;
+
+  /// The verdict over all held-out samples, as validateHeldOut() tells it. `samples`: those of the
+  /// call before, in their order, and what came after them. Throws DataError on malformed samples.
+  const HeldOutValidation& judge(const std::vector<Sample>& samples);
+  /// Does now what the next judge() needs, which for hundreds of coils takes longer than a verdict.
+  void settle();
+
+ private:
+  class Judgement;
+
+  std::unique_ptr<Judgement> judgement_;
+};
+
+/// Judges the held-out samples under a state. Orientations always count, torques where some coil
+/// is excited and the model has torque; those of coils that are not identified have a residual but
+/// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
+/// `outlier_rate`: at which single outliers come by accident, as among the samples in use; 0: none
+/// is excused. Throws DataError on malformed samples.
+HeldOutValidation validateHeldOut(const CalibrationModel& model,
+                                  const std::vector<Sample>& samples,
+                                  const CalibrationState& state,
+                                  const EstimationOptions& options,
+                                  double outlier_rate = 0.0);
+
+}  // namespace sac

@@ -1,0 +1,368 @@
+#include "spherical_actuator_calibration/calibration/held_out_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include <boost/math/distributions/binomial.hpp>
+
+#include "repeated_observations.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/linearization.hpp"
+#include "spherical_actuator_calibration/estimation/same_dwell.hpp"
+#include "spherical_actuator_calibration/estimation/sequential_update.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+
+namespace sac {
+namespace {
+
+/// Whether so many outliers among `count` are no more than the rate of those elsewhere.
+bool areUsual(std::size_t outliers, std::size_t count, double rate, double most) {
+  if (outliers == 0 || static_cast<double>(outliers) > most * static_cast<double>(count)) {
+    return outliers == 0;
+  }
+  const boost::math::binomial_distribution<double> usual(static_cast<double>(count), rate);
+  return boost::math::cdf(boost::math::complement(usual, static_cast<double>(outliers) - 1.0)) >=
+         kLeastProbability;
+}
+
+SampleResidual residualOf(const Sample& sample,
+                          Quantity quantity,
+                          const Eigen::Vector3d& residual,
+                          const Eigen::Matrix3d& covariance) {
+  SampleResidual result;
+  result.id = sample.id;
+  result.quantity = quantity;
+  result.residual = residual.norm();
+  result.standardized = std::sqrt(residual.dot(covariance.llt().solve(residual)) / 3.0);
+  return result;
+}
+
+double rootMean(double sum, std::size_t count) {
+  return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+/// Whether a torque is close to linear over the uncertainty of a coil's axis: its angles are
+/// identified, and known to a small part of the width of the torque curve's peak.
+bool isLinear(const ParameterBelief& belief,
+              const std::vector<bool>& identified,
+              Eigen::Index coil) {
+  constexpr double kMostStddev = 0.01;  // [rad]
+  const auto first = static_cast<std::size_t>(coil);
+  const double variance = belief.covariance.block<2, 2>(coil, coil).trace();
+  return identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
+}
+
+}  // namespace
+
+/// Takes one measurement after the other, then judges all together.
+class HeldOutJudge::Judgement {
+ public:
+  Judgement(const CalibrationModel& model,
+            const CalibrationState& state,
+            const EstimationOptions& options,
+            double outlier_rate)
+      : options_(options),
+        outlier_rate_(outlier_rate),
+        identified_(state.identified),
+        point_(model, state.belief.x),
+        all_(ChosenCoordinates::all(model.space().size())),
+        every_(static_cast<std::size_t>(all_.size()), true),
+        repeats_(options) {
+    problem_.model = &model;
+    problem_.prior = state.belief;
+  }
+
+  const HeldOutValidation& judge(const std::vector<Sample>& samples) {
+    // Without one that is held out, those in use need not be taken.
+    for (; seen_ < samples.size() && !is_any_; ++seen_) {
+      is_any_ = samples[seen_].validation;
+    }
+    if (!is_any_) {
+      return result_;
+    }
+    if (!take(samples)) {
+      beginAnew();
+      take(samples);
+    }
+    if (!judged_.empty()) {
+      conclude();
+    }
+    return result_;
+  }
+
+  void settle() {
+    if (update_) {
+      update_->settle();
+    }
+  }
+
+ private:
+  /// A measurement with what the test needs of it.
+  struct Judged {
+    Quantity quantity = Quantity::kOrientation;
+    bool counts = false;         ///< in the test
+    std::size_t dwell = 0;       ///< that shares its errors
+    double squared_norm = 0.0;   ///< of its residual
+    WhitenedObservation misfit;  ///< empty where it does not count
+    SharedLoading loading = SharedLoading::Zero();
+  };
+
+  void beginAnew() {
+    taken_ = 0;
+    observations_.clear();
+    held_out_.clear();
+    repeats_ = RepeatSearch(options_);
+    dwell_.reset();
+    dwells_ = 0;
+    judged_.clear();
+    update_.reset();
+    result_ = HeldOutValidation();
+  }
+
+  /// Those in use first: it is the held-out ones that repeat them. False where one in use repeats a
+  /// held-out one that was taken before it.
+  bool take(const std::vector<Sample>& samples) {
+    problem_.samples = &samples;
+    for (const bool held_out : {false, true}) {
+      for (std::size_t n = taken_; n < samples.size(); ++n) {
+        if (samples[n].validation == held_out && !takeSample(n, held_out)) {
+          return false;
+        }
+      }
+    }
+    taken_ = samples.size();
+    return true;
+  }
+
+  bool takeSample(std::size_t n, bool held_out) {
+    const Sample& sample = (*problem_.samples)[n];
+    const CalibrationModel& model = *problem_.model;
+    if (held_out) {
+      validate(sample, model.space().coils());
+      ++result_.samples;
+    }
+    if (model.observesOrientation(sample) &&
+        !takeObservation({n, Quantity::kOrientation}, held_out)) {
+      return false;
+    }
+    return !sample.has_torque || !model.hasTorqueModel() ||
+           excitedCoils(sample, options_.current_threshold).empty() ||
+           takeObservation({n, Quantity::kTorque}, held_out);
+  }
+
+  bool takeObservation(const Observation& observation, bool held_out) {
+    observations_.push_back(observation);
+    held_out_.push_back(held_out);
+    const std::optional<std::size_t> earlier = repeats_.add(*problem_.samples, observations_);
+    if (held_out) {
+      look(observation, earlier.has_value());
+    }
+    return held_out || !earlier || !held_out_[*earlier];
+  }
+
+  /// Lists a held-out observation with its own misfit.
+  void look(const Observation& observation, bool is_repeated) {
+    constexpr double kNoNoise = 1e-3;  // standardised: of a simulation, which honestly repeats
+    const Sample& sample = (*problem_.samples)[observation.sample];
+    problem_.observations = {observation};
+    const ObservationEvaluator evaluator(problem_, options_);
+    evaluator.linearize(0, point_, linear_);
+    const SampleResidual residual = residualOf(
+        sample, observation.quantity, linear_.residual, evaluator.covariance(0, linear_, every_));
+    joinDwell(sample);
+    if (is_repeated && residual.standardized > kNoNoise) {
+      ++result_.repeated;
+      return;
+    }
+    Judged one;
+    one.quantity = observation.quantity;
+    one.counts = isJudged(observation, sample);
+    one.dwell = dwells_;
+    one.squared_norm = linear_.residual.squaredNorm();
+    if (one.counts) {
+      whitenJudged(evaluator, one);
+    }
+    result_.unjudged_torques += one.counts ? 0U : 1U;
+    judged_.push_back(std::move(one));
+    result_.residuals.push_back(residual);
+  }
+
+  /// Samples without shared errors are dwells of their own.
+  void joinDwell(const Sample& sample) {
+    const bool shares = options_.shared_errors && hasSharedErrors(sample, *problem_.model);
+    if (!shares || !dwell_ || !isSameDwell(*dwell_, sample)) {
+      ++dwells_;
+      dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;
+    }
+  }
+
+  /// Whether the test counts an observation.
+  bool isJudged(const Observation& observation, const Sample& sample) const {
+    if (observation.quantity == Quantity::kOrientation) {
+      return true;
+    }
+    const std::vector<Excitation> excitations = excitedCoils(sample, options_.current_threshold);
+    return std::all_of(excitations.begin(), excitations.end(), [this](const Excitation& one) {
+      return isLinear(problem_.prior, identified_, problem_.model->space().coil(one.coil));
+    });
+  }
+
+  void whitenJudged(const ObservationEvaluator& evaluator, Judged& one) const {
+    const Eigen::Matrix3d W =
+        whiteningOf(dwell_ ? evaluator.ownNoise(0, linear_) : evaluator.noise(0, linear_));
+    whiten(linear_, W, all_, one.misfit);
+    if (dwell_) {
+      one.loading = W * evaluator.sharedErrors(0, linear_);
+    }
+  }
+
+  void conclude() {
+    setOutliersAside();
+    addMisfits();
+    const std::size_t judged =
+        result_.residuals.size() - result_.unjudged_torques - result_.outliers;
+    if (judged > 0) {
+      const auto values = 3.0 * static_cast<double>(judged);
+      const double chi_square = std::max(update_->chiSquare(), 0.0);
+      result_.reduced_chi_square = chi_square / values;
+      result_.probability = chiSquareProbability(values, chi_square);
+    }
+  }
+
+  /// Marks what stands out as rejected, where it is no more than elsewhere.
+  void setOutliersAside() {
+    const std::vector<std::size_t> outliers = this->outliers();
+    const auto count = static_cast<std::size_t>(std::count_if(
+        judged_.begin(), judged_.end(), [](const Judged& one) { return one.counts; }));
+    const bool are_usual =
+        areUsual(outliers.size(), count, outlier_rate_, options_.max_rejected_fraction);
+    result_.outliers = are_usual ? outliers.size() : 0;
+    std::vector<bool> is_rejected(judged_.size(), false);
+    for (std::size_t k = 0; k < result_.outliers; ++k) {
+      is_rejected[outliers[k]] = true;
+    }
+    for (std::size_t n = 0; n < judged_.size(); ++n) {
+      SampleResidual& residual = result_.residuals[n];
+      if (residual.rejected == is_rejected[n]) {
+        continue;
+      }
+      residual.rejected = is_rejected[n];
+      residual.reason = is_rejected[n]
+                            ? format("misfit is %.1f times its uncertainty", residual.standardized)
+                            : std::string();
+      if (n < added_) {  // what is in the sum cannot be taken out of it, nor come before its end
+        update_.reset();
+      }
+    }
+  }
+
+  /// Those that stand out by themselves, ascending.
+  std::vector<std::size_t> outliers() const {
+    const double limit =
+        chiSquareLimit(3.0,
+                       options_.false_alarm_probability /
+                           static_cast<double>(std::max<std::size_t>(1, judged_.size())));
+    std::vector<std::size_t> outliers;
+    for (std::size_t n = 0; n < judged_.size(); ++n) {
+      const double standardized = result_.residuals[n].standardized;
+      if (judged_[n].counts && 3.0 * standardized * standardized > limit) {
+        outliers.push_back(n);
+      }
+    }
+    return outliers;
+  }
+
+  /// To the test, those that are new; all of them where others are rejected than before.
+  void addMisfits() {
+    if (!update_) {
+      update_.emplace(problem_.prior.covariance);
+      added_ = 0;
+      added_dwell_ = 0;
+      orientation_squares_ = 0.0;
+      torque_squares_ = 0.0;
+      result_.orientations = 0;
+      result_.torques = 0;
+    }
+    for (; added_ < judged_.size(); ++added_) {
+      if (!result_.residuals[added_].rejected) {
+        addMisfit(judged_[added_]);
+      }
+    }
+    result_.orientation_rms = rootMean(orientation_squares_, result_.orientations);
+    result_.torque_rms = rootMean(torque_squares_, result_.torques);
+  }
+
+  void addMisfit(const Judged& one) {
+    const bool is_orientation = one.quantity == Quantity::kOrientation;
+    (is_orientation ? result_.orientations : result_.torques) += 1;
+    (is_orientation ? orientation_squares_ : torque_squares_) += one.squared_norm;
+    if (!one.counts) {
+      return;
+    }
+    if (one.dwell != added_dwell_) {
+      update_->beginDwell();
+      added_dwell_ = one.dwell;
+    }
+    update_->observe(one.misfit, one.loading);
+  }
+
+  const EstimationOptions options_;
+  const double outlier_rate_;
+  const std::vector<bool> identified_;
+  const ModelPoint point_;  ///< the model at the state
+  const ChosenCoordinates all_;
+  const std::vector<bool> every_;  ///< coordinate is uncertain by the prior
+  EstimationProblem problem_;      ///< of the observation at hand
+
+  std::size_t seen_ = 0;                   ///< of the samples, until one is held out
+  bool is_any_ = false;                    ///< held out
+  std::size_t taken_ = 0;                  ///< of the samples
+  std::vector<Observation> observations_;  ///< in use or held out
+  std::vector<bool> held_out_;             ///< per observation
+  RepeatSearch repeats_;
+  std::optional<Sample> dwell_;  ///< the first sample of the present one, where it shares errors
+  std::size_t dwells_ = 0;
+  std::vector<Judged> judged_;  ///< in the order of the residuals
+
+  std::optional<SequentialUpdate> update_;  ///< the first added_ of judged_ that are not rejected
+  std::size_t added_ = 0;
+  std::size_t added_dwell_ = 0;
+  double orientation_squares_ = 0.0;
+  double torque_squares_ = 0.0;
+
+  HeldOutValidation result_;
+  LinearizedObservation linear_;  // storage that is reused
+};
+
+HeldOutJudge::HeldOutJudge(const CalibrationModel& model,
+                           const CalibrationState& state,
+                           const EstimationOptions& options,
+                           double outlier_rate)
+    : judgement_(std::make_unique<Judgement>(model, state, options, outlier_rate)) {}
+
+HeldOutJudge::~HeldOutJudge() = default;
+HeldOutJudge::HeldOutJudge(HeldOutJudge&& other) noexcept = default;
+HeldOutJudge& HeldOutJudge::operator=(HeldOutJudge&& other) noexcept = default;
+
+const HeldOutValidation& HeldOutJudge::judge(const std::vector<Sample>& samples) {
+  return judgement_->judge(samples);
+}
+
+void HeldOutJudge::settle() {
+  judgement_->settle();
+}
+
+HeldOutValidation validateHeldOut(const CalibrationModel& model,
+                                  const std::vector<Sample>& samples,
+                                  const CalibrationState& state,
+                                  const EstimationOptions& options,
+                                  double outlier_rate) {
+  return HeldOutJudge(model, state, options, outlier_rate).judge(samples);
+}
+
+}  // namespace sac
