@@ -7,6 +7,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
+#include "torque_of_a_coil.hpp"
 
 namespace sac {
 namespace {
@@ -123,6 +124,7 @@ void validate(const Actuator& actuator) {
   validateDynamics(actuator);
   if (actuator.torque_curve) {
     validate(*actuator.torque_curve);
+    requireTorqueOfACoil(*actuator.torque_curve);
   }
   requireInRange("workspace.tilt_limit",
                  actuator.workspace.tilt_limit,

@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
+#include "torque_of_a_coil.hpp"
 
 namespace sac {
 namespace {
@@ -96,6 +97,7 @@ TorqueCurveDescription readTorqueCurve(const YamlMap& actuator) {
   completeFromTable(curve);
   try {
     validate(curve);
+    requireTorqueOfACoil(curve);
   } catch (const ConfigError& error) {
     actuator.fail("torque_curve", error.what());
   }

@@ -207,9 +207,11 @@ TEST_F(OrientationControllerTest, StopsOutsideTheWorkspace) {
 TEST_F(OrientationControllerTest, StopsWhereTheCoilsMakeNoTorqueInSomeDirection) {
   start(truth_);
   run(0.002);
-  // A curve without torque, as parameters that come while the rotor is held.
+  // A curve of hardly any torque, as parameters that come while the rotor is held.
   Actuator weak = truth_;
-  weak.torque_curve->coefficients.assign(7, 0.0);
+  for (double& coefficient : weak.torque_curve->coefficients) {
+    coefficient *= 1e-6;
+  }
   controller_->setParameters(weak);
   run(0.002);
   expectStopped("no torque in some direction");
