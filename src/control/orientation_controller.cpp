@@ -14,6 +14,8 @@ namespace {
 
 /// A cycle that came late integrates no further than this [s].
 constexpr double kLongestStep = 0.02;
+/// A sum of currents that is nearer to its limit is at it.
+constexpr double kAtLimit = 1.0 - 1e-9;
 /// The observer learns from no reading that is older [s]: its delay would shake the rotor.
 constexpr double kLatestLesson = 0.02;
 
@@ -273,7 +275,10 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
   }
   share_ = allocated.share;
   currents_ = allocated.currents;
-  limitTotal();
+  const CurrentLimit limit = limitTotal();
+  if (share_ < cut_.share) {
+    cut_ = {share_, limit == CurrentLimit::kNone ? CurrentLimit::kCoil : limit};
+  }
   if (is_in_motion) {
     motion_->noteTorqueShare(share_);
     if (motion_->phase() != MotionPhase::kApproach) {
@@ -320,8 +325,9 @@ MotionProgress OrientationController::motionProgress() {
   return progress;
 }
 
-// As the driver would: all currents alike, so that the torque keeps its direction.
-void OrientationController::limitTotal() {
+// As the driver would: all currents alike, so that the torque keeps its direction. Returns the
+// limit that did it.
+CurrentLimit OrientationController::limitTotal() {
   CurrentBounds bounds{options_.allocation.current_limit,
                        options_.total_current_limit,
                        options_.square_current_limit};
@@ -329,8 +335,13 @@ void OrientationController::limitTotal() {
     bounds = motion_->bounds();
   }
   const double share = shareWithinSums(currents_, bounds);
+  if (share >= 1.0) {
+    return CurrentLimit::kNone;
+  }
   currents_ *= share;
   share_ *= share;
+  const bool is_of_power = currents_.cwiseAbs().sum() < bounds.total * kAtLimit;
+  return is_of_power ? CurrentLimit::kPower : CurrentLimit::kTotal;
 }
 
 void OrientationController::stop(const std::string& reason) {

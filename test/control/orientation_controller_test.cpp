@@ -275,6 +275,33 @@ TEST_F(OrientationControllerTest, ThePowerOfTheCoilsStaysWithinItsLimit) {
   EXPECT_LT(controller_->torqueShare(), 1.0);
 }
 
+// Once a second somebody looks: what was cut between is told, and by which limit.
+TEST_F(OrientationControllerTest, TellsTheLeastShareOfTheTorqueAndTheLimitThatCutIt) {
+  const auto cutBy = [&] {
+    rotor_.release(Eigen::Vector3d::Zero());
+    restart();
+    start(truth_);
+    controller_->takeTorqueCut();
+    controller_->setTarget(now_, rotationExp({0.3, -0.2, 0.8}));
+    double least = 1.0;
+    for (int n = 0; n < 50; ++n) {
+      run(0.001);
+      least = std::min(least, controller_->torqueShare());
+    }
+    const TorqueCut cut = controller_->takeTorqueCut();
+    EXPECT_EQ(cut.share, least);
+    EXPECT_EQ(controller_->takeTorqueCut().limit, CurrentLimit::kNone);
+    return cut.limit;
+  };
+  EXPECT_EQ(cutBy(), CurrentLimit::kNone);
+  options_.square_current_limit = 1e-5;
+  EXPECT_EQ(cutBy(), CurrentLimit::kPower);
+  options_.total_current_limit = 1e-3;
+  EXPECT_EQ(cutBy(), CurrentLimit::kTotal);
+  options_.allocation.current_limit = 1e-5;
+  EXPECT_EQ(cutBy(), CurrentLimit::kCoil);
+}
+
 TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
   start(truth_);
   EXPECT_GT(run(0.2), 0.001);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -23,6 +24,15 @@ enum class ControlState {
   kIdle,     ///< not enabled: no current
   kActive,   ///< follows its targets
   kStopped,  ///< stopped by itself: no current until it is enabled again
+};
+
+/// What keeps currents from making the whole torque.
+enum class CurrentLimit { kNone, kCoil, kTotal, kPower };
+
+/// Torque that was cut.
+struct TorqueCut {
+  double share = 1.0;  ///< of the wanted torque that was made
+  CurrentLimit limit = CurrentLimit::kNone;
 };
 
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
@@ -83,6 +93,8 @@ class OrientationController {
   const std::string& stopReason() const { return stop_reason_; }
   /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
   double torqueShare() const { return share_; }
+  /// The least share since it was asked last, and the limit that allowed no more.
+  TorqueCut takeTorqueCut() { return std::exchange(cut_, {}); }
   /// Angle between the orientation that the model sees and the reference [rad].
   double trackingError() const { return tracking_error_; }
   /// Torque on the rotor that was found and is made up for, rotor frame [N·m].
@@ -106,7 +118,7 @@ class OrientationController {
   void observe(Stamp now, const RotorState& rotor);
   Learning learning(Stamp now) const;
   void allocate(const RotorState& rotor, const DesiredMotion& desired);
-  void limitTotal();
+  CurrentLimit limitTotal();
   void takeParametersToCome();
   Eigen::Matrix3d present() const;
   void requireWay(const Eigen::Matrix3d& R_stator_rotor) const;
@@ -130,6 +142,7 @@ class OrientationController {
   std::string stop_reason_;
   Eigen::VectorXd currents_;
   double share_ = 1.0;
+  TorqueCut cut_;
   double tracking_error_ = 0.0;
   std::optional<MotionRun> motion_;
   DesiredMotion motion_reference_;
