@@ -38,6 +38,28 @@ double rounded(double value) {
   return parsedNumber(roundedText(value, kDigits)).value_or(value);
 }
 
+/// Where the parameters of a space are in a record. Beside other strengths, descriptions of before
+/// had some that are references of strength now: those that nobody has are left out.
+std::vector<std::size_t> placesIn(const CovarianceRecord& record, const ParameterSpace& space) {
+  const std::set<std::string> references = {"pole_1/gain", "coil_1/gain", "torque_curve/t0"};
+  const std::vector<std::string> names = namesOf(space);
+  std::vector<std::size_t> places;
+  for (std::size_t n = 0; n < record.names.size(); ++n) {
+    const bool is_next = places.size() < names.size() && record.names[n] == names[places.size()];
+    if (is_next) {
+      places.push_back(n);
+    } else if (references.count(record.names[n]) == 0) {
+      break;
+    }
+  }
+  if (places.size() != names.size() || record.names.size() > names.size() + references.size()) {
+    throw ConfigError(
+        "calibration.covariance.names: they are not the parameters of this actuator "
+        "and its effects.");
+  }
+  return places;
+}
+
 /// Standard deviations without what parameters have in common.
 class Diagonal {
  public:
@@ -115,17 +137,14 @@ Eigen::MatrixXd coordinateCovariance(const ParameterSpace& space,
     return Diagonal(space).of(description.stddevs).asDiagonal();
   }
   const CovarianceRecord& record = *description.calibration->covariance;
-  if (record.names != namesOf(space)) {
-    throw ConfigError(
-        "calibration.covariance.names: they are not the parameters of this actuator "
-        "and its effects.");
-  }
+  const std::vector<std::size_t> places = placesIn(record, space);
   const Eigen::VectorXd units = unitsOf(space);
   Eigen::MatrixXd covariance(space.size(), space.size());
-  auto next = record.lower.begin();
   for (Eigen::Index a = 0; a < space.size(); ++a) {
+    const std::size_t row = places[static_cast<std::size_t>(a)];
     for (Eigen::Index b = 0; b <= a; ++b) {
-      covariance(a, b) = *next++ / (units[a] * units[b]);
+      const std::size_t entry = row * (row + 1) / 2 + places[static_cast<std::size_t>(b)];
+      covariance(a, b) = record.lower[entry] / (units[a] * units[b]);
       covariance(b, a) = covariance(a, b);
     }
   }

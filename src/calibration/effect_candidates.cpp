@@ -72,9 +72,6 @@ std::vector<EffectCandidate> effectCandidates(const FurtherColumns& columns) {
       candidates.push_back(std::move(one));
     }
   }
-  if (columns.firstCoil() >= 0) {
-    candidates.push_back({"coil_1/gain", "1", adviceFor("coil_gains"), columns.firstCoil(), {1.0}});
-  }
   for (std::size_t k = 0; k < own.joints(); ++k) {
     candidates.push_back({"joint_" + std::to_string(numberOf(k)) + "/scale",
                           "1",

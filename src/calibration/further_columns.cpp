@@ -17,16 +17,14 @@ EffectSelection missingEffects(const ParameterSpace& space) {
       missing[effect] = true;
     }
   }
+  missing.setOneByOne();
   return missing;
 }
 
 }  // namespace
 
 FurtherColumns::FurtherColumns(const CalibrationModel& model)
-    : own_(model.space()),
-      model_(ParameterSpace(own_.nominal(), missingEffects(own_))),
-      has_first_coil_(first("strength_scale") >= own_.size() &&
-                      first("coil_gains") >= own_.size()) {}
+    : own_(model.space()), model_(ParameterSpace(own_.nominal(), missingEffects(own_))) {}
 
 Eigen::Index FurtherColumns::first(const std::string& effect) const {
   for (const PlacedEffect& placed : own_.effects().effects()) {

@@ -8,8 +8,8 @@
 namespace sac {
 
 /// Columns beside the coordinates of a problem that residuals may depend on. All columns together:
-/// the P coordinates, then the effects that the problem does not model, the scales of the joints'
-/// readings, and the strength of the first coil by itself.
+/// the P coordinates, then the effects that the problem does not model, each whole as if it were
+/// alone, and the scales of the joints' readings.
 class FurtherColumns {
  public:
   explicit FurtherColumns(const CalibrationModel& model);
@@ -22,17 +22,13 @@ class FurtherColumns {
   Eigen::Index scale(std::size_t joint) const {
     return effect(model_.space().effects().size()) + static_cast<Eigen::Index>(joint);
   }
-  /// Beside the common strength the first coil has no gain of its own: it is the strength that the
-  /// other coils do not share. −1: there is none.
-  Eigen::Index firstCoil() const { return has_first_coil_ ? scale(own_.joints()) : -1; }
-  Eigen::Index size() const { return scale(own_.joints()) + (has_first_coil_ ? 1 : 0); }
+  Eigen::Index size() const { return scale(own_.joints()); }
   /// The first column of an effect, be it modelled or not, or −1 where there is none.
   Eigen::Index first(const std::string& effect) const;
 
  private:
   const ParameterSpace& own_;
   CalibrationModel model_;
-  bool has_first_coil_;
 };
 
 }  // namespace sac

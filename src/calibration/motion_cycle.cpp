@@ -94,7 +94,7 @@ bool actsOnMotion(const PlacedEffect& placed, bool has_orientations) {
 /// inertia.
 bool changesStrength(const PlacedEffect& placed, const ParameterSpace& space) {
   return placed.effect->changesCurve() ||
-         placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
+         placed.effect->strengthCoordinate(space.poles() - 1, space.coils() - 1) >= 0;
 }
 
 /// Whether a coordinate is a principal moment of inertia, or a relative change of strength: what it
@@ -104,7 +104,8 @@ std::optional<double> strengthOrInertia(const ParameterSpace& space, Eigen::Inde
   if (placed.name == "rotor_inertia") {
     return effect - placed.first < 3 ? std::optional<double>(0.0) : std::nullopt;
   }
-  const bool is_strength = placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0;
+  const bool is_strength =
+      placed.effect->strengthCoordinate(space.poles() - 1, space.coils() - 1) >= 0;
   return is_strength ? std::optional<double>(1.0) : std::nullopt;
 }
 

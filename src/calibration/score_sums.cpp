@@ -78,8 +78,6 @@ class Summation {
         further_point_(columns.model(), furtherCoordinates()),
         point_(has_effects_ ? evaluator_.at(estimate.belief.x) : further_point_),
         every_(ChosenCoordinates::all(has_effects_ ? columns.space().size() : columns.scale(0))),
-        strength_(columns.first("strength_scale")),
-        gains_(columns.first("coil_gains")),
         dwell_(columns.size()) {
     whitened_.jacobian.resize(3, columns.size());
   }
@@ -133,9 +131,6 @@ class Summation {
       append(columns_.scale(k),
              reading * (whitening * linear_.jacobian.col(columns_.space().joint(k))));
     }
-    if (columns_.firstCoil() >= 0) {
-      addFirstCoil();
-    }
   }
 
   void append(Eigen::Index column, const Eigen::Vector3d& whitened) {
@@ -157,23 +152,6 @@ class Summation {
     }
   }
 
-  /// The common strength less that of all other coils.
-  void addFirstCoil() {
-    const Eigen::Index end = gains_ + static_cast<Eigen::Index>(columns_.space().coils()) - 1;
-    Eigen::Vector3d column = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < whitened_.columns.size(); ++k) {
-      const Eigen::Index p = whitened_.columns[k];
-      if (p == strength_) {
-        column += whitened_.jacobian.col(static_cast<Eigen::Index>(k));
-      } else if (p >= gains_ && p < end) {
-        column -= whitened_.jacobian.col(static_cast<Eigen::Index>(k));
-      }
-    }
-    if (!column.isZero(0.0)) {
-      append(columns_.firstCoil(), column);
-    }
-  }
-
   const EstimationProblem& problem_;
   const Estimate& estimate_;
   const FurtherColumns& columns_;
@@ -184,8 +162,6 @@ class Summation {
   ModelPoint further_point_;
   ModelPoint point_;
   ChosenCoordinates every_;
-  Eigen::Index strength_;  ///< column, or −1
-  Eigen::Index gains_;     ///< first column, or −1
   DwellSum dwell_;
   // Storage that is reused.
   LinearizedObservation linear_;  ///< as the evaluator does

@@ -19,7 +19,8 @@ EffectsAt::EffectsAt(const ParameterSpace& space, const Eigen::VectorXd& x)
     : space_(space), values_(x.tail(space.effects().size())) {
   for (const PlacedEffect& placed : space.effects().effects()) {
     values_.segment(placed.first, placed.size()) *= placed.effect->scale();
-    if (space.coils() > 0 && placed.effect->strengthCoordinate(0, space.coils() - 1) >= 0) {
+    if (space.coils() > 0 &&
+        placed.effect->strengthCoordinate(space.poles() - 1, space.coils() - 1) >= 0) {
       on_strength_.push_back(&placed);
     }
   }

@@ -56,7 +56,7 @@ TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {
   const ParameterSpace space = spaceWith({"strength_scale", "pole_gains", "coil_gains"});
   const EffectLayout& effects = space.effects();
   const Eigen::Index common = space.effect() + effects.first("strength_scale");
-  const Eigen::Index pole = space.effect() + effects.first("pole_gains") + 4;
+  const Eigen::Index pole = space.effect() + effects.first("pole_gains") + 3;
   const Eigen::Index coil = space.effect() + effects.first("coil_gains");
   CalibrationState state = nominalState(space, {});
   identify(state, pole, 3e-3);
@@ -67,7 +67,8 @@ TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {
   const ParameterStddevs stddevs = identifiedStddevs(space, state);
   EXPECT_NEAR(stddevs.poles[4].gain.value_or(0.0), std::hypot(1.1 * 3e-3, 4e-3), 1e-12);
   EXPECT_FALSE(stddevs.poles[3].gain);
-  // Coil 1 is the reference of strength.
+  // Beside the scale pole 1 and coil 1 are the references of strength. Of pole 1 the scale is told.
+  EXPECT_NEAR(stddevs.poles[0].gain.value_or(0.0), 4e-3, 1e-12);
   EXPECT_FALSE(stddevs.coils[0].gain);
   EXPECT_NEAR(stddevs.coils[1].gain.value_or(0.0), 1e-3, 1e-12);
 }

@@ -1,4 +1,5 @@
 // What a saved description knows together, it knows together when it is read again.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -10,8 +11,10 @@
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_judge.hpp"
 #include "support/scenarios.hpp"
 
@@ -130,6 +133,37 @@ TEST(SavedBelief, HeldOutSamplesTellAJointThatSlipped) {
   const CalibrationSession again(saved, {}, modelling(kHarmonics));
   EXPECT_GT(validated(again, heldOut(unitWith(kHarmonics))).probability, kLeastProbability);
   EXPECT_LT(validated(again, heldOut(slipped)).probability, kLeastProbability);
+}
+
+// Before one pole was the reference of strength beside the curve, it had a gain that nobody told.
+TEST(SavedBelief, OfAnEarlierReleaseIsReadWithoutWhatIsAReferenceNow) {
+  CalibrationConfig config = modelling("pole_gains");
+  config.effects["torque_curve"] = true;
+  const CalibrationSession session({scenarios::paperNominal()}, {}, config);
+  CalibratedDescription saved = session.description({"2024-05-31T12:00:00Z", {}, "0.1.0"});
+  CovarianceRecord& record = saved.calibration->covariance.emplace(
+      covarianceRecord(session.model().space(), session.state().belief));
+  const auto next = std::find(record.names.begin(), record.names.end(), "pole_2/gain");
+  ASSERT_NE(next, record.names.end());
+  const auto place = static_cast<std::size_t>(next - record.names.begin());
+  const CovarianceRecord whole = record;
+  record.names.insert(next, "pole_1/gain");
+  record.lower.clear();
+  for (std::size_t a = 0, row = 0; a < record.names.size(); ++a) {
+    std::size_t column = 0;
+    for (std::size_t b = 0; b <= a; ++b) {
+      const bool is_new = a == place || b == place;
+      record.lower.push_back(is_new ? 7.0 : whole.lower[row * (row + 1) / 2 + column]);
+      column += b == place ? 0 : 1;
+    }
+    row += a == place ? 0 : 1;
+  }
+  const CalibrationSession again(saved, {}, config);
+  const Eigen::MatrixXd& known = session.state().belief.covariance;
+  ASSERT_EQ(again.state().belief.covariance.rows(), known.rows());
+  EXPECT_LT((again.state().belief.covariance - known).norm(), 1e-7 * known.norm());
+  record.names[place] = "pole_9/gain";
+  EXPECT_THROW(CalibrationSession(saved, {}, config), ConfigError);
 }
 
 TEST(SavedBelief, StartsWithTheWeightThatATorqueSensorFeels) {

@@ -41,6 +41,15 @@ std::vector<std::string> machineEffects() {
 
 using Effects = std::vector<std::string>;
 
+/// Many at once: those that all tell strength, and everything that a machine can have.
+std::vector<Effects> manyTogether() {
+  const std::vector<std::string> all = machineEffects();
+  return {{"pole_gains", "coil_gains", "torque_curve"},
+          {"pole_gains", "coil_gains", "torque_curve", kTable},
+          {"pole_gains", "coil_gains", "strength_scale", "torque_curve"},
+          {all.begin(), all.end()}};
+}
+
 std::vector<Effects> aloneAndInPairs() {
   std::vector<Effects> sets;
   const std::vector<std::string> all = machineEffects();
@@ -166,7 +175,14 @@ TEST_P(SavedEffects, LeaveTheResidualsOfTheRefinement) {
   const CalibrationSession session = refined(GetParam());
   const CycleReport& report = session.reports().back();
   ASSERT_TRUE(report.success) << report.message;
+  for (const ParameterEstimate& estimate : report.estimates) {
+    EXPECT_TRUE(estimate.observable) << estimate.name;
+  }
   const CalibratedDescription saved = reloaded(session);
+  const CalibrationSession again(saved, {}, session.config());
+  const Eigen::MatrixXd& known = session.state().belief.covariance;
+  ASSERT_EQ(again.state().belief.covariance.rows(), known.rows());
+  EXPECT_LT((again.state().belief.covariance - known).norm(), 1e-7 * known.norm());
   EXPECT_EQ(saved.actuator.orientation_map != nullptr, has(GetParam(), kMap));
   const Predictor predictor(saved);
   const JointGeometry joints = jointGeometry(saved.actuator);
@@ -220,6 +236,8 @@ INSTANTIATE_TEST_SUITE_P(AloneAndInPairs,
                          SavedEffects,
                          testing::ValuesIn(aloneAndInPairs()),
                          nameOf);
+
+INSTANTIATE_TEST_SUITE_P(ManyTogether, SavedEffects, testing::ValuesIn(manyTogether()), nameOf);
 
 std::vector<Effects> withAMap() {
   std::vector<Effects> sets;

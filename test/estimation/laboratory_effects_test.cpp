@@ -8,6 +8,7 @@
 
 #include "estimation/effect_laboratory.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
@@ -217,6 +218,67 @@ TEST(LaboratoryEffects, AreInTheCalibratedDescription) {
   EXPECT_GT(result.calibration->effects[1].stddev, 1e-6);
   const std::string text = renderDescription(result, "c.yaml");
   EXPECT_EQ(renderDescription(parseDescription(text, "c.yaml"), "c.yaml"), text);
+}
+
+std::vector<std::vector<std::string>> severalStrengths() {
+  const std::vector<std::string> all = {
+      "strength_scale", "torque_curve", "pole_gains", "coil_gains"};
+  std::vector<std::vector<std::string>> sets;
+  for (unsigned chosen = 0; chosen < (1U << all.size()); ++chosen) {
+    std::vector<std::string> set;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      if (((chosen >> n) & 1U) != 0U) {
+        set.push_back(all[n]);
+      }
+    }
+    if (set.size() > 1) {
+      sets.push_back(set);
+    }
+  }
+  return sets;
+}
+
+// All of them tell how strong the machine is: that they could not be told apart was their own
+// doing.
+TEST(LaboratoryEffects, ThatTellStrengthAreIdentifiedTogether) {
+  for (const std::vector<std::string>& effects : severalStrengths()) {
+    scenarios::Generator generator(6);
+    Actuator made = madeUnit(generator);
+    CalibrationConfig config;
+    for (const std::string& effect : effects) {
+      config.effects[effect] = true;
+      if (effect == "torque_curve") {
+        made.torque_curve->coefficients[1] *= 1.01;
+        made.torque_curve->coefficients[3] *= 1.01;
+      }
+      for (PoleAxis& pole : made.poles) {
+        pole.gain *= effect == "pole_gains" ? 1.0 + scenarios::uniformNoise(0.02, generator).x()
+                     : effect == "strength_scale" ? 0.97
+                                                  : 1.0;
+      }
+      for (CoilAxis& coil : made.coils) {
+        coil.gain *=
+            effect == "coil_gains" ? 1.0 + scenarios::uniformNoise(0.02, generator).x() : 1.0;
+      }
+    }
+    CalibrationSession session({scenarios::paperNominal()}, sessionIn({}, made, generator), config);
+    session.run({Cycle::kJoint});
+    session.run({Cycle::kPoles, 0});
+    const CycleReport& report = session.run({Cycle::kRefine});
+    ASSERT_TRUE(report.success) << describe(config.effects) << ": " << report.message;
+    for (const ParameterEstimate& estimate : report.estimates) {
+      EXPECT_TRUE(estimate.observable) << describe(config.effects) << ": " << estimate.name;
+    }
+    EXPECT_LT(report.reduced_chi_square, 1.3) << describe(config.effects);
+    // The product of all is that of the machine.
+    const Actuator found = session.actuator();
+    const double angle = 10.0 * kOneDegree;
+    const double strength =
+        TorqueCurve(*found.torque_curve).value(angle) * found.poles[3].gain * found.coils[5].gain;
+    const double truth =
+        TorqueCurve(*made.torque_curve).value(angle) * made.poles[3].gain * made.coils[5].gain;
+    EXPECT_NEAR(strength / truth, 1.0, 3e-3) << describe(config.effects);
+  }
 }
 
 TEST(LaboratoryEffects, ShapesOfTheTorqueCurveAreAsHighAsItsPeak) {

@@ -27,6 +27,11 @@ class EffectSelection {
   const std::vector<std::size_t>& harmonicJoints() const { return harmonic_joints_; }
   void setHarmonicJoints(std::vector<std::size_t> joints) { harmonic_joints_ = std::move(joints); }
 
+  /// Whether each effect is asked for by itself. Else they are modelled together, and where several
+  /// tell how strong poles and coils are, some are relative to others.
+  bool isOneByOne() const { return is_one_by_one_; }
+  void setOneByOne() { is_one_by_one_ = true; }
+
   const std::map<std::string, bool>& all() const { return modelled_; }
   const std::map<std::string, double>& stddevs() const { return stddevs_; }
 
@@ -34,6 +39,7 @@ class EffectSelection {
   std::map<std::string, bool> modelled_;
   std::map<std::string, double> stddevs_;
   std::vector<std::size_t> harmonic_joints_ = {0, 1, 2};
+  bool is_one_by_one_ = false;
 };
 
 }  // namespace sac

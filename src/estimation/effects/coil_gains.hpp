@@ -3,11 +3,12 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
+#include "strength_reference.hpp"
 
 namespace sac::effects {
 
-/// Relative change of the strength of each coil. Where pole gains or the common scale are modelled,
-/// the first coil has none: it is the reference of strength.
+/// Relative change of the strength of each coil. Where another effect tells how strong all are, the
+/// first coil has none: it is the reference of strength.
 class CoilGains final : public LaboratoryEffect {
  public:
   static constexpr auto kName = "coil_gains";
@@ -16,8 +17,8 @@ class CoilGains final : public LaboratoryEffect {
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
 
   CoilGains(const Actuator& nominal, const EffectSelection& selection)
-      : LaboratoryEffect(gainNames(nominal, firstCoil(selection)), 1.0),
-        first_coil_(firstCoil(selection)) {}
+      : LaboratoryEffect(gainNames(nominal, firstCoil(nominal, selection)), 1.0),
+        first_coil_(firstCoil(nominal, selection)) {}
 
   bool isToldBy(Eigen::Index n, const std::vector<bool>& excited) const override {
     return excited[first_coil_ + static_cast<std::size_t>(n)];
@@ -32,8 +33,8 @@ class CoilGains final : public LaboratoryEffect {
   }
 
  private:
-  static std::size_t firstCoil(const EffectSelection& selection) {
-    return selection.has("pole_gains") || selection.has("strength_scale") ? 1 : 0;
+  static std::size_t firstCoil(const Actuator& nominal, const EffectSelection& selection) {
+    return hasStrengthOfPoles(nominal, selection) ? 1 : 0;
   }
   static std::vector<std::string> gainNames(const Actuator& nominal, std::size_t first_coil) {
     std::vector<std::string> names;

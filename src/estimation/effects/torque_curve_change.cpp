@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "strength_reference.hpp"
 
 namespace sac::effects {
 namespace {
@@ -15,9 +16,22 @@ std::size_t shapeCount(const TorqueCurveDescription& curve) {
                              : std::max(kOfTable, curve.coefficients.size());
 }
 
-std::vector<std::string> shapeNames(const Actuator& nominal) {
+/// Numbers of the polynomials that make a change. Beside a scale there is no constant one, or the
+/// curve times a number would be a change; but one whose uncertainty is stated is known.
+std::vector<std::size_t> shapeNumbers(const Actuator& nominal, const EffectSelection& selection) {
+  const bool is_relative =
+      hasStrengthScale(selection) && relativeTableStddev(nominal.torque_curve->table) == 0.0;
+  std::vector<std::size_t> numbers;
+  for (std::size_t n = is_relative ? 1 : 0; n < shapeCount(*nominal.torque_curve); ++n) {
+    numbers.push_back(n);
+  }
+  return numbers;
+}
+
+std::vector<std::string> shapeNames(const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;
-  for (std::size_t n = 0; n < shapeCount(*nominal.torque_curve); ++n) {
+  names.reserve(numbers.size());
+  for (const std::size_t n : numbers) {
     names.push_back("torque_curve/t" + std::to_string(n));
   }
   return names;
@@ -55,12 +69,13 @@ Eigen::MatrixXd chebyshevShapes(const TorqueCurveDescription& curve) {
 
 }  // namespace
 
-TorqueCurveChange::TorqueCurveChange(const Actuator& nominal, const EffectSelection& /*selection*/)
-    : LaboratoryEffect(shapeNames(nominal), 1.0),
-      shapes_(chebyshevShapes(*nominal.torque_curve)),
+TorqueCurveChange::TorqueCurveChange(const Actuator& nominal, const EffectSelection& selection)
+    : LaboratoryEffect(shapeNames(shapeNumbers(nominal, selection)), 1.0),
+      shapes_(chebyshevShapes(*nominal.torque_curve)(Eigen::all, shapeNumbers(nominal, selection))),
       // Each shape has a mean square of one half over the range.
-      prior_stddev_(relativeTableStddev(nominal.torque_curve->table) *
-                    std::sqrt(2.0 / static_cast<double>(shapes_.cols()))) {
+      prior_stddev_(
+          relativeTableStddev(nominal.torque_curve->table) *
+          std::sqrt(2.0 / static_cast<double>(std::max<Eigen::Index>(shapes_.cols(), 1)))) {
   for (Eigen::Index n = 0; n < shapes_.cols(); ++n) {
     TorqueCurveDescription single = *nominal.torque_curve;
     const Eigen::VectorXd shape = shapes_.col(n);
