@@ -82,6 +82,22 @@ std::optional<double> heldOutError(const CalibrationSession& session) {
                          : std::optional(std::sqrt(sum / static_cast<double>(count)));
 }
 
+/// Effects with coordinates that a refinement leaves open.
+std::vector<std::string> notTold(const ParameterSpace& space, const CycleReport& refined) {
+  std::vector<std::string> effects;
+  for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
+    const bool is_open = std::any_of(
+        refined.estimates.begin(), refined.estimates.end(), [&](const ParameterEstimate& one) {
+          return !one.observable && one.name == space.effects().name(e);
+        });
+    const std::string& effect = space.effects().at(e).name;
+    if (is_open && std::find(effects.begin(), effects.end(), effect) == effects.end()) {
+      effects.push_back(effect);
+    }
+  }
+  return effects;
+}
+
 ModelFit fitWith(const std::string& name,
                  const CalibratedDescription& start,
                  const std::vector<Sample>& samples,
@@ -105,6 +121,7 @@ ModelFit fitWith(const std::string& name,
   ModelFit fit;
   fit.effects = name;
   fit.converged = refined.success;
+  fit.not_told = notTold(session.model().space(), refined);
   fit.parameters = static_cast<std::size_t>(std::count_if(
       refined.estimates.begin(), refined.estimates.end(), [](const ParameterEstimate& estimate) {
         return estimate.observable;
@@ -151,6 +168,18 @@ const ModelFit& bestOf(const std::vector<ModelFit>& fits) {
       });
 }
 
+namespace {
+
+std::string notToldInWords(const std::vector<std::string>& effects) {
+  std::string names;
+  for (const std::string& effect : effects) {
+    names += (names.empty() ? "" : ", ") + effect;
+  }
+  return names.empty() ? "" : "  (the samples cannot tell " + names + ")";
+}
+
+}  // namespace
+
 std::vector<std::string> describe(const std::vector<ModelFit>& fits) {
   constexpr double kMilli = 1e3;
   std::vector<std::string> lines;
@@ -165,7 +194,7 @@ std::vector<std::string> describe(const std::vector<ModelFit>& fits) {
                fit.bic,
                predicted.c_str(),
                &fit == &bestOf(fits) ? "  <- best" : "",
-               fit.converged ? "" : "  (not converged)"));
+               fit.converged ? notToldInWords(fit.not_told).c_str() : "  (not converged)"));
   }
   return lines;
 }

@@ -62,6 +62,23 @@ TEST(ModelChoice, LeavesEachEffectOutInTurn) {
   EXPECT_GT(fits[2].bic, fits[1].bic + 10.0);
 }
 
+// What the samples cannot tell stays at zero: its error is in the misfit of the comparison.
+TEST(ModelChoice, TellsWhatTheSamplesCannotTell) {
+  const std::vector<ModelFit> fits =
+      compareEffects({scenarios::paperNominal()},
+                     biasedSession(0.0),
+                     modelling({"torque_bias", "tracker_registration"}));
+  ASSERT_EQ(fits.size(), 4U);
+  EXPECT_TRUE(fits[0].not_told.empty());
+  EXPECT_EQ(fits[1].not_told, std::vector<std::string>{"tracker_registration"});
+  EXPECT_EQ(fits[2].not_told, std::vector<std::string>{"tracker_registration"});
+  EXPECT_TRUE(fits[3].not_told.empty());
+  const std::vector<std::string> lines = describe(fits);
+  EXPECT_NE(lines[1].find("(the samples cannot tell tracker_registration)"), std::string::npos)
+      << lines[1];
+  EXPECT_EQ(lines[3].find("cannot tell"), std::string::npos) << lines[3];
+}
+
 // A joint that reads wrong by twice its harmonics; a tilt sensor that is sound.
 TEST(ModelChoice, PredictsRegionsThatItHasNotSeen) {
   Actuator truth = scenarios::paperTruth();

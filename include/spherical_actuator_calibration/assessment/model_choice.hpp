@@ -16,6 +16,9 @@ struct ModelFit {
   std::string effects;     ///< for people: "none", "all", "without torque_bias"
   bool converged = false;  ///< the refinement found a solution; else what follows is of the last
                            ///< point that it reached
+  /// Effects of which the samples leave something open: that stays at zero, and its error is in the
+  /// misfit, where the report of a refinement counts it as uncertainty.
+  std::vector<std::string> not_told;
   std::size_t parameters = 0;  ///< estimated
   std::size_t values = 0;      ///< measured, three per observation
   double chi_square = 0.0;     ///< of all observations, outliers included
