@@ -1,43 +1,32 @@
 #include "pattern_bound.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "pair_form.hpp"
 
 namespace sac {
 namespace {
 
-/// tr(J_a G J_bᵀ), from H = G J_bᵀ.
-double traceOf(const WhitenedObservation& a, const Eigen::Matrix<double, Eigen::Dynamic, 3>& H) {
-  double trace = 0.0;
-  for (std::size_t k = 0; k < a.columns.size(); ++k) {
-    trace += a.jacobian.col(static_cast<Eigen::Index>(k)).dot(H.row(a.columns[k]));
-  }
-  return trace;
-}
-
-/// tr(J_a G J_bᵀ) of all pairs of terms.
-Eigen::MatrixXd coilForm(const PoseCandidate& candidate, const Eigen::MatrixXd& sensitivity) {
-  std::vector<const WhitenedObservation*> terms;
+/// All that a visit may observe: terms of coils, what is unexcited, the orientation.
+std::vector<const WhitenedObservation*> observationsOf(const PoseCandidate& candidate) {
+  std::vector<const WhitenedObservation*> observations;
   for (const WhitenedObservation& term : candidate.terms) {
-    terms.push_back(&term);
+    observations.push_back(&term);
   }
   if (candidate.unexcited) {
-    terms.push_back(&*candidate.unexcited);
+    observations.push_back(&*candidate.unexcited);
   }
-  const auto count = static_cast<Eigen::Index>(terms.size());
-  Eigen::MatrixXd form(count, count);
-  for (Eigen::Index b = 0; b < count; ++b) {
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> H =
-        terms[static_cast<std::size_t>(b)]->timesTransposed(sensitivity);
-    for (Eigen::Index a = 0; a <= b; ++a) {
-      form(a, b) = traceOf(*terms[static_cast<std::size_t>(a)], H);
-      form(b, a) = form(a, b);
-    }
+  if (candidate.tracked) {
+    observations.push_back(&*candidate.tracked);
   }
-  return form;
+  return observations;
 }
 
 /// Branch and bound over the coils of a pattern.
@@ -94,18 +83,23 @@ class FormMaximum {
   }
 
   /// At most, with `open` coils from order_[next] on.
-  double reachable(std::size_t next, std::size_t open, double value) const {
-    std::vector<double> promises;
-    for (std::size_t n = next; n < order_.size(); ++n) {
-      promises.push_back(open == 0 ? 0.0 : promise(order_[n], open));
+  double reachable(std::size_t next, std::size_t open, double value) {
+    const std::size_t count = std::min(open, order_.size() - next);
+    if (count == 0) {
+      return value;
     }
-    const std::size_t count = std::min(open, promises.size());
-    std::partial_sort(promises.begin(),
-                      promises.begin() + static_cast<std::ptrdiff_t>(count),
-                      promises.end(),
-                      std::greater<>());
-    return std::accumulate(
-        promises.begin(), promises.begin() + static_cast<std::ptrdiff_t>(count), value);
+    // The largest ones, descending.
+    most_promising_.assign(count, -std::numeric_limits<double>::infinity());
+    for (std::size_t n = next; n < order_.size(); ++n) {
+      double one = promise(order_[n], open);
+      for (std::size_t k = count; k-- > 0 && one > most_promising_[k];) {
+        if (k + 1 < count) {
+          most_promising_[k + 1] = most_promising_[k];
+        }
+        most_promising_[k] = one;
+      }
+    }
+    return std::accumulate(most_promising_.begin(), most_promising_.end(), value);
   }
 
   void descend(std::size_t next, std::size_t open, double value) {
@@ -137,6 +131,7 @@ class FormMaximum {
   std::vector<Eigen::Index> order_;
   Eigen::VectorXd pull_;  ///< Σ_i s_i Q_ij of those chosen
   std::vector<std::vector<double>> together_;
+  std::vector<double> most_promising_;  ///< storage that is reused
   std::size_t branches_ = 0;
 };
 
@@ -159,20 +154,9 @@ class ErrorElimination {
 
   const Eigen::MatrixXd& elimination() const { return L_; }
 
-  /// (1, −L)ᵀ G (1, −L), so that J G Jᵀ of all columns is (J − D L) G (J − D L)ᵀ.
-  Eigen::MatrixXd augmented(const Eigen::MatrixXd& G) const {
-    Eigen::MatrixXd result(count_ + kPoseErrors, count_ + kPoseErrors);
-    const Eigen::MatrixXd L_G = L_ * G;
-    result.topLeftCorner(count_, count_) = G;
-    result.bottomLeftCorner(kPoseErrors, count_) = -L_G;
-    result.topRightCorner(count_, kPoseErrors) = -L_G.transpose();
-    result.bottomRightCorner(kPoseErrors, kPoseErrors) = L_G * L_.transpose();
-    return result;
-  }
-
   /// One more pattern of the mixture, of which all have the same share of the torques.
   void take(const TermPattern& pattern) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kPoseErrors, count_ + kPoseErrors);
+    Eigen::Matrix3Xd rows = Eigen::Matrix3Xd::Zero(kPoseErrors, count_ + kPoseErrors);
     addErrorRows(patternObservation(candidate_, pattern), rows);
     ++taken_;
     torques_ += (rows - torques_) / static_cast<double>(taken_);
@@ -186,7 +170,7 @@ class ErrorElimination {
 
  private:
   /// Adds DᵀJ of all columns.
-  void addErrorRows(const WhitenedObservation& observation, Eigen::MatrixXd& rows) const {
+  void addErrorRows(const WhitenedObservation& observation, Eigen::Matrix3Xd& rows) const {
     for (std::size_t a = 0; a < observation.columns.size(); ++a) {
       const Eigen::Index row = observation.columns[a] - count_;
       for (std::size_t b = 0; row >= 0 && b < observation.columns.size(); ++b) {
@@ -202,30 +186,82 @@ class ErrorElimination {
   Eigen::Index count_;
   bool is_needed_ = false;
   Eigen::MatrixXd L_;
-  Eigen::MatrixXd torques_;  ///< DᵀJ of one, mean
+  Eigen::Matrix3Xd torques_;  ///< DᵀJ of one, mean
   std::size_t taken_ = 0;
 };
 
-/// The largest sensitivity of a visit with one elimination, by as many of one pattern.
-PatternMaximum atElimination(const DesignTask& task,
-                             const PoseCandidate& candidate,
-                             const Eigen::MatrixXd& augmented,
-                             double enough) {
-  double beside = augmented.bottomRightCorner<kPoseErrors, kPoseErrors>().trace();
-  if (candidate.tracked) {
-    beside += traceOf(*candidate.tracked, candidate.tracked->timesTransposed(augmented));
+/// Largest sensitivities of one candidate's visits, each with another elimination, by as many of
+/// one pattern.
+class VisitBound {
+ public:
+  /// Keeps references to all.
+  VisitBound(const DesignTask& task, const PoseCandidate& candidate, const Eigen::MatrixXd& G)
+      : task_(task), candidate_(candidate), G_(G), observations_(observationsOf(candidate)) {}
+
+  PatternMaximum at(const Eigen::MatrixXd& L, double enough) {
+    Eliminated eliminated;
+    eliminated.G_L.resize(G_.rows(), kPoseErrors);
+    for (Eigen::Index k = 0; k < kPoseErrors; ++k) {
+      eliminated.G_L.col(k).noalias() = G_ * L.row(k).transpose();  // quicker than all at once
+    }
+    eliminated.L_G_L = L * eliminated.G_L;
+    if (!form_) {
+      if (reachable(eliminated) <= enough) {
+        return {enough, {}};
+      }
+      form_.emplace(observations_, G_);
+    }
+    return largest(form_->eliminated(eliminated), eliminated.L_G_L.trace(), enough);
   }
-  const std::size_t coils = candidate.terms.size();
-  if (coils == 0) {
-    return {std::max(enough, beside), {}};
+
+ private:
+  /// A bound that is found quickly: two coils together tell at most the mean of their own, as the
+  /// form is positive semidefinite.
+  double reachable(const Eliminated& eliminated) const {
+    double beside = eliminated.L_G_L.trace();
+    double root = 0.0;
+    std::vector<double> roots;
+    for (std::size_t n = 0; n < observations_.size(); ++n) {
+      const double own = ownForm(*observations_[n], G_, eliminated);
+      if (n < candidate_.terms.size()) {
+        roots.push_back(std::sqrt(std::max(0.0, own)));
+      } else if (candidate_.tracked && n + 1 == observations_.size()) {
+        beside += own;
+      } else {
+        root = std::sqrt(std::max(0.0, own));
+      }
+    }
+    std::sort(roots.begin(), roots.end(), std::greater<>());
+    for (std::size_t n = 0; n < std::min(task_.coils_per_pattern, roots.size()); ++n) {
+      root += roots[n];
+    }
+    return beside + static_cast<double>(task_.patterns_per_pose) * root * root;
   }
-  const auto torques = static_cast<double>(task.patterns_per_pose);
-  const double enough_of_one = std::max(0.0, (enough - beside) / torques);
-  PatternMaximum maximum =
-      largestForm(coilForm(candidate, augmented), coils, task.coils_per_pattern, enough_of_one);
-  maximum.value = std::max(enough, beside + torques * maximum.value);
-  return maximum;
-}
+
+  /// `form`: of all observations; `beside`: what counts whatever is excited.
+  PatternMaximum largest(const Eigen::MatrixXd& form, double beside, double enough) const {
+    if (candidate_.tracked) {
+      beside += form(form.rows() - 1, form.cols() - 1);
+    }
+    const std::size_t coils = candidate_.terms.size();
+    if (coils == 0) {
+      return {std::max(enough, beside), {}};
+    }
+    const auto terms = static_cast<Eigen::Index>(coils + (candidate_.unexcited ? 1 : 0));
+    const auto torques = static_cast<double>(task_.patterns_per_pose);
+    const double enough_of_one = std::max(0.0, (enough - beside) / torques);
+    PatternMaximum maximum = largestForm(
+        form.topLeftCorner(terms, terms), coils, task_.coils_per_pattern, enough_of_one);
+    maximum.value = std::max(enough, beside + torques * maximum.value);
+    return maximum;
+  }
+
+  const DesignTask& task_;
+  const PoseCandidate& candidate_;
+  const Eigen::MatrixXd& G_;
+  std::vector<const WhitenedObservation*> observations_;
+  std::optional<PairForm> form_;
+};
 
 }  // namespace
 
@@ -251,11 +287,11 @@ VisitMaximum visitSensitivity(const DesignTask& task,
   constexpr int kRounds = 4;
   VisitMaximum best;
   ErrorElimination errors(task, candidate, elimination);
+  VisitBound bound(task, candidate, sensitivity);
   std::vector<TermPattern> tried;
   const int rounds = errors.isNeeded() ? kRounds : 1;
   for (int round = 0; round < rounds; ++round) {
-    const PatternMaximum one =
-        atElimination(task, candidate, errors.augmented(sensitivity), enough);
+    const PatternMaximum one = bound.at(errors.elimination(), enough);
     if (round == 0 || one.value < best.value) {
       best.value = one.value;
       elimination = errors.elimination();

@@ -53,6 +53,20 @@ std::string excitationsInWords(const std::vector<CoilPattern>& patterns) {
          enumerated(words) + (words.size() == 1 ? " excited" : " excited in turn");
 }
 
+/// How far a plan may be from the best one, by a bound that no plan is below.
+std::string distanceInWords(double stddev, double bound) {
+  constexpr double kNear = 1.1;  // a larger ratio says little: the bound may be too low
+  if (stddev > kNear * bound) {
+    return format(
+        " No plan of as many poses and torques could reach less than %.3g mrad; whether any comes "
+        "nearer to that is not known.",
+        1e3 * bound);
+  }
+  return format(
+      " That is within %.1f %% of what any plan of as many poses and torques could reach.",
+      std::max(0.0, 100.0 * (stddev / bound - 1.0)));
+}
+
 /// 1 pose, 2 poses.
 std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -138,9 +152,7 @@ std::string planSentence(const PosePlan& plan, double wanted_stddev) {
       plan.worst_parameter.c_str(),
       1e3 * plan.worst_stddev);
   if (plan.stddev_bound) {
-    text +=
-        format(" That is within %.1f %% of what any plan of as many poses and torques could reach.",
-               std::max(0.0, 100.0 * (plan.worst_stddev / *plan.stddev_bound - 1.0)));
+    text += distanceInWords(plan.worst_stddev, *plan.stddev_bound);
   }
   if (wanted_stddev > 0.0 && !plan.reached_wanted) {
     text += format(

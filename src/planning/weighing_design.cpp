@@ -212,18 +212,27 @@ bool WeighingDesign::exciteElsewhere(std::size_t coil) {
 
 std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covariance) {
   const Eigen::MatrixXd sensitivity = sensitivityOf(task_, covariance, weightsAt(covariance));
-  std::vector<std::pair<double, std::size_t>> ranks;
+  // The best ones so far, by falling value.
+  std::vector<std::pair<double, std::size_t>> best;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    if (keepsDistance(c)) {
-      const double value =
-          visitSensitivity(task_, candidates_[c], sensitivity, 0.0, eliminations_[c]).value;
-      ranks.emplace_back(-value, c);
+    if (!keepsDistance(c)) {
+      continue;
     }
+    const double enough = best.size() < kPromising ? 0.0 : best.back().first;
+    const double value =
+        visitSensitivity(task_, candidates_[c], sensitivity, enough, eliminations_[c]).value;
+    if (best.size() == kPromising && value <= enough) {
+      continue;
+    }
+    const auto place = std::find_if(
+        best.begin(), best.end(), [&](const auto& other) { return other.first < value; });
+    best.emplace(place, value, c);
+    best.resize(std::min(best.size(), kPromising));
   }
-  std::sort(ranks.begin(), ranks.end());
   std::vector<std::size_t> result;
-  for (std::size_t n = 0; n < std::min(kPromising, ranks.size()); ++n) {
-    result.push_back(ranks[n].second);
+  result.reserve(best.size());
+  for (const auto& [value, candidate] : best) {
+    result.push_back(candidate);
   }
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
+#include "spherical_actuator_calibration/planning/pose_plan.hpp"
 
 namespace sac {
 namespace {
@@ -39,6 +40,22 @@ TEST(PlanGuidance, LeadsFromPoseToPose) {
             "0.00 rad (0, 17, 0 deg) and capture.");
   samples.push_back(sampleAt(second, {0.0, 0.0, 0.0}));
   EXPECT_EQ(planStep(plan, samples, kThreshold), "");
+}
+
+// A bound that is far below may be the bound's fault: no plan was shown to be better.
+TEST(PlanGuidance, CallsADistanceToTheBoundByThatNameOnlyWhereItIsSmall) {
+  PosePlan plan;
+  plan.poses.resize(2);
+  plan.worst_stddev = 0.206e-3;
+  plan.stddev_bound = 0.2e-3;
+  EXPECT_NE(planSentence(plan, 0.0).find("within 3.0 % of what any plan"), std::string::npos)
+      << planSentence(plan, 0.0);
+  plan.worst_stddev = 0.44e-3;
+  const std::string far = planSentence(plan, 0.0);
+  EXPECT_EQ(far.find("within"), std::string::npos) << far;
+  EXPECT_NE(far.find("could reach less than 0.2 mrad; whether any comes nearer to that is not"),
+            std::string::npos)
+      << far;
 }
 
 TEST(PlanGuidance, TellsSignsOfPatterns) {
