@@ -37,12 +37,32 @@ MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptio
   return limited;
 }
 
+const char* nameOf(CurrentLimit limit) {
+  switch (limit) {
+    case CurrentLimit::kCoil:
+      return "current_limit, of one coil";
+    case CurrentLimit::kTotal:
+      return "total_current_limit, of all coils";
+    case CurrentLimit::kPower:
+      return "power/limit, of all coils";
+    case CurrentLimit::kNone:
+      break;
+  }
+  return "none";
+}
+
 std::string singularity(const AllocatedCurrents& allocated) {
   return format("the coils make no torque in some direction here (%.2g N.m/A)",
                 allocated.smallest_singular_value);
 }
 
 }  // namespace
+
+std::string inWords(const TorqueCut& cut) {
+  return format("the currents are at their limit (%s): down to %.0f %% of the wanted torque",
+                nameOf(cut.limit),
+                100.0 * cut.share);
+}
 
 OrientationController::OrientationController(const Actuator& design,
                                              const OrientationControllerOptions& options)
@@ -159,6 +179,9 @@ void OrientationController::enable(Stamp now) {
   reference_.reset(R_stator_rotor);
   last_update_.reset();
   stop_reason_.clear();
+  share_ = 1.0;
+  limit_ = CurrentLimit::kNone;
+  cut_ = {};
   state_ = ControlState::kActive;
 }
 
@@ -195,7 +218,9 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
       is_on_its_way ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
                     : options_.largest_tracking_error;
   if (tracking_error_ > largest_error) {
-    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_));
+    const std::string reason =
+        limit_ == CurrentLimit::kNone ? "" : "; " + inWords({share_, limit_});
+    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) + reason);
     return currents_;
   }
   observe(now, rotor);
@@ -275,9 +300,12 @@ void OrientationController::allocate(const RotorState& rotor, const DesiredMotio
   }
   share_ = allocated.share;
   currents_ = allocated.currents;
-  const CurrentLimit limit = limitTotal();
+  limit_ = share_ < 1.0 ? CurrentLimit::kCoil : CurrentLimit::kNone;
+  if (const CurrentLimit of_sum = limitTotal(); of_sum != CurrentLimit::kNone) {
+    limit_ = of_sum;
+  }
   if (share_ < cut_.share) {
-    cut_ = {share_, limit == CurrentLimit::kNone ? CurrentLimit::kCoil : limit};
+    cut_ = {share_, limit_};
   }
   if (is_in_motion) {
     motion_->noteTorqueShare(share_);

@@ -302,6 +302,16 @@ TEST_F(OrientationControllerTest, TellsTheLeastShareOfTheTorqueAndTheLimitThatCu
   EXPECT_EQ(cutBy(), CurrentLimit::kCoil);
 }
 
+// Half of what the load needs: that the rotor does not follow is no riddle.
+TEST_F(OrientationControllerTest, TellsTheLimitWhereTheRotorDoesNotFollowForIt) {
+  options_.square_current_limit = 1e-4;
+  restart();
+  start(truth_);
+  run(1.0);
+  expectStopped("does not follow");
+  expectStopped("at their limit (power/limit, of all coils): down to");
+}
+
 TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
   start(truth_);
   EXPECT_GT(run(0.2), 0.001);

@@ -35,6 +35,9 @@ struct TorqueCut {
   CurrentLimit limit = CurrentLimit::kNone;
 };
 
+/// "the currents are at their limit (power/limit, of all coils): down to 40 % of the wanted torque"
+std::string inWords(const TorqueCut& cut);
+
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
 /// joint sensors, or without joints from the tracker, torques and currents by the parameters in
 /// force. It stops by itself, with all currents zero, when readings are too old, outside the
@@ -142,6 +145,7 @@ class OrientationController {
   std::string stop_reason_;
   Eigen::VectorXd currents_;
   double share_ = 1.0;
+  CurrentLimit limit_ = CurrentLimit::kNone;  ///< of the last cycle
   TorqueCut cut_;
   double tracking_error_ = 0.0;
   std::optional<MotionRun> motion_;

@@ -8,7 +8,6 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -25,26 +24,6 @@ constexpr double kStatusPeriod = 0.1;  // [s]
 constexpr double kWatchRate = 200.0;
 /// Between two commands [s].
 constexpr double kLeastPeriod = 2e-4;
-
-const char* nameOf(CurrentLimit limit) {
-  switch (limit) {
-    case CurrentLimit::kCoil:
-      return "current_limit, of one coil";
-    case CurrentLimit::kTotal:
-      return "total_current_limit, of all coils";
-    case CurrentLimit::kPower:
-      return "power/limit, of all coils";
-    case CurrentLimit::kNone:
-      break;
-  }
-  return "none";
-}
-
-std::string inWords(const TorqueCut& cut) {
-  return format("the currents are at their limit (%s): down to %.0f %% of the wanted torque",
-                nameOf(cut.limit),
-                100.0 * cut.share);
-}
 
 }  // namespace
 
