@@ -24,6 +24,32 @@ void requireFinite(const std::vector<Eigen::Vector3d>& points, const char* key) 
   }
 }
 
+/// 2 sin(Δq/2) of two readings of a joint: their distance, a whole turn apart.
+double chordBetween(double a, double b) {
+  return 2.0 * std::abs(std::sin(0.5 * (a - b)));
+}
+
+/// Share of the map that counts at a reading: 1 where each joint's reading is near to some of the
+/// points' (a sixth of their range), and falling to 0 within kFalloff beyond. How far what was seen
+/// goes on, points tell little of: their lengths come from within.
+double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& reading) {
+  constexpr double kFalloff = 0.3;  // [rad]
+  constexpr double kPartOfRange = 6.0;
+  constexpr double kWholeTurn = 2.0;    // as a chord
+  constexpr double kLeastReach = 0.05;  // [rad]
+  double square = 0.0;
+  for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    const double range = std::min(kWholeTurn, points.row(k).maxCoeff() - points.row(k).minCoeff());
+    double nearest = kWholeTurn;
+    for (Eigen::Index n = 0; n < points.cols(); ++n) {
+      nearest = std::min(nearest, chordBetween(points(k, n), reading[k]));
+    }
+    const double beyond = std::max(0.0, nearest - std::max(kLeastReach, range / kPartOfRange));
+    square += beyond * beyond / (kFalloff * kFalloff);
+  }
+  return square < 1.0 ? (1.0 - square) * (1.0 - square) : 0.0;
+}
+
 }  // namespace
 
 void validate(const OrientationMapDescription& description) {
@@ -89,18 +115,20 @@ Eigen::VectorXd OrientationMap::kernel(const Eigen::Vector3d& reading) const {
 }
 
 Eigen::Vector3d OrientationMap::mean(const Eigen::Vector3d& reading) const {
-  return weights_.transpose() * kernel(reading);
+  return shareAt(readings_, reading) * (weights_.transpose() * kernel(reading));
 }
 
 OrientationMap::Uncertainty OrientationMap::uncertainty(const Eigen::Vector3d& reading) const {
   const Eigen::VectorXd k = kernel(reading);
+  const double share = shareAt(readings_, reading);
   Uncertainty result;
   double prior = 0.0;
   for (std::size_t c = 0; c < factor_.size(); ++c) {
     const auto component = static_cast<Eigen::Index>(c);
     const double square = description_.amplitude[c] * description_.amplitude[c];
     const double explained = std::clamp(factor_[c].matrixL().solve(k).squaredNorm(), 0.0, 1.0);
-    result.variance[component] = square * (1.0 - explained);
+    // Of the difference between what is there and a share of what the points say.
+    result.variance[component] = square * (1.0 - explained * share * (2.0 - share));
     result.noise[component] = description_.noise[c] * description_.noise[c];
     prior += square;
   }

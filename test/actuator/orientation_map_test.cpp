@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/actuator/orientation_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -52,6 +53,34 @@ TEST(OrientationMap, IsTheGaussianProcessGivenItsPoints) {
         map.uncertainty(q).variance[component], square - cross.dot(inverse * cross), 1e-6 * square);
     EXPECT_EQ(map.uncertainty(q).noise[component], std::pow(description.noise[c], 2));
   }
+}
+
+// A length that was found within the points' range says nothing of how far it goes on beyond.
+TEST(OrientationMap, FallsBackToTheAxesBeyondTheRangeOfItsPointsHoweverLongItsLengthsAre) {
+  OrientationMapDescription description = scenarios::orientationMap();
+  description.length = {5.0, 5.0, 5.0};
+  double highest = -1.0;
+  for (const Eigen::Vector3d& reading : description.readings) {
+    highest = std::max(highest, reading[0]);
+  }
+  const OrientationMap map(description);
+  Eigen::Vector3d reading = description.readings.front();
+  double last = map.mean(reading).norm();
+  ASSERT_GT(last, 1e-5);
+  reading[0] = highest + 0.6;
+  EXPECT_EQ(map.mean(reading).norm(), 0.0);
+  const OrientationMap::Uncertainty beyond = map.uncertainty(reading);
+  EXPECT_EQ(beyond.support, 0.0);
+  EXPECT_NEAR(beyond.variance[1], std::pow(description.amplitude[1], 2), 1e-15);
+  // Without a step on the way.
+  last = 0.0;
+  for (double q = highest + 0.6; q > highest; q -= 1e-3) {
+    reading[0] = q;
+    const double now = map.mean(reading).norm();
+    EXPECT_LT(std::abs(now - last), 1e-2 * description.amplitude[0]) << q;
+    last = now;
+  }
+  EXPECT_GT(map.uncertainty(reading).support, kLeastMapSupport);
 }
 
 TEST(OrientationMap, TellsNothingAwayFromItsPoints) {

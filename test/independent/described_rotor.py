@@ -38,16 +38,26 @@ class DescribedRotor:
         root = np.sqrt(5.0 * np.sum(chords**2, axis=1))
         return (1.0 + root + root**2 / 3.0) * np.exp(-root)
 
+    def share(self, q):
+        """Of the map: each joint within a sixth of the points' range of one of them, or falling over 0.3 rad."""
+        beyond = 0.0
+        for k in range(3):
+            reach = max(0.05, min(2.0, np.ptp(self.points[:, k])) / 6.0)
+            nearest = np.min(np.abs(2.0 * np.sin(0.5 * (self.points[:, k] - q[k]))))
+            beyond += max(0.0, (nearest - reach) / 0.3) ** 2
+        return max(0.0, 1.0 - beyond) ** 2
+
     def unexplained(self, q):
         """Mean, variance of the smooth part and noise of the map's rotation vector."""
         if not self.map:
             return np.zeros((3, 3))
-        k = self.kernel(q)
+        k, share = self.kernel(q), self.share(q)
         rows = []
         for c, (amplitude, noise) in enumerate(zip(self.map["amplitude"], self.map["noise"])):
             inverse = np.linalg.inv(amplitude**2 * self.gram + noise**2 * np.eye(len(k)))
             mean = amplitude**2 * k @ inverse @ self.rotations[:, c]
-            rows.append([mean, amplitude**2 - amplitude**4 * k @ inverse @ k, noise**2])
+            explained = amplitude**4 * k @ inverse @ k
+            rows.append([share * mean, amplitude**2 - share * (2.0 - share) * explained, noise**2])
         return np.array(rows).T
 
     def orientation(self, q, change=None):
