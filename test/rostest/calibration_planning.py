@@ -40,7 +40,7 @@ class Planning(unittest.TestCase):
         self.assertTrue(all(not pose.patterns for pose in single.poses))
         answer = self.plan(patterns="weighing", **request)
         self.assertTrue(answer.success, answer.message)
-        self.assertIn("of what any plan", answer.message)
+        self.assertIn("of as many poses and torques could reach", answer.message)
         worst = max(estimate.stddev for estimate in answer.expected)
         self.assertLess(worst, max(estimate.stddev for estimate in single.expected))
         self.assertGreater(answer.stddev_bound, 0.0)
