@@ -72,6 +72,11 @@ def inside(values, value):
     return "inside the spread" if min(values) <= value <= max(values) else "outside the spread"
 
 
+def left_open(observable, sets):
+    """Of sets of which so many show everything."""
+    return f"{sets - observable} of {sets} leave some open" if observable < sets else "all do"
+
+
 def noise_rows(situation, orientations):
     return [row for row in situation["noise"] if row["orientations"] == orientations and "epsilon_2" in row]
 
@@ -175,7 +180,7 @@ def level_2(study, published):
                 f"Situation {number}: random sets that show every parameter",
                 "not told",
                 f"{ours['observable_sets']} of {study['seeds']}",
-                "the others name the poles that they miss" if number == 1 else "",
+                left_open(ours["observable_sets"], study["seeds"]),
             ),
         ]
     share = published["situation_1"]["largest_error_share_with_noise"]

@@ -88,6 +88,8 @@ class PaperStudy(unittest.TestCase):
         self.assertEqual(comparison.method_of(7e-5, 4.1e-5, 1e-6), "nearer to the chord method's")
         self.assertEqual(comparison.method_of(2e-6, 4.1e-5, 1e-6), "nearer to the Newton method's")
         self.assertEqual(comparison.method_of(0.0, 9e-8, 1e-16), "both methods', to the last digit")
+        self.assertEqual(comparison.left_open(157, 200), "43 of 200 leave some open")
+        self.assertEqual(comparison.left_open(200, 200), "all do")
         self.assertEqual(comparison.plotted_as([0.011, 0.027], 6.3e-4), "a mean square, without the root")
         self.assertEqual(comparison.plotted_as([0.011, 0.027], 0.02), "a root mean square")
         self.assertEqual(comparison.plotted_as([0.011, 0.027], 0.1), "neither a mean square of ours nor a root")
