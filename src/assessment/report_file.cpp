@@ -115,6 +115,12 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
   writer.entry(4, "joint_stddev", yamlNumbers(motion.joint_stddev));
   writer.entry(4, "current_stddev", yamlNumber(motion.current_stddev));
   writer.entry(4, "orientation_stddev", yamlNumber(motion.orientation_stddev));
+  if (motion.response) {
+    YamlLine line;
+    line.add("delay", yamlNumber(motion.response->delay))
+        .add("time_constant", yamlNumber(motion.response->lag));
+    writer.entry(4, "commands", line.text());
+  }
   const HeldOutMotion& held_out = motion.held_out;
   writer.entry(4,
                "held_out",

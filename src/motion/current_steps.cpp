@@ -17,6 +17,12 @@ void CurrentSteps::add(const MotionStreams& streams) {
   if (streams.current_stamps.size() < 3) {
     return;
   }
+  if (streams.response) {
+    const auto samples = static_cast<double>(streams.current_stamps.size());
+    told_ += samples * streams.response->delay_stddev * streams.response->delay_stddev;
+    told_samples_ += samples;
+    return;
+  }
   const auto at = [&](Eigen::Index n) { return streams.currents.row(n).cast<double>(); };
   const std::vector<Stamp>& stamps = streams.current_stamps;
   std::vector<double> intervals;
@@ -38,6 +44,12 @@ void CurrentSteps::add(const MotionStreams& streams) {
 }
 
 double CurrentSteps::delayStddev(double noise) const {
+  const double samples = told_samples_ + intervals_;
+  const double sampled = sampledStddev(noise);
+  return samples > 0.0 ? std::sqrt((told_ + intervals_ * sampled * sampled) / samples) : 0.0;
+}
+
+double CurrentSteps::sampledStddev(double noise) const {
   // Samples of less show no steps: the currents are smooth, or they step once an interval.
   constexpr double kLeastBend = 0.1;
   if (!(intervals_ > 0.0)) {

@@ -7,8 +7,8 @@
 namespace sac {
 
 /// How well currents that are sampled tell when they act. What a current does between two samples
-/// nobody knows: where it steps and then lags, its mean over a time is that of samples that are
-/// earlier or later, by up to half an interval.
+/// nobody knows, unless commands tell it (CommandResponse): where it steps and then lags, its mean
+/// over a time is that of samples that are earlier or later, by up to half an interval.
 class CurrentSteps {
  public:
   /// More currents.
@@ -20,6 +20,11 @@ class CurrentSteps {
   double widen(const ParameterSpace& space, double noise, ParameterBelief& belief) const;
 
  private:
+  double sampledStddev(double noise) const;
+
+  double told_ = 0.0;          ///< sum of variances, sample by sample, where commands tell steps
+  double told_samples_ = 0.0;  ///< in it
+  // Of the others.
   double changes_ = 0.0;  ///< sum of squared differences
   double bends_ = 0.0;    ///< of those of differences
   double duration_ = 0.0;

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "spherical_actuator_calibration/motion/motion_streams.hpp"
 
 namespace sac {
 

@@ -345,6 +345,7 @@ void Estimator::summarise() {
   summary.joint_stddev = std::sqrt(factors_.joints) * terms_.noise().joint;
   summary.current_stddev = std::sqrt(factors_.currents) * terms_.noise().current;
   summary.orientation_stddev = terms_.noise().orientation;
+  summary.response = responseOfLongest(terms_.spans());
 }
 
 MotionEstimate Estimator::run() {

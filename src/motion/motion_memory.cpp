@@ -55,6 +55,11 @@ void MotionMemory::add(const OrientationMeasurement& measurement) {
   recorder_.add(measurement);
 }
 
+void MotionMemory::add(const CurrentCommand& command) {
+  take(currentBytes(coils_));
+  recorder_.add(command);
+}
+
 // Windows overlap; what they share counts once. One that is earlier than the last is of another
 // clock.
 void MotionMemory::restore(const std::vector<MotionSlice>& windows) {

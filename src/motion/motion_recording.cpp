@@ -4,9 +4,28 @@
 #include <cmath>
 #include <utility>
 
+#include "command_response.hpp"
 #include "unwrapped_angle.hpp"
 
 namespace sac {
+namespace {
+
+/// Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
+constexpr std::size_t kMost = 1U << 20U;
+
+MotionStreams::Currents matrixOf(const std::vector<float>& currents, std::size_t rows) {
+  const auto count = static_cast<Eigen::Index>(rows);
+  const auto coils = rows == 0 ? 0 : static_cast<Eigen::Index>(currents.size()) / count;
+  return Eigen::Map<const MotionStreams::Currents>(currents.data(), count, coils);
+}
+
+void append(const Eigen::VectorXd& current, std::vector<float>& currents) {
+  for (const double one : current) {
+    currents.push_back(static_cast<float>(one));
+  }
+}
+
+}  // namespace
 
 bool MotionRecorder::isSetBack(Sequence& sequence, Stamp last, Stamp stamp) {
   constexpr double kFar = 1.0;  // [s]
@@ -24,8 +43,6 @@ bool MotionRecorder::isNext(Sequence& sequence,
                             const std::vector<Stamp>& stamps,
                             Stamp stamp,
                             bool is_fine) {
-  // Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
-  constexpr std::size_t kMost = 1U << 20U;
   if (is_fine && !stamps.empty() && isSetBack(sequence, stamps.back(), stamp)) {
     endSpan();
   }
@@ -47,15 +64,26 @@ void MotionRecorder::add(const JointMeasurement& measurement) {
                                 : unwrapped(measurement.position, streams_.joints.back()));
 }
 
+bool MotionRecorder::isCurrent(const Eigen::VectorXd& current) const {
+  return current.size() == static_cast<Eigen::Index>(coils_) && current.allFinite();
+}
+
 void MotionRecorder::add(const CurrentMeasurement& measurement) {
-  const bool is_fine = measurement.current.size() == static_cast<Eigen::Index>(coils_) &&
-                       measurement.current.allFinite();
-  if (!isNext(coil_currents_, streams_.current_stamps, measurement.stamp, is_fine)) {
+  if (!isNext(coil_currents_,
+              streams_.current_stamps,
+              measurement.stamp,
+              isCurrent(measurement.current))) {
     return;
   }
   streams_.current_stamps.push_back(measurement.stamp);
-  for (const double current : measurement.current) {
-    currents_.push_back(static_cast<float>(current));
+  append(measurement.current, currents_);
+}
+
+void MotionRecorder::add(const CurrentCommand& command) {
+  const bool is_later = command_stamps_.empty() || command.stamp > command_stamps_.back();
+  if (is_later && isCurrent(command.current) && command_stamps_.size() < kMost) {
+    command_stamps_.push_back(command.stamp);
+    append(command.current, commands_);
   }
 }
 
@@ -71,13 +99,16 @@ void MotionRecorder::add(const OrientationMeasurement& measurement) {
 
 void MotionRecorder::endSpan() {
   if (!streams_.joints.empty() && !streams_.current_stamps.empty()) {
-    const auto rows = static_cast<Eigen::Index>(streams_.current_stamps.size());
-    streams_.currents = Eigen::Map<decltype(streams_.currents)>(
-        currents_.data(), rows, static_cast<Eigen::Index>(coils_));
+    streams_.currents = matrixOf(currents_, streams_.current_stamps.size());
+    currents_ = {};
+    const CommandStream commands{command_stamps_, matrixOf(commands_, command_stamps_.size())};
+    streams_.response = takeMeans(commands, streams_);
     recording_.spans.push_back(std::move(streams_));
   }
   streams_ = MotionStreams();
   currents_ = {};
+  command_stamps_ = {};
+  commands_ = {};
   for (Sequence* sequence : {&joints_, &orientations_, &coil_currents_}) {
     sequence->earlier.reset();
   }

@@ -150,4 +150,16 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
   return windows;
 }
 
+std::optional<CommandResponse> responseOfLongest(const std::vector<MotionSpan>& spans) {
+  std::optional<CommandResponse> response;
+  std::size_t longest = 0;
+  for (const MotionSpan& span : spans) {
+    if (span.streams->response && span.current_times.size() > longest) {
+      longest = span.current_times.size();
+      response = span.streams->response;
+    }
+  }
+  return response;
+}
+
 }  // namespace sac

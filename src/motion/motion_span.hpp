@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct MotionWindow {
 std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out);
+
+/// How currents follow commands in the span with most currents of those where that is known.
+std::optional<CommandResponse> responseOfLongest(const std::vector<MotionSpan>& spans);
 
 /// Why a window cannot serve; empty: it can.
 std::string refusalOf(const MotionSpan& span,

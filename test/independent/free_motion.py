@@ -44,7 +44,9 @@ class Streams:
     tracker_delay: float = 4e-3  # [s]
     joint_phase: float = 0.0  # [s] of the first stamp
     current_phase: float = 0.0
-
+    has_commands: bool = False
+    command_delay: float = 1.5e-3  # [s] from the stamp of a command to its effect
+    command_jitter: float = 0.0  # [s] standard deviation of the same
 
 def _rotations(vectors):
     """exp of many rotation vectors, n x 3."""
@@ -265,7 +267,7 @@ def _current_at(motion, t):
 
 
 def record(unit, errors, motion, streams, seed):
-    """{joints: (stamps, readings), currents: ..., orientations: (stamps, n x 3 x 3)}"""
+    """{joints: (stamps, readings), currents: ..., orientations: (stamps, n x 3 x 3)}, and commands where there are"""
     rng = np.random.default_rng(seed)
     first, last = 0.005, motion.time[-1] - 0.005
 
@@ -279,6 +281,11 @@ def record(unit, errors, motion, streams, seed):
     I = _current_at(motion, t)
     I = I + rng.normal(0.0, streams.current_stddev, I.shape) if streams.current_stddev else I
     result["currents"] = (t + streams.current_delay, I)
+    if streams.has_commands:
+        changes = np.any(np.diff(motion.setpoint, axis=0) != 0.0, axis=1)
+        n = np.append(0, 1 + np.flatnonzero(changes))
+        t = motion.time[n] - streams.command_delay - rng.normal(0.0, 1.0, len(n)) * streams.command_jitter
+        result["commands"] = (t + streams.current_delay, motion.setpoint[n])
     t = stamps(streams.tracker_rate)
     R = _at(motion, t)
     if streams.tracker_stddev:
@@ -288,9 +295,11 @@ def record(unit, errors, motion, streams, seed):
 
 
 def write_text(path, recording):
-    """One measurement a line: J, C or O, stamp [ns], values (orientations as x y z w)."""
+    """One measurement a line: J, C, U (commands) or O, stamp [ns], values (orientations as x y z w)."""
     rows = []
-    for letter, key in (("J", "joints"), ("C", "currents"), ("O", "orientations")):
+    for letter, key in (("J", "joints"), ("U", "commands"), ("C", "currents"), ("O", "orientations")):
+        if key not in recording:
+            continue
         for t, values in zip(*recording[key]):
             if letter == "O":
                 values = lab.quaternion_xyzw(values)

@@ -20,7 +20,7 @@ class Outcome:
     """What motion_cases prints of one file."""
 
     def __init__(self, lines):
-        self.parameters, self.left_out = {}, {}
+        self.parameters, self.left_out, self.response = {}, {}, None
         rows = []
         for line in lines:
             word, *rest = line.split()
@@ -31,6 +31,8 @@ class Outcome:
                 rows.append([float(value) for value in rest])
             elif word == "left_out":
                 self.left_out[" ".join(rest[1:])] = int(rest[0])
+            elif word == "response":
+                self.response = [float(value) for value in rest]  # delay, lag, what is left of a delay
             elif word == "live":
                 self.live = {"windows": int(rest[0])}
                 self.live.update({rest[n]: float(rest[n + 1]) for n in (1, 3, 5, 7)})

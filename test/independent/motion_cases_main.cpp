@@ -1,8 +1,9 @@
 // motion_cases ACTUATOR.yaml STREAMS.txt...: runs the cycle motion on each file of streams and
 // prints what came out, one line a fact, for programs that know the truth and share no code with
-// this package; last the rows of the covariance of all parameters. A line of a file is J, C or O, a
-// stamp [ns], and values: joint angles, currents, or an orientation as x y z w. With --live the
-// windows are taken as they come, and one more line tells how far that is from all of them at once.
+// this package; last the rows of the covariance of all parameters. A line of a file is J, C, U or
+// O, a stamp [ns], and values: joint angles, currents, commands, or an orientation as x y z w. With
+// --live the windows are taken as they come, and one more line tells how far that is from all of
+// them at once.
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,9 @@ MotionRecording readStreams(const char* path, std::size_t coils) {
       const auto count = static_cast<Eigen::Index>(values.size());
       recorder.add(
           CurrentMeasurement{stamp, Eigen::Map<const Eigen::VectorXd>(values.data(), count)});
+    } else if (kind == 'U') {
+      const auto count = static_cast<Eigen::Index>(values.size());
+      recorder.add(CurrentCommand{stamp, Eigen::Map<const Eigen::VectorXd>(values.data(), count)});
     } else {
       recorder.add(OrientationMeasurement{
           stamp, Eigen::Quaterniond(values[3], values[0], values[1], values[2])});
@@ -174,6 +178,12 @@ void calibrate(const Actuator& nominal,
               summary.held_out.probability);
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
+  }
+  for (const MotionStreams& streams : recording.spans) {
+    if (streams.response) {
+      const CommandResponse& response = *streams.response;
+      std::printf("response %.9g %.9g %.3g\n", response.delay, response.lag, response.delay_stddev);
+    }
   }
   printParameters(model.space(), estimate);
 }

@@ -70,6 +70,19 @@ class Motion(unittest.TestCase):
         self.assertEqual(len(touched), 1)
         self.assertLessEqual(touched[0], 3)
 
+    def test_commands_tell_what_currents_do_between_samples(self):
+        for rate, phase, largest in ((1000.0, 0.0, 1e-5), (1000.0, 0.5e-3, 1e-5), (500.0, 0.0, 1e-5), (200.0, 1e-3, 5e-5)):
+            outcome = calibrate(
+                self.record(current_delay=-0.04, current_rate=rate, joint_rate=rate, current_phase=phase, has_commands=True)
+            )
+            self.check(outcome, 1.6e-4)
+            self.assertAlmostEqual(outcome.response[1], self.machine.lag, delta=5e-5)
+            value, stddev, _ = outcome.parameters["current_delay"]
+            self.assertAlmostEqual(value, -0.04, delta=2.0 * largest)
+            self.assertLess(abs(value + 0.04), 3.0 * stddev)
+            if rate > 1.0 / self.machine.step:
+                self.assertLess(stddev, largest)
+
     def test_windows_as_they_come_tell_what_all_at_once_do(self):
         for streams in ({"current_delay": -0.02}, {"joint_rate": 200.0, "current_rate": 200.0}):
             outcome = calibrate(self.record(**streams), options=["--live"])

@@ -33,4 +33,10 @@ struct CurrentMeasurement {
   Eigen::VectorXd current;
 };
 
+/// Currents that were commanded, in description order (topic coil_command) [A].
+struct CurrentCommand {
+  Stamp stamp = 0;
+  Eigen::VectorXd current;
+};
+
 }  // namespace sac

@@ -21,6 +21,7 @@ class MotionMemory {
   void add(const JointMeasurement& measurement);
   void add(const CurrentMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
+  void add(const CurrentCommand& command);
 
   /// What windows of an earlier memory hold, oldest first.
   void restore(const std::vector<MotionSlice>& windows);

@@ -7,20 +7,9 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/measurement/measurements.hpp"
+#include "spherical_actuator_calibration/motion/motion_streams.hpp"
 
 namespace sac {
-
-/// Streams of one span of time, each with stamps that increase strictly.
-struct MotionStreams {
-  std::vector<Stamp> joint_stamps;
-  /// Readings [rad], without the jumps of a sensor that wraps around.
-  std::vector<Eigen::Vector3d> joints;
-  std::vector<Stamp> current_stamps;
-  /// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
-  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> currents;
-  std::vector<Stamp> orientation_stamps;
-  std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
-};
 
 /// Readings at the begin and at the end of a window.
 struct WindowRange {
@@ -64,6 +53,8 @@ class MotionRecorder {
   void add(const JointMeasurement& measurement);
   void add(const CurrentMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
+  /// What was commanded; need not be known. A command that is out of order is dropped.
+  void add(const CurrentCommand& command);
 
   /// No more measurements of this base of time follow.
   void finish();
@@ -77,6 +68,7 @@ class MotionRecorder {
     std::optional<Stamp> earlier;  ///< the last one, when it was far before the one taken last
   };
 
+  bool isCurrent(const Eigen::VectorXd& current) const;
   bool isNext(Sequence& sequence, const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
   static bool isSetBack(Sequence& sequence, Stamp last, Stamp stamp);
   void endSpan();
@@ -87,6 +79,8 @@ class MotionRecorder {
   Sequence coil_currents_;
   MotionStreams streams_;
   std::vector<float> currents_;
+  std::vector<Stamp> command_stamps_;
+  std::vector<float> commands_;
   MotionRecording recording_;
 };
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/estimation/estimate.hpp"
+#include "spherical_actuator_calibration/motion/motion_streams.hpp"
 
 namespace sac {
 
@@ -44,6 +46,8 @@ struct MotionSummary {
   Eigen::Vector3d joint_stddev = Eigen::Vector3d::Zero();  ///< [rad]
   double current_stddev = 0.0;                             ///< [A]
   double orientation_stddev = 0.0;                         ///< per component [rad]
+  /// How currents follow commands, in the longest span where these tell it.
+  std::optional<CommandResponse> response;
   HeldOutMotion held_out;
   double window_chi_square = 0.0;       ///< reduced, of the windows that served
   double orientation_chi_square = 0.0;  ///< reduced, of means over windows: 1 without drift

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
 
 #include <array>
+#include <string>
 #include <utility>
 
 #include <ros/init.h>
@@ -51,6 +52,9 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
   subscribe<geometry_msgs::QuaternionStamped>(orientations_);
   subscribe<geometry_msgs::Vector3Stamped>(torques_);
   subscribe<msg::CoilCurrents>(currents_);
+  if (has_joints_) {
+    subscribeCommands();
+  }
   receiver_.start();
 }
 
@@ -72,6 +76,18 @@ void MeasurementIntake::subscribe(StreamMonitor& monitor) {
   };
   subscribers_.push_back(subscribeChecked<Message>(
       node_, monitor.getName(), kQueueLength, receive, refuse, ros::TransportHints().tcpNoDelay()));
+}
+
+// They tell what currents do between samples, and are not waited for.
+void MeasurementIntake::subscribeCommands() {
+  const std::string topic = "coil_command";
+  const auto receive = [this](const msg::CoilCurrents::ConstPtr& message) {
+    const CurrentCommand& command = reader_.readCommand(*message);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    motion_.add(command);
+  };
+  subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(
+      node_, topic, kQueueLength, receive, tellRefusal(topic), ros::TransportHints().tcpNoDelay()));
 }
 
 std::vector<Sample> MeasurementIntake::takeSamples() {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
+#include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 
 namespace sac {
 
@@ -40,6 +41,13 @@ const TorqueMeasurement* MeasurementReader::read(const geometry_msgs::Vector3Sta
 const CurrentMeasurement* MeasurementReader::read(const msg::CoilCurrents& message) {
   currentFromRos(message, current_);
   return &current_;
+}
+
+const CurrentCommand& MeasurementReader::readCommand(const msg::CoilCurrents& message) {
+  command_.stamp = stampFromRos(message.header.stamp);
+  command_.current = Eigen::Map<const Eigen::VectorXd>(
+      message.current.data(), static_cast<Eigen::Index>(message.current.size()));
+  return command_;
 }
 
 bool MeasurementReader::isIn(const std::string& frame, const std::string& frame_id) {

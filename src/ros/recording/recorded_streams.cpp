@@ -79,6 +79,12 @@ void RecordedStreams::add(const msg::CoilCurrents& message) {
   currents_ = message.current.size();
 }
 
+void RecordedStreams::addCommand(const msg::CoilCurrents& message) {
+  if (keeps_motion_) {
+    motion_.add(reader_.readCommand(message));
+  }
+}
+
 bool RecordedStreams::any() const {
   const SampleBuilderReport& streams = builder_.report();
   return nominal_.has_joints

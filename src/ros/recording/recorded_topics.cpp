@@ -42,6 +42,7 @@ const std::array<TopicType, kTopicRoles>& topicTypes() {
       topicType<msg::CoilCurrents>("coil_currents"),
       topicType<msg::CalibrationSample>("samples"),
       topicType<msg::ActuatorParameters>("parameters"),
+      topicType<msg::CoilCurrents>("coil_command"),
   };
   return types;
 }

@@ -11,8 +11,16 @@
 namespace sac {
 
 /// What a topic of a recording is read for.
-enum class TopicRole { kJointStates, kOrientation, kTorque, kCurrents, kSamples, kParameters };
-inline constexpr std::size_t kTopicRoles = 6;
+enum class TopicRole {
+  kJointStates,
+  kOrientation,
+  kTorque,
+  kCurrents,
+  kSamples,
+  kParameters,
+  kCommands,
+};
+inline constexpr std::size_t kTopicRoles = 7;
 
 /// The topics of one actuator in recordings.
 class RecordedTopics {

@@ -136,7 +136,8 @@ class Reader {
       return {TopicRole::kSamples,
               TopicRole::kJointStates,
               TopicRole::kOrientation,
-              TopicRole::kCurrents};
+              TopicRole::kCurrents,
+              TopicRole::kCommands};
     }
     if (from_samples) {
       return {TopicRole::kSamples};
@@ -144,8 +145,11 @@ class Reader {
     if (modelledCoils(nominal_) == 0) {
       return {TopicRole::kJointStates, TopicRole::kOrientation};
     }
-    return {
-        TopicRole::kJointStates, TopicRole::kOrientation, TopicRole::kTorque, TopicRole::kCurrents};
+    return {TopicRole::kJointStates,
+            TopicRole::kOrientation,
+            TopicRole::kTorque,
+            TopicRole::kCurrents,
+            TopicRole::kCommands};
   }
 
   void readMessages(const BagGroup& group, const std::vector<TopicRole>& roles, const Step& step) {
@@ -181,6 +185,8 @@ class Reader {
         return streams_.add(decoder_.decode(message.data, torque_));
       case TopicRole::kCurrents:
         return streams_.add(decoder_.decode(message.data, currents_));
+      case TopicRole::kCommands:
+        return streams_.addCommand(decoder_.decode(message.data, currents_));
       case TopicRole::kSamples:
         return recorded_samples_.add(decodeSample(message));
       case TopicRole::kParameters:

@@ -39,11 +39,15 @@ def _windows(motion):
 def _noise(motion):
     """As the streams tell it themselves."""
     joints = ", ".join(with_unit(stddev, "rad", 2) for stddev in motion["joint_stddev"])
-    return [
+    rows = [
         ("Joints", joints),
         ("Currents", f"{significant(1e3 * motion['current_stddev'], 2)} mA"),
         ("Tracker", with_unit(motion["orientation_stddev"], "rad", 2)),
     ]
+    if "commands" in motion:
+        delay, lag = (significant(1e3 * motion["commands"][key], 3) for key in ("delay", "time_constant"))
+        rows.append(("Currents follow commands", f"{delay} ms later, with a time constant of {lag} ms"))
+    return rows
 
 
 def _rows(estimates, begins):

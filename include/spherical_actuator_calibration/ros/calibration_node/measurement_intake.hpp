@@ -26,8 +26,9 @@ namespace sac {
 
 /// Receives the four streams of measurements (joint_states, measured_orientation, measured_torque,
 /// coil_currents) in a thread of its own, so that nothing else delays them, and makes samples of
-/// them. Of a rotor without joints there are three: joint_states are not waited for, and no motion
-/// is kept. All member functions may be called from any thread.
+/// them; for motions it hears coil_command as well. Of a rotor without joints there are three:
+/// joint_states are not waited for, and no motion is kept. All member functions may be called from
+/// any thread.
 class MeasurementIntake {
  public:
   /// Subscribes below the namespace of `node`, and receives from then on.
@@ -64,6 +65,7 @@ class MeasurementIntake {
  private:
   template <typename Message>
   void subscribe(StreamMonitor& monitor);
+  void subscribeCommands();
   void merge(AnyMeasurement measurement);
   // Precondition of these: mutex_ is held.
   bool haveStreamsEnded();

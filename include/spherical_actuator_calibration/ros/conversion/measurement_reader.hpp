@@ -30,6 +30,8 @@ class MeasurementReader {
   const OrientationMeasurement* read(const geometry_msgs::QuaternionStamped& message);
   const TorqueMeasurement* read(const geometry_msgs::Vector3Stamped& message);
   const CurrentMeasurement* read(const msg::CoilCurrents& message);
+  /// Of a command, which is no measurement; valid until the next one is read.
+  const CurrentCommand& readCommand(const msg::CoilCurrents& message);
 
   /// What is wrong with the last message that was refused: "it …", without a full stop.
   const std::string& refusal() const { return refusal_; }
@@ -45,6 +47,7 @@ class MeasurementReader {
   OrientationMeasurement orientation_;
   TorqueMeasurement torque_;
   CurrentMeasurement current_;
+  CurrentCommand command_;
 };
 
 }  // namespace sac

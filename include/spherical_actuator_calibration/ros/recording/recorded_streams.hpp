@@ -36,6 +36,8 @@ class RecordedStreams {
   void add(const geometry_msgs::QuaternionStamped& message);
   void add(const geometry_msgs::Vector3Stamped& message);
   void add(const msg::CoilCurrents& message);
+  /// What was commanded, which need not be recorded.
+  void addCommand(const msg::CoilCurrents& message);
 
   /// No more messages of this base of time follow.
   void finish() {

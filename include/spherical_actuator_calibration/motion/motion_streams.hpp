@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "spherical_actuator_calibration/measurement/sample.hpp"
+
+namespace sac {
+
+/// How measured currents follow what was commanded: by a lag of first order.
+struct CommandResponse {
+  double delay = 0.0;         ///< of what was commanded, by the stamps of both [s]
+  double lag = 0.0;           ///< time constant [s]
+  double delay_stddev = 0.0;  ///< of what the steps between samples do to a delay [s]
+};
+
+/// Streams of one span of time, each with stamps that increase strictly.
+struct MotionStreams {
+  using Currents = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  std::vector<Stamp> joint_stamps;
+  /// Readings [rad], without the jumps of a sensor that wraps around.
+  std::vector<Eigen::Vector3d> joints;
+  std::vector<Stamp> current_stamps;
+  /// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
+  Currents currents;
+  /// Known: each current counts for its interval, with the steps between samples that commands
+  /// tell. Nothing: currents are as they were sampled.
+  std::optional<CommandResponse> response;
+  std::vector<Stamp> orientation_stamps;
+  std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
+};
+
+}  // namespace sac

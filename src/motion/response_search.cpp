@@ -1,0 +1,158 @@
+#include "response_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace sac {
+
+void ResponseSearch::run() {
+  constexpr std::size_t kQuick = 2400;
+  constexpr std::size_t kThorough = 12000;
+  Descent best;
+  for (const Place& start : starts()) {
+    const Descent end = descend(start, shareOf(kQuick));
+    if (end.square < best.square) {
+      best = end;
+    }
+  }
+  best_ = descend(best.place, shareOf(kThorough));
+}
+
+ResponseSearch::Share ResponseSearch::shareOf(std::size_t samples) const {
+  constexpr std::size_t kStretches = 6;
+  return {kStretches, std::min(samples, comparison_.commanded().count()) / kStretches};
+}
+
+/// The best few of a grid, no neighbours, by a stretch in the middle.
+std::vector<ResponseSearch::Place> ResponseSearch::starts() const {
+  constexpr double kLargest = 0.07;                                  // [s]
+  constexpr double kStep = 1e-3;                                     // [s]
+  constexpr std::array<double, 4> kLags{0.5e-3, 2e-3, 6e-3, 20e-3};  // [s]
+  constexpr std::size_t kSamples = 400;
+  constexpr std::size_t kMost = 5;
+  const Share share{1, std::min(kSamples, comparison_.commanded().count())};
+  std::vector<Descent> all;
+  for (const double lag : kLags) {
+    for (double delay = -kLargest; delay <= kLargest; delay += kStep) {
+      Descent one;
+      one.place = {delay, lag};
+      one.square = leftAt(one.place, share).square().sum();
+      all.push_back(one);
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const Descent& one, const Descent& other) {
+    return one.square < other.square;
+  });
+  std::vector<Place> chosen;
+  for (auto one = all.begin(); one != all.end() && chosen.size() < kMost; ++one) {
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Place& other) {
+      return std::abs(one->place.delay - other.delay) < 1.5 * kStep;
+    });
+    if (is_new) {
+      chosen.push_back(one->place);
+    }
+  }
+  for (Place& place : chosen) {
+    place = bestBeside(place, kStep, share);
+  }
+  return chosen;
+}
+
+/// Where a command comes to a sample the misfit has a kink, and a descent may stay on one side.
+ResponseSearch::Place ResponseSearch::bestBeside(const Place& place,
+                                                 double reach,
+                                                 const Share& share) const {
+  constexpr int kSteps = 4;
+  constexpr std::array<double, 7> kFactors{0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8};
+  Place best = place;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = -kSteps; n <= kSteps; ++n) {
+    for (const double factor : kFactors) {
+      const Place beside{place.delay + n * reach / kSteps, factor * place.lag};
+      const double square = leftAt(beside, share).square().sum();
+      if (square < least) {
+        least = square;
+        best = beside;
+      }
+    }
+  }
+  return best;
+}
+
+Eigen::ArrayXd ResponseSearch::leftAt(const Place& place, const Share& share) const {
+  const Eigen::Index coils = comparison_.coils();
+  Eigen::ArrayXd all(coils * static_cast<Eigen::Index>(share.stretches * (share.samples - 1)));
+  Eigen::Index next = 0;
+  const SampleRange all_samples = comparison_.commanded();
+  const std::size_t rest = all_samples.count() - share.samples;
+  for (std::size_t n = 0; n < share.stretches; ++n) {
+    const std::size_t begin =
+        all_samples.begin + (share.stretches == 1 ? rest / 2 : rest * n / (share.stretches - 1));
+    comparison_.visit(place.delay,
+                      place.lag,
+                      {begin, begin + share.samples},
+                      [&](const Eigen::ArrayXd& change, const Eigen::ArrayXd& expected) {
+                        all.segment(next, coils) = change - expected;
+                        next += coils;
+                      });
+  }
+  return all;
+}
+
+/// Levenberg–Marquardt.
+ResponseSearch::Descent ResponseSearch::descend(const Place& start, const Share& share) const {
+  constexpr int kMostSteps = 25;
+  Descent here;
+  here.place = start;
+  here.left = leftAt(start, share);
+  here.square = here.left.square().sum();
+  double damping = 1e-2;
+  for (int n = 0; n < kMostSteps && advance(share, damping, here); ++n) {
+  }
+  return here;
+}
+
+/// One step; false where none leads on.
+bool ResponseSearch::advance(const Share& share, double& damping, Descent& here) const {
+  constexpr double kDifference = 1e-6;  // [s]
+  constexpr double kSmall = 1e-7;       // [s]
+  constexpr double kMostDamping = 1e6;
+  constexpr double kLeastLag = 1e-5;  // [s]
+  const auto by = [&](double delay, double lag) -> Eigen::ArrayXd {
+    const Place aside{here.place.delay + delay, here.place.lag + lag};
+    return (leftAt(aside, share) - here.left) / kDifference;
+  };
+  const Eigen::ArrayXd by_delay = by(kDifference, 0.0);
+  const Eigen::ArrayXd by_lag = by(0.0, kDifference);
+  Eigen::Matrix2d information;
+  information << by_delay.square().sum(), (by_delay * by_lag).sum(),  //
+      (by_delay * by_lag).sum(), by_lag.square().sum();
+  const Eigen::Vector2d gradient((by_delay * here.left).sum(), (by_lag * here.left).sum());
+  const double variance = here.square / static_cast<double>(here.left.size());
+  here.delay_stddev = std::sqrt(variance * information.inverse()(0, 0));
+  while (damping < kMostDamping) {
+    Eigen::Matrix2d damped = information;
+    damped.diagonal() *= 1.0 + damping;
+    const Eigen::Vector2d step = -damped.inverse() * gradient;
+    const Place next{here.place.delay + step[0], std::max(kLeastLag, here.place.lag + step[1])};
+    const Eigen::ArrayXd left = leftAt(next, share);
+    const double square = left.square().sum();
+    if (square < here.square) {
+      here.place = next;
+      here.left = left;
+      here.square = square;
+      damping *= 0.1;
+      return step.norm() >= kSmall;
+    }
+    damping *= 10.0;
+    if (!(step.norm() >= kSmall)) {
+      return false;
+    }
+  }
+  return false;
+}
+
+}  // namespace sac

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "command_comparison.hpp"
+
+namespace sac {
+
+/// Delay and lag by which measured currents change as what follows the commands, by stretches from
+/// begin to end of a span. Where currents are sampled at the same places between two commands each
+/// time, there are valleys beside the one that is looked for.
+class ResponseSearch {
+ public:
+  explicit ResponseSearch(const CommandComparison& comparison) : comparison_(comparison) {}
+
+  void run();
+  double delay() const { return best_.place.delay; }
+  double lag() const { return best_.place.lag; }
+  /// By the noise of the currents alone.
+  double delayStddev() const { return best_.delay_stddev; }
+
+ private:
+  struct Place {
+    double delay = 0.0;
+    double lag = 0.0;
+  };
+  struct Descent {
+    Place place;
+    double square = std::numeric_limits<double>::infinity();
+    double delay_stddev = std::numeric_limits<double>::infinity();
+    Eigen::ArrayXd left;  ///< of the changes
+  };
+  /// Samples that count: so many in each of some stretches.
+  struct Share {
+    std::size_t stretches;
+    std::size_t samples;
+  };
+
+  Share shareOf(std::size_t samples) const;
+  std::vector<Place> starts() const;
+  Place bestBeside(const Place& place, double reach, const Share& share) const;
+  Eigen::ArrayXd leftAt(const Place& place, const Share& share) const;
+  Descent descend(const Place& start, const Share& share) const;
+  bool advance(const Share& share, double& damping, Descent& here) const;
+
+  const CommandComparison& comparison_;
+  Descent best_;
+};
+
+}  // namespace sac
