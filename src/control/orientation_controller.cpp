@@ -178,6 +178,9 @@ void OrientationController::enable(Stamp now) {
   q_ = q;
   reference_.reset(R_stator_rotor);
   last_update_.reset();
+  current_stamp_.reset();
+  currents_flow_ = false;
+  measured_sum_ = commanded_sum_ = 0.0;
   stop_reason_.clear();
   share_ = 1.0;
   limit_ = CurrentLimit::kNone;
@@ -200,10 +203,11 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   if (state_ != ControlState::kActive) {
     return currents_;
   }
-  const std::string defect = defectAt(now);
-  if (!defect.empty()) {
-    stop(defect);
-    return currents_;
+  for (const std::string& defect : {defectAt(now), silenceAt(now)}) {
+    if (!defect.empty()) {
+      stop(defect);
+      return currents_;
+    }
   }
   const double step =
       last_update_ ? std::clamp(secondsBetween(*last_update_, now), 0.0, kLongestStep) : 0.0;
@@ -218,9 +222,8 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
       is_on_its_way ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
                     : options_.largest_tracking_error;
   if (tracking_error_ > largest_error) {
-    const std::string reason =
-        limit_ == CurrentLimit::kNone ? "" : "; " + inWords({share_, limit_});
-    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) + reason);
+    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) +
+         whyNotFollowing(now));
     return currents_;
   }
   observe(now, rotor);

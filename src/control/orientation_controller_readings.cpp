@@ -72,6 +72,48 @@ std::string OrientationController::defectAt(Stamp now) const {
   return {};
 }
 
+void OrientationController::receiveCurrents(const CurrentMeasurement& currents) {
+  constexpr double kOften = 0.05;  // [s]
+  constexpr double kShare = 0.1;
+  if (state_ != ControlState::kActive || currents.current.size() != currents_.size() ||
+      !currents.current.allFinite()) {
+    return;
+  }
+  if (current_stamp_) {
+    const double elapsed = secondsBetween(*current_stamp_, currents.stamp);
+    currents_flow_ = currents_flow_ || (elapsed > 0.0 && elapsed < kOften);
+  }
+  current_stamp_ = currents.stamp;
+  measured_sum_ += kShare * (currents.current.cwiseAbs().sum() - measured_sum_);
+  commanded_sum_ += kShare * (currents_.cwiseAbs().sum() - commanded_sum_);
+}
+
+/// Whoever drives the coils tells what flows in them as long as it is there.
+std::string OrientationController::silenceAt(Stamp now) const {
+  constexpr double kLongest = 0.25;  // [s]
+  const double silence = currents_flow_ ? secondsBetween(*current_stamp_, now) : 0.0;
+  return silence > kLongest
+             ? format("no measured currents have come for %.2g s: see to the coil driver", silence)
+             : std::string();
+}
+
+/// What the coils have to do with a rotor that does not follow; nothing: nothing is known.
+std::string OrientationController::whyNotFollowing(Stamp now) const {
+  constexpr double kSilence = 0.05;  // [s]
+  constexpr double kLeast = 0.2;     // [A]
+  const double silence = currents_flow_ ? secondsBetween(*current_stamp_, now) : 0.0;
+  if (silence > kSilence) {
+    return format(", and no measured currents have come for %.2g s: see to the coil driver",
+                  silence);
+  }
+  if (currents_flow_ && commanded_sum_ > kLeast && measured_sum_ < 0.5 * commanded_sum_) {
+    return format(", and of %.2g A that are commanded %.2g A flow: see to the amplifier",
+                  commanded_sum_,
+                  measured_sum_);
+  }
+  return limit_ == CurrentLimit::kNone ? std::string() : "; " + inWords({share_, limit_});
+}
+
 bool OrientationController::isInWorkspace(const Eigen::Vector3d& q, double margin) const {
   return q.head<2>().cwiseAbs().maxCoeff() <= parameters_.workspace.tilt_limit + margin;
 }

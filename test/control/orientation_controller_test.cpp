@@ -237,6 +237,41 @@ TEST_F(OrientationControllerTest, StopsWhenTheRotorDoesNotFollow) {
   expectStopped("does not follow");
 }
 
+TEST_F(OrientationControllerTest, StopsWhenMeasuredCurrentsComeNoMore) {
+  start(truth_);
+  run(1.0);  // none ever came: whoever drives the coils does not tell
+  EXPECT_EQ(controller_->state(), ControlState::kActive);
+  for (int n = 0; n < 20; ++n) {
+    controller_->receiveCurrents(CurrentMeasurement{now_, controller_->update(now_)});
+    run(0.005);
+  }
+  run(0.2);
+  EXPECT_EQ(controller_->state(), ControlState::kActive);
+  run(0.1);
+  expectStopped("no measured currents have come for 0.25 s");
+  controller_->enable(now_);
+  run(0.5);
+  EXPECT_EQ(controller_->state(), ControlState::kActive);
+}
+
+TEST_F(OrientationControllerTest, TellsWhetherTheCurrentsAreThoseItCommands) {
+  for (const double share : {0.0, 1.0}) {
+    restart();
+    start(truth_);
+    controller_->setTarget(now_, rotationExp({0.0, 0.0, 1.2}));
+    for (int n = 0; n < 2000 && controller_->state() == ControlState::kActive; ++n) {
+      now_ += kCycle;
+      controller_->receive({now_, Eigen::Vector3d::Zero()});
+      const Eigen::VectorXd current = share * controller_->update(now_);
+      controller_->receiveCurrents(CurrentMeasurement{now_, current});
+    }
+    expectStopped("does not follow");
+    const bool is_told =
+        controller_->stopReason().find("see to the amplifier") != std::string::npos;
+    EXPECT_EQ(is_told, share == 0.0) << controller_->stopReason();
+  }
+}
+
 TEST_F(OrientationControllerTest, BeginsAnewAfterAJumpOfTheClock) {
   start(truth_);
   run(0.1);

@@ -41,7 +41,8 @@ std::string inWords(const TorqueCut& cut);
 /// Turns the rotor to target orientations by computed torque: orientation and velocity from the
 /// joint sensors, or without joints from the tracker, torques and currents by the parameters in
 /// force. It stops by itself, with all currents zero, when readings are too old, outside the
-/// workspace, where the coils make no torque in some direction, or when the rotor does not follow.
+/// workspace, where the coils make no torque in some direction, when the rotor does not follow, or
+/// when measured currents that came come no more.
 /// A motion plan is followed in the place of targets, under the same guards and its own limits. A
 /// load that nobody told of is found and held; while a motion plan is followed, what was found
 /// before stays. Not thread-safe.
@@ -63,6 +64,8 @@ class OrientationController {
   bool receive(const JointMeasurement& joints);
   /// The same for a rotor without joints, of the tracker's orientation.
   bool receive(const OrientationMeasurement& orientation);
+  /// What flows in the coils, which need not be known.
+  void receiveCurrents(const CurrentMeasurement& currents);
   /// Where to turn. Throws DataError, and keeps the target before it, for what is no rotation, lies
   /// outside the workspace, or cannot be reached straight within it, and during a motion plan.
   void setTarget(Stamp stamp, const Eigen::Matrix3d& R_stator_rotor);
@@ -110,6 +113,8 @@ class OrientationController {
   /// What the model makes of the joint angles.
   RotorState rotorAt(const Eigen::Vector3d& q) const;
   std::string defectAt(Stamp now) const;
+  std::string silenceAt(Stamp now) const;
+  std::string whyNotFollowing(Stamp now) const;
   bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
   void keepTorque();
   const ControlGains& gains() const {
@@ -141,6 +146,11 @@ class OrientationController {
   Eigen::Vector3d joint_velocity_ = Eigen::Vector3d::Zero();  ///< [rad/s]
   Eigen::Vector3d q_ = Eigen::Vector3d::Zero();  ///< joint angles of the last cycle [rad]
   std::optional<Stamp> last_update_;
+  // Since it was enabled.
+  std::optional<Stamp> current_stamp_;  ///< of the newest measured currents
+  bool currents_flow_ = false;          ///< they come often
+  double measured_sum_ = 0.0;           ///< of the absolute values lately [A]
+  double commanded_sum_ = 0.0;          ///< the same of those commanded
   ControlState state_ = ControlState::kIdle;
   std::string stop_reason_;
   Eigen::VectorXd currents_;

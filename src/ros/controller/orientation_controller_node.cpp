@@ -50,6 +50,7 @@ OrientationControllerNode::OrientationControllerNode(
   } else {
     followReadings<geometry_msgs::QuaternionStamped>(handle, "measured_orientation");
   }
+  followCurrents(handle);
   control_.start();
   watch_ = std::make_unique<PeriodicThread>(kWatchRate, [this] { watch(); });
 }
@@ -178,6 +179,21 @@ void OrientationControllerNode::receive(const Message& message, const std::strin
   } catch (const std::exception& error) {
     fail(error.what());
   }
+}
+
+void OrientationControllerNode::followCurrents(ros::NodeHandle& handle) {
+  const std::string topic = "coil_currents";
+  current_subscriber_ = subscribeChecked<msg::CoilCurrents>(
+      handle,
+      topic,
+      1,
+      [this](const msg::CoilCurrents::ConstPtr& message) {
+        const CurrentMeasurement* currents = reader_.read(*message);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        controller_.receiveCurrents(*currents);
+      },
+      tellRefusal(topic),
+      ros::TransportHints().tcpNoDelay());
 }
 
 void OrientationControllerNode::receiveTarget(const geometry_msgs::QuaternionStamped& message) {

@@ -65,6 +65,10 @@ class Motion:
                     tell(status)
                 elif status.phase == "done":
                     return status
+                elif status.phase == "none":
+                    raise RuntimeError(
+                        f"{self._controller} has ended, and was started anew: its commands have ended, and so have the currents."
+                    )
                 else:
                     raise RuntimeError(status.message)
             if rospy.get_time() - self._time > SILENCE:

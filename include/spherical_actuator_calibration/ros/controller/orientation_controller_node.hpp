@@ -39,8 +39,9 @@ namespace sac {
 /// `enable` is called with true, nor after a safe stop (OrientationController tells when) until it
 /// is called again; the coil driver's watchdog guards against the death of this node.
 ///
-/// Every reading that arrives makes one command, in a thread that serves nothing else. Where
-/// none comes for the largest age that is allowed, by a clock that nobody can stop, it stops.
+/// Every reading that arrives makes one command, in a thread that serves nothing else but
+/// `coil_currents`, which tell a stop by the coil driver from one by the rotor. Where none comes
+/// for the largest age that is allowed, by a clock that nobody can stop, it stops.
 ///
 /// Enabled, it follows a motion plan instead: the private service `follow_motion` begins it,
 /// `end_motion` slows it down to its end before its time, and the private topic `motion_status`
@@ -68,6 +69,7 @@ class OrientationControllerNode {
   void followReadings(ros::NodeHandle& handle, const std::string& topic);
   template <typename Message>
   void receive(const Message& message, const std::string& topic);
+  void followCurrents(ros::NodeHandle& handle);
   void receiveTarget(const geometry_msgs::QuaternionStamped& message);
   void receiveJointTarget(const sensor_msgs::JointState& message);
   /// Of the topic that it came by. Precondition: mutex_ is held.
@@ -114,8 +116,9 @@ class OrientationControllerNode {
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer motion_timer_;
   NodeDiagnostics diagnostics_;
-  ros::CallbackQueue reading_queue_;  ///< of readings alone: they wait for no service
+  ros::CallbackQueue reading_queue_;  ///< of readings and currents: they wait for no service
   ros::Subscriber reading_subscriber_;
+  ros::Subscriber current_subscriber_;
   // Last, so that they end first.
   ros::AsyncSpinner control_;
   std::unique_ptr<PeriodicThread> watch_;
