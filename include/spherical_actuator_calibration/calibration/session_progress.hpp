@@ -46,7 +46,7 @@ struct SessionProgress {
   bool contradicted = false;                  ///< held-out samples disagree with what is in force
   bool judged = false;                        ///< they agree, and judge all of it
   bool good = false;                          ///< and nothing else speaks against it
-  std::string plan_step;  ///< next pose of the plan that is followed, see planStep(); empty: none
+  std::string plan_step;  ///< of the plan or the motion that is followed; empty: none
 
   /// Whether the joint, every pole and every coil is identified.
   bool isAllIdentified() const;

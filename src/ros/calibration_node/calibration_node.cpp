@@ -342,6 +342,9 @@ void CalibrationNode::publishStatus() {
     if (plan_) {
       progress.plan_step = plan_->nextStep();
     }
+    if (progress.plan_step.empty()) {
+      progress.plan_step = motionStep(progress);
+    }
     topics_.publishStatus(session_, progress, graded);
   } catch (const std::exception& error) {
     last_error_ = error.what();

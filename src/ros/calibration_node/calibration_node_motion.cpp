@@ -1,6 +1,7 @@
 #include <cstddef>
 #include <exception>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
+#include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 
 namespace sac {
 
@@ -30,6 +32,7 @@ bool CalibrationNode::forgetMotion(std_srvs::Trigger::Request& /*request*/,
   const std::lock_guard<std::mutex> lock(session_mutex_);
   try {
     beginMotionAnew();
+    publishStatus();
     response.success = 1;
     response.message = "The next motion begins anew.";
   } catch (const std::exception& error) {
@@ -45,6 +48,8 @@ void CalibrationNode::beginMotionAnew() {
   waiting_windows_.clear();
   intake_.forgetMotion();
   motion_.forget();
+  windows_in_a_row_ = 0;
+  is_in_motion_ = false;
 }
 
 void CalibrationNode::takeUpMotion() {
@@ -65,17 +70,51 @@ void CalibrationNode::followMotion() {
     std::vector<MotionSlice> windows = intake_.takeWindows();
     waiting_windows_.insert(waiting_windows_.end(), windows.begin(), windows.end());
     storeWaitingWindows();
+    const std::size_t count = windows.size();
     for (const MotionSlice& window : stored) {
       motion_.add(window);
     }
     for (MotionSlice& window : windows) {
       motion_.add(std::move(window));
     }
+    noteMotion(count);
   } catch (const std::exception& error) {
     last_error_ = printable(error.what());
     constexpr double kSilence = 10.0;  // [s]
     ROS_ERROR_STREAM_THROTTLE(kSilence, "The motion cannot be followed: " << last_error_);
   }
+}
+
+// A rotor that a hand turns from pose to pose with a coil on is in no motion.
+void CalibrationNode::noteMotion(std::size_t windows) {
+  constexpr std::size_t kLeast = 8;  // windows: two seconds
+  constexpr double kRest = 1.5;      // [s]
+  const double now = steadySeconds();
+  if (windows > 0) {
+    windows_in_a_row_ += windows;
+    last_window_ = now;
+  } else if (now - last_window_ > kRest) {
+    windows_in_a_row_ = 0;
+  }
+  const bool is_in_motion = windows_in_a_row_ >= kLeast;
+  if (is_in_motion != is_in_motion_) {
+    is_in_motion_ = is_in_motion;
+    publishStatus();
+  }
+}
+
+std::string CalibrationNode::motionStep(const SessionProgress& progress) const {
+  constexpr std::size_t kEnough = 48;  // windows, so that some can be held out
+  if (is_in_motion_) {
+    return "A motion goes on: let it end, then call calibrate_motion.";
+  }
+  if (motion_.windows() < kEnough || progress.samples > 0 || progress.isAllIdentified()) {
+    return {};
+  }
+  return progress.refused
+             ? "The motion was refused, and would be again: its report says what contradicts. Mend "
+               "it, call forget_motion and move the rotor anew."
+             : "Call calibrate_motion: a motion is recorded.";
 }
 
 /// A disk that takes nothing is no reason to be silent about a motion that goes on.

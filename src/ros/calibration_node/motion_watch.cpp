@@ -54,6 +54,10 @@ void MotionWatch::forget() {
   }
 }
 
+std::size_t MotionWatch::windows() const {
+  return follower_ ? follower_->estimate().windows : 0;
+}
+
 void MotionWatch::publish() {
   const LiveEstimate& estimate = follower_->estimate();
   msg::MotionProgress message;

@@ -80,6 +80,10 @@ class CalibrationNode {
   bool forgetMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void takeUpMotion();
   void followMotion();
+  /// Whether a motion goes on, by the windows that came now; tells it where that changed.
+  void noteMotion(std::size_t windows);
+  /// What to do about a motion next; nothing: there is none.
+  std::string motionStep(const SessionProgress& progress) const;
   void storeWaitingWindows();
   /// Precondition: session_mutex_ is held.
   void beginMotionAnew();
@@ -126,6 +130,9 @@ class CalibrationNode {
   std::shared_ptr<PlanProgress> plan_;
   CalibrationTopics topics_;
   MotionWatch motion_;
+  bool is_in_motion_ = false;
+  std::size_t windows_in_a_row_ = 0;          ///< without a rest
+  double last_window_ = 0.0;                  ///< when it came, by a clock that never jumps [s]
   std::vector<MotionSlice> stored_windows_;   ///< of a session that is taken up: not followed yet
   std::vector<MotionSlice> waiting_windows_;  ///< not stored yet: the disk did not take them
 

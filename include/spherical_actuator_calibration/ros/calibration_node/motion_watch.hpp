@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,8 @@ class MotionWatch {
   void add(MotionSlice window);
   /// The motion until now.
   void forget();
+  /// That came since then.
+  std::size_t windows() const;
 
  private:
   void publish();
