@@ -7,83 +7,15 @@
 
 #include <gtest/gtest.h>
 
+#include "control/controlled_rotor.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/emulation/free_rotor.hpp"
 #include "support/error_message.hpp"
-#include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
 
-constexpr Stamp kCycle = 1000000;  // 1 ms
-constexpr double kStopTilt = 1.0;
-
-/// A load whose holding needs some tenths of an ampere.
-RigidRotor loadedRotor() {
-  RigidRotor rotor;
-  rotor.unbalance = Eigen::Vector3d(0.002, 0.0088, 0.003);
-  return rotor;
-}
-
-/// The controller and the true rotor, cycle by cycle.
-class OrientationControllerTest : public ::testing::Test {
- protected:
-  OrientationControllerTest()
-      : truth_(scenarios::paperTruth()), rotor_(truth_, loadedRotor(), kStopTilt) {
-    options_.rotor = loadedRotor();
-    rotor_.release(Eigen::Vector3d::Zero());
-    restart();
-  }
-
-  void restart() {
-    controller_.emplace(scenarios::paperNominal(), options_);
-    controller_->receive({now_, rotor_.position()});
-  }
-
-  void start(const Actuator& parameters) {
-    controller_->setParameters(parameters);
-    controller_->enable(now_);
-  }
-
-  /// Runs for so long [s]; returns the largest current [A].
-  double run(double seconds) {
-    double largest = 0.0;
-    for (int n = 0; n < std::lround(seconds * 1e3); ++n) {
-      now_ += kCycle;
-      controller_->receive({now_, rotor_.position()});
-      const Eigen::VectorXd& currents = controller_->update(now_);
-      largest = std::max(largest, currents.cwiseAbs().maxCoeff());
-      rotor_.advance(1e-3, currents);
-    }
-    return largest;
-  }
-
-  /// What the coils really do [N·m].
-  Eigen::Vector3d trueTorque(const Eigen::VectorXd& currents) const {
-    return rotorTorque(TorqueCurve(*truth_.torque_curve),
-                       torqueGeometry(truth_),
-                       rotor_.state().R_stator_rotor,
-                       currents);
-  }
-
-  double errorTo(const Eigen::Matrix3d& target) const {
-    return rotationLog(target.transpose() * rotor_.state().R_stator_rotor).norm();
-  }
-
-  void expectStopped(const std::string& reason) {
-    EXPECT_EQ(controller_->state(), ControlState::kStopped);
-    EXPECT_NE(controller_->stopReason().find(reason), std::string::npos)
-        << controller_->stopReason();
-    EXPECT_TRUE(controller_->update(now_).isZero(0.0));
-  }
-
-  Actuator truth_;
-  OrientationControllerOptions options_;
-  FreeRotor rotor_;
-  std::optional<OrientationController> controller_;
-  Stamp now_ = 1000 * kCycle;
-};
+using OrientationControllerTest = ControlledRotor;
 
 TEST_F(OrientationControllerTest, TurnsTheLoadedRotorToItsTarget) {
   start(truth_);
@@ -180,98 +112,6 @@ TEST_F(OrientationControllerTest, CurrentsStayWithinTheLimit) {
   EXPECT_LT(controller_->torqueShare(), 1.0);
 }
 
-TEST_F(OrientationControllerTest, StopsOnOldJointAngles) {
-  start(truth_);
-  run(0.1);
-  const Stamp late = now_ + 101 * kCycle;
-  EXPECT_TRUE(controller_->update(late).isZero(0.0));
-  expectStopped("s old");
-  // It does not come back by itself.
-  now_ = late;
-  run(0.1);
-  expectStopped("s old");
-  controller_->enable(now_);
-  run(0.1);
-  EXPECT_EQ(controller_->state(), ControlState::kActive);
-}
-
-TEST_F(OrientationControllerTest, StopsOutsideTheWorkspace) {
-  start(truth_);
-  run(0.1);
-  now_ += kCycle;
-  controller_->receive({now_, {0.0, 0.66, 0.0}});
-  controller_->update(now_);
-  expectStopped("outside of the workspace");
-}
-
-TEST_F(OrientationControllerTest, StopsWhereTheCoilsMakeNoTorqueInSomeDirection) {
-  start(truth_);
-  run(0.002);
-  // A curve of hardly any torque, as parameters that come while the rotor is held.
-  Actuator weak = truth_;
-  for (double& coefficient : weak.torque_curve->coefficients) {
-    coefficient *= 1e-6;
-  }
-  controller_->setParameters(weak);
-  run(0.002);
-  expectStopped("no torque in some direction");
-}
-
-TEST_F(OrientationControllerTest, IsNotEnabledWhereTheCoilsCannotHoldTheRotor) {
-  options_.allocation.least_singular_value = 10.0;
-  restart();
-  const std::string said = errorMessage<DataError>([&] { start(truth_); });
-  EXPECT_NE(said.find("no torque in some direction here"), std::string::npos) << said;
-  EXPECT_EQ(controller_->state(), ControlState::kIdle);
-}
-
-TEST_F(OrientationControllerTest, StopsWhenTheRotorDoesNotFollow) {
-  start(truth_);
-  controller_->setTarget(now_, rotationExp({0.0, 0.0, 1.2}));
-  // A sensor that stands still: fresh stamps, the same angles.
-  for (int n = 0; n < 2000; ++n) {
-    now_ += kCycle;
-    controller_->receive({now_, Eigen::Vector3d::Zero()});
-    controller_->update(now_);
-  }
-  expectStopped("does not follow");
-}
-
-TEST_F(OrientationControllerTest, StopsWhenMeasuredCurrentsComeNoMore) {
-  start(truth_);
-  run(1.0);  // none ever came: whoever drives the coils does not tell
-  EXPECT_EQ(controller_->state(), ControlState::kActive);
-  for (int n = 0; n < 20; ++n) {
-    controller_->receiveCurrents(CurrentMeasurement{now_, controller_->update(now_)});
-    run(0.005);
-  }
-  run(0.2);
-  EXPECT_EQ(controller_->state(), ControlState::kActive);
-  run(0.1);
-  expectStopped("no measured currents have come for 0.25 s");
-  controller_->enable(now_);
-  run(0.5);
-  EXPECT_EQ(controller_->state(), ControlState::kActive);
-}
-
-TEST_F(OrientationControllerTest, TellsWhetherTheCurrentsAreThoseItCommands) {
-  for (const double share : {0.0, 1.0}) {
-    restart();
-    start(truth_);
-    controller_->setTarget(now_, rotationExp({0.0, 0.0, 1.2}));
-    for (int n = 0; n < 2000 && controller_->state() == ControlState::kActive; ++n) {
-      now_ += kCycle;
-      controller_->receive({now_, Eigen::Vector3d::Zero()});
-      const Eigen::VectorXd current = share * controller_->update(now_);
-      controller_->receiveCurrents(CurrentMeasurement{now_, current});
-    }
-    expectStopped("does not follow");
-    const bool is_told =
-        controller_->stopReason().find("see to the amplifier") != std::string::npos;
-    EXPECT_EQ(is_told, share == 0.0) << controller_->stopReason();
-  }
-}
-
 TEST_F(OrientationControllerTest, BeginsAnewAfterAJumpOfTheClock) {
   start(truth_);
   run(0.1);
@@ -338,15 +178,6 @@ TEST_F(OrientationControllerTest, TellsTheLeastShareOfTheTorqueAndTheLimitThatCu
 }
 
 // Half of what the load needs: that the rotor does not follow is no riddle.
-TEST_F(OrientationControllerTest, TellsTheLimitWhereTheRotorDoesNotFollowForIt) {
-  options_.square_current_limit = 1e-4;
-  restart();
-  start(truth_);
-  run(1.0);
-  expectStopped("does not follow");
-  expectStopped("at their limit (power/limit, of all coils): down to");
-}
-
 TEST_F(OrientationControllerTest, DisabledItHasNoCurrent) {
   start(truth_);
   EXPECT_GT(run(0.2), 0.001);
