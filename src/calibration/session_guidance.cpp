@@ -40,6 +40,9 @@ class Guide {
              "diagnose and mend what it names, or remove those samples and capture at new poses; "
              "then run it again.";
     }
+    if (progress_.samples == 0 && progress_.isAllIdentified()) {
+      return closingStep();  // by a motion: there is nothing to refine
+    }
     if (!progress_.joint_done) {
       return jointStep();
     }

@@ -116,6 +116,20 @@ TEST(SessionGuidance, WithoutSamplesWhatWasSavedStays) {
   EXPECT_EQ(nextStep(session, progress).rfind("Move the rotor", 0), 0U);
 }
 
+TEST(SessionGuidance, WithoutSamplesThereIsNothingToRefine) {
+  CalibrationSession session = paperSession();
+  ASSERT_TRUE(session.run({Cycle::kRefine}).success);
+  SessionProgress progress = progressOf(session);
+  // As after a motion.
+  progress.samples = 0;
+  progress.joint_samples = 0;
+  progress.refined = false;
+  progress.judged = true;
+  progress.good = true;
+  ASSERT_TRUE(progress.isAllIdentified());
+  EXPECT_EQ(nextStep(session, progress), "Call save: held-out samples agree.");
+}
+
 TEST(SessionGuidance, APlanGoesFirst) {
   const CalibrationSession session = paperSession();
   SessionProgress progress = progressOf(session);
