@@ -44,7 +44,8 @@ class CalibrationGrader::Examiner {
 
   GradedCalibration graded() {
     if (judge_) {
-      validation_ = session_.validation(*judge_);
+      const HeldOutValidation& validation = judge_->judge(session_.samples());
+      validation_ = validation.samples > 0 ? &validation : nullptr;
     }
     const Grade grade = this->grade();
     return {grade, reason(grade)};
@@ -73,12 +74,13 @@ class CalibrationGrader::Examiner {
   }
 
   bool isContradicted() const {
-    return validation_ && validation_->hasVerdict() && validation_->probability < kLeastProbability;
+    return validation_ != nullptr && validation_->hasVerdict() &&
+           validation_->probability < kLeastProbability;
   }
 
   /// Torques judge everything, orientations the joint only.
   bool isValidated() const {
-    if (!validation_ || !validation_->hasVerdict()) {
+    if (validation_ == nullptr || !validation_->hasVerdict()) {
       return false;
     }
     return !isTorqueIdentified() || validation_->torques > validation_->unjudged_torques;
@@ -248,14 +250,15 @@ class CalibrationGrader::Examiner {
   }
 
   std::string outliers() const {
-    return validation_ && validation_->outliers > 0
+    return validation_ != nullptr && validation_->outliers > 0
                ? " but for " + number(validation_->outliers) + " outliers, as rare as the others'"
                : std::string();
   }
 
   std::string unjudged() const {
-    return validation_ && validation_->hasVerdict() ? "; no held-out torque judges poles and coils."
-                                                    : "; no held-out sample judges them.";
+    return validation_ != nullptr && validation_->hasVerdict()
+               ? "; no held-out torque judges poles and coils."
+               : "; no held-out sample judges them.";
   }
 
   std::string identified() const {
@@ -287,7 +290,7 @@ class CalibrationGrader::Examiner {
   std::string shortcoming_;      ///< see shortcoming()
   std::string expected_errors_;  ///< see expectedErrors()
   std::optional<HeldOutJudge> judge_;
-  std::optional<HeldOutValidation> validation_;
+  const HeldOutValidation* validation_ = nullptr;  ///< of judge_; null: none was held out
   const CycleReport* last_success_ = nullptr;
   const CycleReport* refused_ = nullptr;
 };

@@ -50,14 +50,6 @@ bool tellsTheMap(Cycle cycle) {
   return cycle == Cycle::kJoint || cycle == Cycle::kRefine;
 }
 
-/// Of two that may both have a verdict the one with the less probable misfit.
-HeldOutValidation severer(const HeldOutValidation& one, const HeldOutValidation& other) {
-  if (!one.hasVerdict()) {
-    return other.samples > 0 ? other : one;
-  }
-  return other.hasVerdict() && other.probability < one.probability ? other : one;
-}
-
 }  // namespace
 
 CalibrationSession::CalibrationSession(CalibratedDescription start,
@@ -261,31 +253,24 @@ const CycleReport* CalibrationSession::lastSuccess() const {
 HeldOutJudge CalibrationSession::heldOutJudge() const {
   const CycleReport* last = lastSuccess();
   const bool has_residuals = last != nullptr && !last->residuals.empty();
-  return {model_, state_, config_.estimation, has_residuals ? outlierRate(*last) : 0.0};
-}
-
-std::optional<HeldOutValidation> CalibrationSession::validation() const {
-  HeldOutJudge judge = heldOutJudge();
-  return validation(judge);
-}
-
-std::optional<HeldOutValidation> CalibrationSession::validation(HeldOutJudge& judge) const {
-  const CycleReport* last = lastSuccess();
+  HeldOutJudge judge(model_, state_, config_.estimation, has_residuals ? outlierRate(*last) : 0.0);
   const bool is_motion = last != nullptr && last->motion;
   const bool joins_motion = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
-  HeldOutValidation result;
-  if (!is_motion) {
-    result = judge.judge(samples_);
-  }
   if (is_motion || joins_motion) {
     const auto motion = std::find_if(reports_.rbegin(), reports_.rend(), [](const auto& one) {
       return one.success && one.motion;
     });
     if (motion != reports_.rend()) {
-      result = severer(result, validationOf(motion->motion->held_out));
+      judge.join(validationOf(motion->motion->held_out), is_motion);
     }
   }
-  return result.samples == 0 ? std::nullopt : std::optional(result);
+  return judge;
+}
+
+std::optional<HeldOutValidation> CalibrationSession::validation() const {
+  HeldOutJudge judge = heldOutJudge();
+  const HeldOutValidation& validation = judge.judge(samples_);
+  return validation.samples == 0 ? std::nullopt : std::optional(validation);
 }
 
 }  // namespace sac

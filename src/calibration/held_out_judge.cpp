@@ -42,6 +42,14 @@ SampleResidual residualOf(const Sample& sample,
   return result;
 }
 
+/// Of two that may both have a verdict the one with the less probable misfit.
+const HeldOutValidation& severer(const HeldOutValidation& one, const HeldOutValidation& other) {
+  if (!one.hasVerdict()) {
+    return other.samples > 0 ? other : one;
+  }
+  return other.hasVerdict() && other.probability < one.probability ? other : one;
+}
+
 double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
@@ -77,7 +85,27 @@ class HeldOutJudge::Judgement {
     problem_.prior = state.belief;
   }
 
+  void join(HeldOutValidation other, bool alone) {
+    other_ = std::move(other);
+    is_other_alone_ = alone;
+  }
+
   const HeldOutValidation& judge(const std::vector<Sample>& samples) {
+    if (is_other_alone_) {
+      return *other_;
+    }
+    const HeldOutValidation& of_samples = judgeSamples(samples);
+    return other_ ? severer(of_samples, *other_) : of_samples;
+  }
+
+  void settle() {
+    if (update_) {
+      update_->settle();
+    }
+  }
+
+ private:
+  const HeldOutValidation& judgeSamples(const std::vector<Sample>& samples) {
     // Without one that is held out, those in use need not be taken.
     for (; seen_ < samples.size() && !is_any_; ++seen_) {
       is_any_ = samples[seen_].validation;
@@ -95,13 +123,6 @@ class HeldOutJudge::Judgement {
     return result_;
   }
 
-  void settle() {
-    if (update_) {
-      update_->settle();
-    }
-  }
-
- private:
   /// A measurement with what the test needs of it.
   struct Judged {
     Quantity quantity = Quantity::kOrientation;
@@ -237,8 +258,7 @@ class HeldOutJudge::Judgement {
   /// Marks what stands out as rejected, where it is no more than elsewhere.
   void setOutliersAside() {
     const std::vector<std::size_t> outliers = this->outliers();
-    const auto count = static_cast<std::size_t>(std::count_if(
-        judged_.begin(), judged_.end(), [](const Judged& one) { return one.counts; }));
+    const std::size_t count = judged_.size() - result_.unjudged_torques;
     const bool are_usual =
         areUsual(outliers.size(), count, outlier_rate_, options_.max_rejected_fraction);
     result_.outliers = are_usual ? outliers.size() : 0;
@@ -270,7 +290,7 @@ class HeldOutJudge::Judgement {
     std::vector<std::size_t> outliers;
     for (std::size_t n = 0; n < judged_.size(); ++n) {
       const double standardized = result_.residuals[n].standardized;
-      if (judged_[n].counts && 3.0 * standardized * standardized > limit) {
+      if (3.0 * standardized * standardized > limit && judged_[n].counts) {
         outliers.push_back(n);
       }
     }
@@ -336,6 +356,8 @@ class HeldOutJudge::Judgement {
   double torque_squares_ = 0.0;
 
   HeldOutValidation result_;
+  std::optional<HeldOutValidation> other_;
+  bool is_other_alone_ = false;
   LinearizedObservation linear_;  // storage that is reused
 };
 
@@ -348,6 +370,10 @@ HeldOutJudge::HeldOutJudge(const CalibrationModel& model,
 HeldOutJudge::~HeldOutJudge() = default;
 HeldOutJudge::HeldOutJudge(HeldOutJudge&& other) noexcept = default;
 HeldOutJudge& HeldOutJudge::operator=(HeldOutJudge&& other) noexcept = default;
+
+void HeldOutJudge::join(HeldOutValidation other, bool alone) {
+  judgement_->join(std::move(other), alone);
+}
 
 const HeldOutValidation& HeldOutJudge::judge(const std::vector<Sample>& samples) {
   return judgement_->judge(samples);

@@ -119,9 +119,8 @@ class CalibrationSession {
   /// Judges the samples that were held out, or tells how windows of a motion judged it; where both
   /// have a part in what is in force, the worse of both verdicts. Nothing where none was held out.
   std::optional<HeldOutValidation> validation() const;
-  /// The same by a judge of the parameters in force, which has seen the samples before.
-  std::optional<HeldOutValidation> validation(HeldOutJudge& judge) const;
-  /// Of the parameters in force; it refers to model(), and has seen no sample.
+  /// The same of samples() as they come. It refers to model(), and is of use until a sample goes or
+  /// other parameters come into force.
   HeldOutJudge heldOutJudge() const;
 
   /// The calibrated description. Axes and offsets that were not identified are those of the start,

@@ -23,6 +23,10 @@ class HeldOutJudge {
   HeldOutJudge(HeldOutJudge&& other) noexcept;
   HeldOutJudge& operator=(HeldOutJudge&& other) noexcept;
 
+  /// Another verdict, as windows of a motion give it: of two the one with the less probable misfit
+  /// counts. `alone`: samples have no say.
+  void join(HeldOutValidation other, bool alone);
+
   /// The verdict over all held-out samples, as validateHeldOut() tells it. `samples`: those of the
   /// call before, in their order, and what came after them. Throws DataError on malformed samples.
   const HeldOutValidation& judge(const std::vector<Sample>& samples);
