@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <set>
 
 namespace sac {
@@ -41,8 +43,7 @@ class IndexRecord {
     const std::string_view data = record_.data();
     for (std::size_t at = 0; at < data.size(); at += kEntry) {
       BagEntry entry;
-      entry.time.sec = numberAt<std::uint32_t>(data, at);
-      entry.time.nsec = numberAt<std::uint32_t>(data, at + kNumber);
+      entry.time = timeAt(data, at);
       entry.offset = numberAt<std::uint32_t>(data, at + 2 * kNumber);
       if (rankOf(entry.time) >= first && rankOf(entry.time) <= last) {
         visitor(entry);
@@ -53,6 +54,17 @@ class IndexRecord {
  private:
   static constexpr std::size_t kNumber = sizeof(std::uint32_t);
   static constexpr std::size_t kEntry = 3 * kNumber;
+
+  /// Whole seconds among the nanoseconds count as such, as in rosbag.
+  static ros::Time timeAt(const std::string_view& data, std::size_t at) {
+    constexpr std::uint32_t kSecond = 1000000000;  // [ns]
+    const auto seconds = numberAt<std::uint32_t>(data, at);
+    const auto nanoseconds = numberAt<std::uint32_t>(data, at + kNumber);
+    if (std::numeric_limits<std::uint32_t>::max() - seconds < nanoseconds / kSecond) {
+      throw BagDefect("a stamp of its index is beyond all time");
+    }
+    return {seconds + nanoseconds / kSecond, nanoseconds % kSecond};
+  }
 
   FileRecord record_;
   std::uint32_t connection_ = 0;
