@@ -7,10 +7,13 @@
 #include <thread>
 #include <vector>
 
+#include <boost/crc.hpp>
+
 #include "command_line.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
@@ -130,11 +133,25 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
+/// Tells contents apart wherever their files are.
+std::string checksumOf(const std::optional<std::string>& path) {
+  if (!path) {
+    return "none";
+  }
+  const std::string content = readInputFile(*path);
+  boost::crc_32_type checksum;
+  checksum.process_bytes(content.data(), content.size());
+  return format("crc32:%08x", checksum.checksum());
+}
+
 /// What the trials depend on.
 std::vector<std::pair<std::string, std::string>> settingsOf(const Options& options,
                                                             const Actuator& nominal) {
   return {{"software", packageVersion()},
           {"actuator", nominal.name},
+          {"actuator file", checksumOf(options.actuator_path)},
+          {"configuration", checksumOf(options.config_path)},
+          {"plan file", checksumOf(options.plan_path)},
           {"tracker", options.tracker},
           {"plan", options.plan_path.value_or("random")},
           {"plan seed", std::to_string(options.plan_seed)},

@@ -40,6 +40,20 @@ class CalibrationStudy(unittest.TestCase):
         self.assertEqual(self.content("merged.yaml"), self.content("whole.yaml"))
         self.assertNotEqual(self.content("1.yaml"), self.content("whole.yaml"))
 
+    def test_shards_of_other_contents_do_not_merge(self):
+        actuator = self.folder / "actuator.yaml"
+        wide = self.folder / "wide.yaml"
+        wide.write_text("tolerance: {coil: 0.5}\n")
+        text = ACTUATOR.read_text()
+        study = ("calibration_study", "--actuator", actuator, "--trials", "2", "--threads", "1")
+        for change, options in (("# another\n", ()), ("", ("--config", wide))):
+            actuator.write_text(text)
+            self.run_program(*study, "--shard", "1/2", "--output", "1.yaml")
+            actuator.write_text(change + text)
+            self.run_program(*study, *options, "--shard", "2/2", "--output", "2.yaml")
+            output = self.run_program("calibration_study", "--merge", "--output", "m.yaml", "1.yaml", "2.yaml", status=2)
+            self.assertIn("2.yaml: its settings are not those of 1.yaml", output)
+
     def test_a_shard_that_is_missing_is_named(self):
         self.run_program(*STUDY, "--shard", "1/2", "--output", "1.yaml")
         said = self.run_program("calibration_study", "--merge", "--output", "m.yaml", "1.yaml", status=2)
