@@ -3,32 +3,37 @@
 #include <Eigen/Cholesky>
 
 namespace sac {
+namespace {
+
+/// Observations that the covariance waits for: many at once take less time, each of them more.
+constexpr Eigen::Index kMostWaiting = 16;
+
+}  // namespace
 
 SequentialUpdate::SequentialUpdate(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
     : mean_(Eigen::VectorXd::Zero(mean.size() + kSharedErrors)),
-      covariance_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())) {
+      covariance_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())),
+      gains_(mean_.size(), 3 * kMostWaiting) {
   mean_.head(size()) = mean;
   covariance_.topLeftCorner(size(), size()) = covariance;
   beginDwell();
 }
 
 void SequentialUpdate::settle() {
-  if (gain_.rows() > 0) {
-    covariance_.noalias() -= gain_ * gain_.transpose();
-    gain_.resize(0, 3);
+  if (gain_columns_ > 0) {
+    covariance_.noalias() -= gains() * gains().transpose();
+    gain_columns_ = 0;
   }
 }
 
 Eigen::MatrixXd SequentialUpdate::covariance() const {
-  const Eigen::MatrixXd covariance = covariance_.topLeftCorner(size(), size());
-  if (gain_.rows() == 0) {
-    return covariance;
-  }
-  return covariance - gain_.topRows(size()) * gain_.topRows(size()).transpose();
+  Eigen::MatrixXd covariance = covariance_.topLeftCorner(size(), size());
+  covariance.noalias() -= gains().topRows(size()) * gains().topRows(size()).transpose();
+  return covariance;
 }
 
 void SequentialUpdate::beginDwell() {
-  settle();
+  gains_.bottomRows<kSharedErrors>().setZero();
   mean_.tail<kSharedErrors>().setZero();
   covariance_.rightCols<kSharedErrors>().setZero();
   covariance_.bottomRows<kSharedErrors>().setZero();
@@ -39,21 +44,28 @@ void SequentialUpdate::beginDwell() {
 /// H mean), the covariance P by −K Kᵀ.
 void SequentialUpdate::observe(const WhitenedObservation& observation,
                                const SharedLoading& loading) {
-  settle();
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  if (gain_columns_ == gains_.cols()) {
+    settle();
+  }
   Rows spread = -covariance_.rightCols<kSharedErrors>() * loading.transpose();
   spread += observation.timesTransposed(covariance_);
-  Eigen::Matrix3d S = observation.times(spread) - loading * spread.bottomRows<kSharedErrors>();
-  S.diagonal().array() += 1.0;
+  Rows seen = -gains().bottomRows<kSharedErrors>().transpose() * loading.transpose();
   Eigen::Vector3d residual = observation.residual - loading * mean_.tail<kSharedErrors>();
   for (std::size_t k = 0; k < observation.columns.size(); ++k) {
-    residual +=
-        observation.jacobian.col(static_cast<Eigen::Index>(k)) * mean_[observation.columns[k]];
+    const auto column = observation.jacobian.col(static_cast<Eigen::Index>(k));
+    seen += gains().row(observation.columns[k]).transpose() * column.transpose();
+    residual += column * mean_[observation.columns[k]];
   }
+  spread.noalias() -= gains() * seen;
+  Eigen::Matrix3d S = observation.times(spread) - loading * spread.bottomRows<kSharedErrors>();
+  S.diagonal().array() += 1.0;
   const Eigen::LLT<Eigen::Matrix3d> factor(S);
   const Eigen::Vector3d surprise = factor.solve(residual);
   chi_square_ += residual.dot(surprise);
   mean_.noalias() -= spread * surprise;
-  gain_ = factor.matrixL().solve(spread.transpose()).transpose();
+  gains_.middleCols<3>(gain_columns_) = factor.matrixL().solve(spread.transpose()).transpose();
+  gain_columns_ += 3;
 }
 
 }  // namespace sac

@@ -11,7 +11,7 @@ namespace sac {
 namespace {
 
 constexpr Eigen::Index kCoordinates = 9;
-constexpr Eigen::Index kObservations = 8;
+constexpr Eigen::Index kObservations = 23;
 constexpr Eigen::Index kOfDwell = 3;  // observations of each dwell; the last one has fewer
 
 Eigen::MatrixXd random(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& generator) {
@@ -37,6 +37,9 @@ class SequentialUpdateTest : public testing::TestWithParam<Eigen::Index> {
         dwell_.setZero(3 * kObservations, kSharedErrors);
       }
       observe(n, generator, update);
+      if (n == 4) {
+        update.settle();
+      }
     }
     S_ += J_ * P_ * J_.transpose();
     chi_square_ = update.chiSquare();

@@ -24,8 +24,8 @@ class SequentialUpdate {
   /// @param loading G of the errors u of the present dwell
   void observe(const WhitenedObservation& observation, const SharedLoading& loading);
 
-  /// Does now what the next observation needs, and what takes most of the time for many
-  /// coordinates: chiSquare() and mean() are told without it.
+  /// Does now what takes most of the time for many coordinates, and what some later observation
+  /// would do else: nothing that is told waits for it.
   void settle();
 
   /// Of the coordinates, after all observations so far.
@@ -37,15 +37,16 @@ class SequentialUpdate {
   double chiSquare() const { return chi_square_; }
 
  private:
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
   Eigen::Index size() const { return mean_.size() - kSharedErrors; }
+  auto gains() const { return gains_.leftCols(gain_columns_); }
 
   // Of the coordinates, then of the errors of the present dwell.
   Eigen::VectorXd mean_;
   Eigen::MatrixXd covariance_;
-  Rows
-      gain_;  ///< K of the last observation where the covariance has yet to go by −K Kᵀ; else empty
+  /// The covariance has yet to go by −K Kᵀ with the first gain_columns_ of these: K of the last
+  /// observations, side by side.
+  Eigen::MatrixXd gains_;
+  Eigen::Index gain_columns_ = 0;
   double chi_square_ = 0.0;
 };
 
