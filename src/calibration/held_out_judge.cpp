@@ -42,14 +42,6 @@ SampleResidual residualOf(const Sample& sample,
   return result;
 }
 
-/// Of two that may both have a verdict the one with the less probable misfit.
-const HeldOutValidation& severer(const HeldOutValidation& one, const HeldOutValidation& other) {
-  if (!one.hasVerdict()) {
-    return other.samples > 0 ? other : one;
-  }
-  return other.hasVerdict() && other.probability < one.probability ? other : one;
-}
-
 double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
@@ -113,7 +105,7 @@ class HeldOutJudge::Judgement {
     if (!is_any_) {
       return result_;
     }
-    if (!take(samples)) {
+    if (changesTrackerNoise(samples) || !take(samples)) {
       beginAnew();
       take(samples);
     }
@@ -132,6 +124,19 @@ class HeldOutJudge::Judgement {
     WhitenedObservation misfit;  ///< empty where it does not count
     SharedLoading loading = SharedLoading::Zero();
   };
+
+  /// Whether new samples in use change what an orientation map leaves open of those before. Those
+  /// that are held out have no part in it, so that each of them is looked at once.
+  bool changesTrackerNoise(const std::vector<Sample>& samples) {
+    constexpr double kRounding = 1e-9;
+    const double before = tracker_.variance();
+    for (std::size_t n = taken_; n < samples.size() && problem_.model->hasOrientationMap(); ++n) {
+      if (!samples[n].validation) {
+        tracker_.add(samples[n], options_);
+      }
+    }
+    return !judged_.empty() && std::abs(tracker_.variance() - before) > kRounding * before;
+  }
 
   void beginAnew() {
     taken_ = 0;
@@ -191,7 +196,7 @@ class HeldOutJudge::Judgement {
     constexpr double kNoNoise = 1e-3;  // standardised: of a simulation, which honestly repeats
     const Sample& sample = (*problem_.samples)[observation.sample];
     problem_.observations = {observation};
-    const ObservationEvaluator evaluator(problem_, options_);
+    const ObservationEvaluator evaluator(problem_, options_, tracker_);
     evaluator.linearize(0, point_, linear_);
     const SampleResidual residual = residualOf(
         sample, observation.quantity, linear_.residual, evaluator.covariance(0, linear_, every_));
@@ -344,6 +349,7 @@ class HeldOutJudge::Judgement {
   std::size_t taken_ = 0;                  ///< of the samples
   std::vector<Observation> observations_;  ///< in use or held out
   std::vector<bool> held_out_;             ///< per observation
+  TrackerNoise tracker_;                   ///< of the samples in use
   RepeatSearch repeats_;
   std::optional<Sample> dwell_;  ///< the first sample of the present one, where it shares errors
   std::size_t dwells_ = 0;

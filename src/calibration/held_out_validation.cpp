@@ -32,6 +32,13 @@ HeldOutValidation validationOf(const HeldOutMotion& motion) {
   return result;
 }
 
+const HeldOutValidation& severer(const HeldOutValidation& one, const HeldOutValidation& other) {
+  if (!one.hasVerdict()) {
+    return other.samples > 0 ? other : one;
+  }
+  return other.hasVerdict() && other.probability < one.probability ? other : one;
+}
+
 std::string verdict(const HeldOutValidation& validation) {
   if (!validation.hasVerdict() && validation.unjudged_torques > 0) {
     return "The held-out samples are torques of coils that are not calibrated: calibrate these "

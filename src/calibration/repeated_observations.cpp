@@ -187,15 +187,16 @@ std::optional<std::size_t> RepeatSearch::add(const std::vector<Sample>& samples,
       quantity == Quantity::kTorque ? torques_ : orientations_;
   const double key = measurements.keyOf(place);
   const double reach = kSumOfWeights * measurements.tolerance(place);
-  std::optional<std::size_t> earlier;
   const auto end = by_key.upper_bound(key + reach);
-  for (auto one = by_key.lower_bound(key - reach); one != end; ++one) {
-    if (measurements.areEqual(place, one->second)) {
-      earlier = std::min<std::size_t>(earlier.value_or(one->second), one->second);
-    }
+  const auto earlier = std::find_if(by_key.lower_bound(key - reach), end, [&](const auto& one) {
+    return measurements.areEqual(place, one.second);
+  });
+  if (earlier != end) {
+    return earlier->second;
   }
+  // Of those that are equal the first alone: a sensor that stands still gives thousands.
   by_key.emplace(key, place);
-  return earlier;
+  return std::nullopt;
 }
 
 std::vector<Observation> withoutRepeated(const std::vector<Observation>& observations,

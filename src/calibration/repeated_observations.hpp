@@ -31,8 +31,8 @@ class RepeatSearch {
  public:
   explicit RepeatSearch(const EstimationOptions& options) : options_(options) {}
 
-  /// Takes the last of `observations`, all others being taken before it; returns the place of the
-  /// earliest one that it repeats.
+  /// Takes the last of `observations`, all others being taken before it; returns the place of one
+  /// that it repeats, which repeats none.
   std::optional<std::size_t> add(const std::vector<Sample>& samples,
                                  const std::vector<Observation>& observations);
 

@@ -45,7 +45,8 @@ void IncrementalEstimate::add(const Sample& sample) {
     update_->beginDwell();
     dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;
   }
-  const ObservationEvaluator evaluator(problem, options_);
+  tracker_.add(sample, options_);
+  const ObservationEvaluator evaluator(problem, options_, tracker_);
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     evaluator.linearize(n, *point_, linear_);
     const Eigen::Matrix3d W =
@@ -70,6 +71,7 @@ bool IncrementalEstimate::hasMovedFar() const {
 
 void IncrementalEstimate::relinearize(const std::vector<Sample>& samples) {
   restart(at_ + update_->mean());
+  tracker_ = TrackerNoise();
   for (const Sample& sample : samples) {
     add(sample);
   }

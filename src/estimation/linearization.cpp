@@ -13,11 +13,42 @@ double orientationStddev(const Sample& sample, const EstimationOptions& options)
                                          : options.default_orientation_stddev;
 }
 
+/// Of all samples of a problem. Without a map nothing depends on it.
+TrackerNoise trackerNoise(const EstimationProblem& problem,
+                          const CalibrationModel& model,
+                          const EstimationOptions& options) {
+  TrackerNoise noise;
+  if (model.hasOrientationMap()) {
+    for (const Sample& sample : *problem.samples) {
+      noise.add(sample, options);
+    }
+  }
+  return noise;
+}
+
 }  // namespace
+
+void TrackerNoise::add(const Sample& sample, const EstimationOptions& options) {
+  if (sample.has_orientation) {
+    sum_ += std::pow(orientationStddev(sample, options), 2);
+    count_ += 1.0;
+  }
+}
 
 ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
                                            const CalibrationModel& model,
                                            const EstimationOptions& options)
+    : ObservationEvaluator(problem, model, options, trackerNoise(problem, model, options)) {}
+
+ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
+                                           const EstimationOptions& options,
+                                           const TrackerNoise& tracker)
+    : ObservationEvaluator(problem, *problem.model, options, tracker) {}
+
+ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
+                                           const CalibrationModel& model,
+                                           const EstimationOptions& options,
+                                           const TrackerNoise& tracker)
     : problem_(problem),
       model_(model),
       options_(options),
@@ -40,22 +71,13 @@ ObservationEvaluator::ObservationEvaluator(const EstimationProblem& problem,
   excitations_.shrink_to_fit();
   if (model.hasOrientationMap()) {
     joints_ = jointGeometry(model.space().nominal().joints);
-    lookUpMap(*model.space().nominal().orientation_map);
+    lookUpMap(*model.space().nominal().orientation_map, tracker.variance());
   }
 }
 
 /// A map's noise is what poses differ by beside the smooth part, as the tracker told it: its own
 /// noise is none of the rotor.
-void ObservationEvaluator::lookUpMap(const OrientationMap& map) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Sample& sample : *problem_.samples) {
-    if (sample.has_orientation) {
-      sum += std::pow(orientationStddev(sample, options_), 2);
-      count += 1.0;
-    }
-  }
-  const double of_tracker = count > 0.0 ? sum / count : 0.0;
+void ObservationEvaluator::lookUpMap(const OrientationMap& map, double tracker_variance) {
   left_open_.reserve(problem_.observations.size());
   const Sample* before = nullptr;
   for (const Observation& observation : problem_.observations) {
@@ -65,7 +87,7 @@ void ObservationEvaluator::lookUpMap(const OrientationMap& map) {
     } else {
       const OrientationMap::Uncertainty uncertainty = map.uncertainty(sample.joint_position);
       left_open_.push_back(uncertainty.variance +
-                           (uncertainty.noise.array() - of_tracker).max(0.0).matrix());
+                           (uncertainty.noise.array() - tracker_variance).max(0.0).matrix());
     }
     before = &sample;
   }

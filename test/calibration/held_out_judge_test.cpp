@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,13 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "support/scenarios.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
@@ -201,6 +205,28 @@ TEST_F(HeldOutJudgeTest, SaysNothingWhereNoneIsHeldOut) {
   const HeldOutValidation validation = expectTheSame(samples);
   EXPECT_EQ(validation.samples, 0U);
   EXPECT_FALSE(validation.hasVerdict());
+}
+
+// Trackers that are better than what the map leaves open, some more than others.
+TEST(HeldOutJudge, TellsTheSameWithAnOrientationMap) {
+  const std::string positioner = SOURCE_DIR "/config/examples/two_axis_positioner";
+  std::vector<Sample> all = loadSamples(positioner + "/samples.yaml", 0);
+  CalibrationConfig config;
+  config.orientation_map = MapUse::kAlways;
+  const std::vector<Sample> first(all.begin(), all.begin() + 60);
+  CalibrationSession session({loadActuator(positioner + "/actuator.yaml")}, first, config);
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  ASSERT_TRUE(session.orientationMap().map);
+  HeldOutJudge growing = session.heldOutJudge();
+  for (std::size_t n = first.size(); n < all.size(); ++n) {
+    all[n].validation = n % 2 == 0;
+    all[n].orientation_stddev *= n % 3 == 0 ? 0.3 : 0.8;
+    session.add(all[n]);
+    const double grown = growing.judge(session.samples()).reduced_chi_square;
+    const std::optional<HeldOutValidation> whole = session.validation();
+    EXPECT_NEAR(grown, whole ? whole->reduced_chi_square : 0.0, 1e-9) << n;
+  }
+  EXPECT_GT(session.validation()->reduced_chi_square, 0.1);
 }
 
 }  // namespace

@@ -44,6 +44,9 @@ double outlierRate(const CycleReport& report);
 /// torque, its mean error.
 HeldOutValidation validationOf(const HeldOutMotion& motion);
 
+/// Of two that may both have a verdict the one with the less probable misfit.
+const HeldOutValidation& severer(const HeldOutValidation& one, const HeldOutValidation& other);
+
 /// Smaller probabilities mean that the held-out samples contradict the parameters.
 inline constexpr double kLeastProbability = 1e-3;
 

@@ -18,12 +18,28 @@ struct LinearizedObservation {
   PoseDerivatives d_pose;
 };
 
+/// What the tracker's noise is on average of samples: an orientation map's own noise has it, too.
+class TrackerNoise {
+ public:
+  void add(const Sample& sample, const EstimationOptions& options);
+  /// Mean over the samples with an orientation, per component [rad²]; zero where there is none.
+  double variance() const { return count_ > 0.0 ? sum_ / count_ : 0.0; }
+
+ private:
+  double sum_ = 0.0;
+  double count_ = 0.0;
+};
+
 /// Evaluates the observations of one problem: residuals, Jacobians and covariances.
 class ObservationEvaluator {
  public:
   /// Keeps references: the problem must outlive the evaluator.
   ObservationEvaluator(const EstimationProblem& problem, const EstimationOptions& options)
       : ObservationEvaluator(problem, *problem.model, options) {}
+  /// Where more samples tell the tracker's noise than the problem has.
+  ObservationEvaluator(const EstimationProblem& problem,
+                       const EstimationOptions& options,
+                       const TrackerNoise& tracker);
   /// In the coordinates of another model, whose first ones are those of the problem.
   ObservationEvaluator(const EstimationProblem& problem,
                        const CalibrationModel& model,
@@ -69,11 +85,15 @@ class ObservationEvaluator {
                              const std::vector<bool>& held) const;
 
  private:
+  ObservationEvaluator(const EstimationProblem& problem,
+                       const CalibrationModel& model,
+                       const EstimationOptions& options,
+                       const TrackerNoise& tracker);
   Eigen::Vector3d evaluate(std::size_t observation,
                            const ModelPoint& point,
                            LinearizedObservation* linear) const;
   double stddev(std::size_t observation) const;
-  void lookUpMap(const OrientationMap& map);
+  void lookUpMap(const OrientationMap& map, double tracker_variance);
   Eigen::Matrix3d rootOfPose(const Eigen::Vector3d& reading,
                              const Eigen::Vector3d& stddevs,
                              const Eigen::Vector3d& left_open) const;
