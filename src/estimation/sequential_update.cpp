@@ -5,15 +5,20 @@
 namespace sac {
 namespace {
 
-/// Observations that the covariance waits for: many at once take less time, each of them more.
-constexpr Eigen::Index kMostWaiting = 16;
+/// Columns of gains that the covariance waits for: those of many observations at once take less
+/// time where there are many coordinates, and each observation takes more.
+Eigen::Index mostColumns(Eigen::Index coordinates) {
+  constexpr Eigen::Index kMany = 256;
+  constexpr Eigen::Index kObservations = 16;
+  return coordinates > kMany ? 3 * kObservations : 3;
+}
 
 }  // namespace
 
 SequentialUpdate::SequentialUpdate(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
     : mean_(Eigen::VectorXd::Zero(mean.size() + kSharedErrors)),
       covariance_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())),
-      gains_(mean_.size(), 3 * kMostWaiting) {
+      gains_(mean_.size(), mostColumns(mean.size())) {
   mean_.head(size()) = mean;
   covariance_.topLeftCorner(size(), size()) = covariance;
   beginDwell();

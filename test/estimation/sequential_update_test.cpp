@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -10,7 +11,8 @@
 namespace sac {
 namespace {
 
-constexpr Eigen::Index kCoordinates = 9;
+constexpr Eigen::Index kFew = 9;     // coordinates
+constexpr Eigen::Index kMany = 300;  // of which the covariance waits
 constexpr Eigen::Index kObservations = 23;
 constexpr Eigen::Index kOfDwell = 3;  // observations of each dwell; the last one has fewer
 
@@ -21,14 +23,15 @@ Eigen::MatrixXd random(Eigen::Index rows, Eigen::Index columns, std::mt19937_64&
 
 /// Residuals that depend on some of the coordinates each, and on errors of their dwells, with a
 /// prior of any rank.
-class SequentialUpdateTest : public testing::TestWithParam<Eigen::Index> {
+class SequentialUpdateTest : public testing::TestWithParam<std::pair<Eigen::Index, Eigen::Index>> {
  protected:
   void SetUp() override {
     std::mt19937_64 generator(3);
-    const Eigen::MatrixXd root = random(kCoordinates, GetParam(), generator);
-    P_ = root * root.transpose();
+    const auto [coordinates, rank] = GetParam();
+    const Eigen::MatrixXd root = random(coordinates, rank, generator);
+    P_ = root * root.transpose() / static_cast<double>(coordinates);
     r_ = random(3 * kObservations, 1, generator);
-    J_ = Eigen::MatrixXd::Zero(3 * kObservations, kCoordinates);
+    J_ = Eigen::MatrixXd::Zero(3 * kObservations, coordinates);
     S_ = Eigen::MatrixXd::Identity(3 * kObservations, 3 * kObservations);
     SequentialUpdate update(P_);
     for (Eigen::Index n = 0; n < kObservations; ++n) {
@@ -85,7 +88,12 @@ TEST_P(SequentialUpdateTest, IsTheEstimateOfAllAtOnce) {
   EXPECT_LT((covariance_ - P_ + gain * J_ * P_).norm(), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ranks, SequentialUpdateTest, testing::Values(kCoordinates, 3, 0));
+INSTANTIATE_TEST_SUITE_P(Ranks,
+                         SequentialUpdateTest,
+                         testing::Values(std::pair(kFew, kFew),
+                                         std::pair(kFew, Eigen::Index{3}),
+                                         std::pair(kFew, Eigen::Index{0}),
+                                         std::pair(kMany, kMany)));
 
 }  // namespace
 }  // namespace sac
