@@ -45,7 +45,7 @@ class CalibrationStudy(unittest.TestCase):
         wide = self.folder / "wide.yaml"
         wide.write_text("tolerance: {coil: 0.5}\n")
         text = ACTUATOR.read_text()
-        study = ("calibration_study", "--actuator", actuator, "--trials", "2", "--threads", "1")
+        study = ("calibration_study", "--actuator", actuator, "--trials", "2", "--threads", "1", "--force")
         for change, options in (("# another\n", ()), ("", ("--config", wide))):
             actuator.write_text(text)
             self.run_program(*study, "--shard", "1/2", "--output", "1.yaml")
