@@ -152,7 +152,7 @@ TEST_F(OrientationControllerTest, ThePowerOfTheCoilsStaysWithinItsLimit) {
 
 // Once a second somebody looks: what was cut between is told, and by which limit.
 TEST_F(OrientationControllerTest, TellsTheLeastShareOfTheTorqueAndTheLimitThatCutIt) {
-  const auto cutBy = [&] {
+  const auto cut_by = [&] {
     rotor_.release(Eigen::Vector3d::Zero());
     restart();
     start(truth_);
@@ -168,13 +168,13 @@ TEST_F(OrientationControllerTest, TellsTheLeastShareOfTheTorqueAndTheLimitThatCu
     EXPECT_EQ(controller_->takeTorqueCut().limit, CurrentLimit::kNone);
     return cut.limit;
   };
-  EXPECT_EQ(cutBy(), CurrentLimit::kNone);
+  EXPECT_EQ(cut_by(), CurrentLimit::kNone);
   options_.square_current_limit = 1e-5;
-  EXPECT_EQ(cutBy(), CurrentLimit::kPower);
+  EXPECT_EQ(cut_by(), CurrentLimit::kPower);
   options_.total_current_limit = 1e-3;
-  EXPECT_EQ(cutBy(), CurrentLimit::kTotal);
+  EXPECT_EQ(cut_by(), CurrentLimit::kTotal);
   options_.allocation.current_limit = 1e-5;
-  EXPECT_EQ(cutBy(), CurrentLimit::kCoil);
+  EXPECT_EQ(cut_by(), CurrentLimit::kCoil);
 }
 
 // Half of what the load needs: that the rotor does not follow is no riddle.
