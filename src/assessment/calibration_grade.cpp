@@ -198,8 +198,8 @@ class CalibrationGrader::Examiner {
     if (!registration.rotor_marker) {
       add("rotor_marker");
     }
-    const bool used_torques =
-        isTorqueIdentified() && (last_success_ == nullptr || !last_success_->motion);
+    const bool used_torques = isTorqueIdentified() &&
+                              (last_success_ == nullptr || last_success_->cycle != Cycle::kMotion);
     if (used_torques && !registration.rotor_ft_sensor) {
       add("rotor_ft_sensor");
     }

@@ -87,6 +87,13 @@ void insertResiduals(const SQLite::Database& database, std::int64_t id, const Cy
   }
 }
 
+void insertDoubts(const SQLite::Database& database, std::int64_t id, const CycleReport& report) {
+  RowWriter row(database, "INSERT INTO cycle_doubts (cycle, position, sentence) VALUES (?, ?, ?)");
+  for (std::size_t n = 0; n < report.doubts.size(); ++n) {
+    row.put(id).put(n).put(report.doubts[n]).write();
+  }
+}
+
 void readErrors(const SQLite::Database& database, std::int64_t id, CycleReport& report) {
   RowReader row(database, "SELECT error FROM cycle_errors WHERE cycle = ? ORDER BY iteration", id);
   while (row.next()) {
@@ -129,17 +136,27 @@ void readResiduals(const SQLite::Database& database, std::int64_t id, CycleRepor
   }
 }
 
+void readDoubts(const SQLite::Database& database, std::int64_t id, CycleReport& report) {
+  RowReader row(
+      database, "SELECT sentence FROM cycle_doubts WHERE cycle = ? ORDER BY position", id);
+  while (row.next()) {
+    report.doubts.push_back(row.text());
+  }
+}
+
 }  // namespace
 
 std::int64_t insert(const SQLite::Database& database,
                     const CycleReport& report,
+                    std::uint32_t in_force,
                     const std::string& software,
                     const std::string& date) {
   RowWriter row(database,
                 "INSERT INTO cycles (date, software, cycle, coil, success, message, samples_used, "
                 "samples_rejected, iterations, error_measure, reduced_chi_square, "
-                "condition_number, solve_time, orientation_uncertainty, torque_uncertainty) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                "condition_number, solve_time, orientation_uncertainty, torque_uncertainty, "
+                "contradicted, degrees_of_freedom, in_force) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.put(date)
       .put(software)
       .put(cycleName(report.cycle))
@@ -148,10 +165,12 @@ std::int64_t insert(const SQLite::Database& database,
   row.put(report.message).put(report.samples_used).put(report.samples_rejected);
   row.put(report.iterations).put(wordOf(kErrorMeasures, report.error_measure));
   row.put(report.reduced_chi_square).put(report.condition_number).put(report.solve_time);
-  row.put(report.orientation_uncertainty).put(report.torque_uncertainty).write();
+  row.put(report.orientation_uncertainty).put(report.torque_uncertainty);
+  row.put(report.contradicted).put(std::int64_t{report.degrees_of_freedom}).put(in_force).write();
   const std::int64_t id = database.getLastInsertRowid();
   insertErrors(database, id, report);
   insertEstimates(database, id, report);
+  insertDoubts(database, id, report);
   // Windows of motion are no samples.
   if (report.cycle != Cycle::kMotion) {
     insertResiduals(database, id, report);
@@ -171,7 +190,8 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   RowReader row(database,
                 "SELECT cycle, coil, success, message, samples_used, samples_rejected, iterations, "
                 "error_measure, reduced_chi_square, condition_number, solve_time, "
-                "orientation_uncertainty, torque_uncertainty FROM cycles WHERE id = ?",
+                "orientation_uncertainty, torque_uncertainty, contradicted, degrees_of_freedom "
+                "FROM cycles WHERE id = ?",
                 id);
   row.next();
   CycleReport report;
@@ -188,12 +208,15 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   report.solve_time = row.number();
   report.orientation_uncertainty = row.number();
   report.torque_uncertainty = row.number();
+  report.contradicted = row.flag();
+  report.degrees_of_freedom = static_cast<int>(row.integer());
   readErrors(database, id, report);
   if (report.success && report.error_history.empty()) {
     throw RowDefect("cycle " + std::to_string(id) + " has succeeded, and has no errors");
   }
   readEstimates(database, id, report);
   readResiduals(database, id, report);
+  readDoubts(database, id, report);
   return report;
 }
 

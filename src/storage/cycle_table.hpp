@@ -13,9 +13,10 @@
 /// Throws SQLite::Exception; the caller holds the transaction.
 namespace sac::cycle_table {
 
-/// Returns the id of the new row.
+/// Returns the id of the new row. `in_force`: the revision that was so when the cycle was run.
 std::int64_t insert(const SQLite::Database& database,
                     const CycleReport& report,
+                    std::uint32_t in_force,
                     const std::string& software,
                     const std::string& date);
 std::optional<CycleReport> last(const SQLite::Database& database);

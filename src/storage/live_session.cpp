@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
@@ -235,8 +236,11 @@ std::optional<MotionEvidence> LiveSession::motionBefore(std::uint32_t number) co
   if (!motion) {
     return std::nullopt;
   }
+  const std::vector<CycleReport> reports = database_.cyclesOfRevision(*motion);
+  const auto last = std::find_if(
+      reports.rbegin(), reports.rend(), [](const CycleReport& one) { return one.success; });
   return motionEvidence(session_.model().space(),
-                        database_.cyclesOfRevision(*motion).back(),
+                        *last,
                         database_.revision(*motion).value().state,
                         session_.startState());
 }

@@ -128,7 +128,12 @@ std::vector<RevisionSummary> all(const SQLite::Database& database) {
 std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number) {
   RowReader row(
       database,
-      (chain() + "SELECT cycle FROM chain WHERE cycle IS NOT NULL ORDER BY number").c_str(),
+      (chain() +
+       "SELECT cycle AS id FROM chain WHERE cycle IS NOT NULL UNION "
+       "SELECT cycles.id FROM cycles JOIN chain ON cycles.in_force = chain.number "
+       "WHERE cycles.success = 0 AND (chain.number = ?1 OR EXISTS (SELECT 1 FROM chain AS next "
+       "WHERE next.predecessor = chain.number AND next.cycle IS NOT NULL)) ORDER BY id")
+          .c_str(),
       number);
   std::vector<std::int64_t> cycles;
   while (row.next()) {

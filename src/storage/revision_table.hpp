@@ -24,7 +24,7 @@ std::uint32_t newestNumber(const SQLite::Database& database);
 std::optional<Revision> find(const SQLite::Database& database, std::uint32_t number);
 /// Oldest first.
 std::vector<RevisionSummary> all(const SQLite::Database& database);
-/// Ids of the cycles that led to a revision, in their order.
+/// Ids of the cycles that led to a revision, and of those that failed meanwhile, in their order.
 std::vector<std::int64_t> cyclesOf(const SQLite::Database& database, std::uint32_t number);
 /// Number of the last one that the cycle motion made, of those that led to a revision.
 std::optional<std::uint32_t> lastOfMotion(const SQLite::Database& database, std::uint32_t number);

@@ -129,10 +129,11 @@ void SessionDatabase::forgetMotion() {
 }
 
 void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {
-  tables_->connection.write(notStored("the report of cycle " + nameOf(report)),
-                            [&](SQLite::Database& database) {
-                              cycle_table::insert(database, report, tables_->software, date);
-                            });
+  tables_->connection.write(
+      notStored("the report of cycle " + nameOf(report)), [&](SQLite::Database& database) {
+        const std::uint32_t in_force = revision_table::newestNumber(database);
+        cycle_table::insert(database, report, in_force, tables_->software, date);
+      });
 }
 
 Revision SessionDatabase::addCycle(const CycleReport& report,
@@ -150,7 +151,8 @@ Revision SessionDatabase::addCycle(const CycleReport& report,
       notStored("the result of cycle " + nameOf(report)), [&](SQLite::Database& database) {
         const std::uint32_t before = revision_table::newestNumber(database);
         revision.number = before + 1;
-        const std::int64_t cycle = cycle_table::insert(database, report, tables_->software, date);
+        const std::int64_t cycle =
+            cycle_table::insert(database, report, before, tables_->software, date);
         revision_table::insert(database, revision, {before, cycle});
       });
   return revision;

@@ -12,7 +12,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 5;
+constexpr std::int64_t kSchemaVersion = 6;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -33,8 +33,20 @@ CREATE TABLE cycles (
   condition_number ANY,
   solve_time ANY,
   orientation_uncertainty ANY,
-  torque_uncertainty ANY
+  torque_uncertainty ANY,
+  contradicted INTEGER NOT NULL DEFAULT 0,
+  degrees_of_freedom INTEGER NOT NULL DEFAULT 0,
+  in_force INTEGER
 ) STRICT;
+)sql";
+
+constexpr char kDoubts[] = R"sql(
+CREATE TABLE cycle_doubts (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  sentence TEXT NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
 )sql";
 
 constexpr char kMotionWindows[] = R"sql(
@@ -209,10 +221,18 @@ void upgradeSessionSchema(SQLite::Database& database) {
     database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
     database.exec(kCycles);
     database.exec(
-        "INSERT INTO cycles SELECT * FROM earlier_cycles; DROP TABLE earlier_cycles;"
+        "INSERT INTO cycles SELECT *, 0, 0, NULL FROM earlier_cycles; DROP TABLE earlier_cycles;"
         "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
+  } else {
+    database.exec(
+        "ALTER TABLE cycles ADD COLUMN contradicted INTEGER NOT NULL DEFAULT 0;"
+        "ALTER TABLE cycles ADD COLUMN degrees_of_freedom INTEGER NOT NULL DEFAULT 0;"
+        "ALTER TABLE cycles ADD COLUMN in_force INTEGER");
   }
-  database.exec(kMotionWindows);
+  if (version < 5) {
+    database.exec(kMotionWindows);
+  }
+  database.exec(kDoubts);
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
@@ -220,6 +240,7 @@ void createSessionSchema(SQLite::Database& database) {
   database.exec(kCycles);
   database.exec(kTables);
   database.exec(kMotionWindows);
+  database.exec(kDoubts);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }

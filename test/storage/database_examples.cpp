@@ -158,6 +158,8 @@ CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters
   report.iterations = 4;
   report.error_measure = ErrorMeasure::kTorque;
   report.error_history = {kInfinity, numbers.next(), -0.0, numbers.next()};
+  report.doubts = {"Residuals are 2.0 times \"theirs\".", ""};
+  report.degrees_of_freedom = 57;
   report.reduced_chi_square = numbers.next();
   report.condition_number = kInfinity;
   report.solve_time = numbers.next();
@@ -221,9 +223,11 @@ bool isSame(const CalibrationState& a, const CalibrationState& b) {
 
 bool isSame(const CycleReport& a, const CycleReport& b) {
   return a.cycle == b.cycle && a.coil == b.coil && a.success == b.success &&
-         a.message == b.message && a.samples_used == b.samples_used &&
-         a.samples_rejected == b.samples_rejected && a.iterations == b.iterations &&
-         a.error_measure == b.error_measure && isSame(a.error_history, b.error_history) &&
+         a.contradicted == b.contradicted && a.doubts == b.doubts &&
+         a.degrees_of_freedom == b.degrees_of_freedom && a.message == b.message &&
+         a.samples_used == b.samples_used && a.samples_rejected == b.samples_rejected &&
+         a.iterations == b.iterations && a.error_measure == b.error_measure &&
+         isSame(a.error_history, b.error_history) &&
          isSame(a.reduced_chi_square, b.reduced_chi_square) &&
          isSame(a.condition_number, b.condition_number) && isSame(a.solve_time, b.solve_time) &&
          isSame(a.estimates, b.estimates) && isSame(a.residuals, b.residuals) &&

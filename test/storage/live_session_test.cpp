@@ -175,6 +175,36 @@ TEST_F(LiveSessionTest, TellsOfARefusedCycleUntilItIsMended) {
   EXPECT_FALSE(session.progress().refused);
 }
 
+std::string toldOf(const LiveSession& session) {
+  return session.grade().reason + (session.progress().refused ? " refused" : "");
+}
+
+TEST_F(LiveSessionTest, TellsOfARefusedCycleAndOfDoubtsWhenItGoesOn) {
+  const auto told_after = [this](const auto& act) {
+    LiveSession session = open();
+    act(session);
+    return toldOf(session);
+  };
+  const std::string doubted = told_after([](LiveSession& session) {
+    for (Sample sample : samples()) {
+      sample.orientation_stddev *= 0.4;
+      session.addSample(sample, kDate);
+    }
+    ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  });
+  ASSERT_NE(doubted.find("times their stated uncertainty"), std::string::npos) << doubted;
+  EXPECT_EQ(toldOf(open()), doubted);
+  const std::string refused = told_after([](LiveSession& session) {
+    for (Sample sample : samples()) {  // once more, and inverted
+      sample.R_stator_rotor.transposeInPlace();
+      session.addSample(sample, kDate);
+    }
+    ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).contradicted);
+  });
+  ASSERT_EQ(refused.find("Do not use this calibration"), 0U) << refused;
+  EXPECT_EQ(toldOf(open()), refused);
+}
+
 TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
   {
     LiveSession session = open();

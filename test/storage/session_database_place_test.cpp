@@ -192,6 +192,13 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
   EXPECT_TRUE(database_examples::isSame(database.current().state, state));
 }
 
+/// Cycles as formats before 6 had them.
+constexpr char kWithoutDoubts[] =
+    "DROP TABLE cycle_doubts;"
+    "ALTER TABLE cycles DROP COLUMN contradicted;"
+    "ALTER TABLE cycles DROP COLUMN degrees_of_freedom;"
+    "ALTER TABLE cycles DROP COLUMN in_force";
+
 /// Cycles as formats before 4 had them.
 constexpr char kWithoutMotionAndUnits[] =
     "DROP TABLE motion_windows;"
@@ -217,6 +224,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
     database.addCycle(database_examples::report(1, 0, kParameters), state, false, kDate);
   }
   // What the first format did not have are the last columns of two tables.
+  database_examples::change(path(), kWithoutDoubts);
   database_examples::change(path(), kWithoutMotionAndUnits);
   database_examples::change(path(), kWithoutSharedErrors);
   database_examples::change(
@@ -234,7 +242,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "5");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "6");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -243,6 +251,7 @@ TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
     SessionDatabase database(path(), identity());
     database.addSample(sample, kDate);
   }
+  database_examples::change(path(), kWithoutDoubts);
   database_examples::change(path(), kWithoutMotionAndUnits);
   database_examples::change(path(), kWithoutSharedErrors);
   database_examples::change(path(), "PRAGMA user_version = 2");
@@ -262,8 +271,11 @@ TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
     SessionDatabase database(path(), identity());
     database.addCycle(report, state, false, kDate);
   }
+  database_examples::change(path(), kWithoutDoubts);
   database_examples::change(path(), kWithoutMotionAndUnits);
   SessionDatabase database(path(), identity());
+  report.doubts.clear();
+  report.degrees_of_freedom = 0;
   for (ParameterEstimate& estimate : report.estimates) {
     estimate.unit.clear();
   }
@@ -282,13 +294,29 @@ TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
 
 TEST_F(PlaceTest, ADatabaseOfTheFourthFormatKeepsMotions) {
   constexpr Eigen::Index kParameters = 73;
-  const CycleReport report = database_examples::report(1, 0, kParameters);
+  CycleReport report = database_examples::report(1, 0, kParameters);
   SessionDatabase(path(), identity()).addCycle(report, kDate);
+  database_examples::change(path(), kWithoutDoubts);
+  report.doubts.clear();
+  report.degrees_of_freedom = 0;
   database_examples::change(path(), "DROP TABLE motion_windows; PRAGMA user_version = 4");
   SessionDatabase database(path(), identity());
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
   database.addMotion({database_examples::window(1, 24)}, kDate);
   EXPECT_EQ(database.motion().size(), 1U);
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheFifthFormatKeepsDoubts) {
+  CycleReport report = database_examples::report(1, 0, 73);
+  SessionDatabase(path(), identity()).addCycle(report, kDate);
+  database_examples::change(path(), kWithoutDoubts);
+  database_examples::change(path(), "PRAGMA user_version = 5");
+  SessionDatabase database(path(), identity());
+  report.success = false;
+  report.contradicted = true;
+  database.addCycle(report, kDate);
+  ASSERT_EQ(database.cyclesOfRevision(0).size(), 1U) << "nobody knows when the first one was run";
+  EXPECT_TRUE(database_examples::isSame(database.cyclesOfRevision(0)[0], report));
 }
 
 }  // namespace

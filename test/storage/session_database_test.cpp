@@ -200,10 +200,12 @@ TEST_F(SessionDatabaseTest, FailedCyclesMakeNoRevision) {
   SessionDatabase database = open();
   CycleReport report = database_examples::report(1, 0, 1);
   report.success = false;
+  report.contradicted = true;
   database.addCycle(report, kDate);
   EXPECT_EQ(database.current().number, 0U);
   EXPECT_TRUE(isSame(*database.lastCycle(), report));
-  EXPECT_TRUE(database.cyclesOfRevision(0).empty());
+  ASSERT_EQ(database.cyclesOfRevision(0).size(), 1U);
+  EXPECT_TRUE(isSame(database.cyclesOfRevision(0)[0], report));
 }
 
 TEST_F(SessionDatabaseTest, ACycleWithAnUnknownSampleLeavesNothingBehind) {
@@ -266,6 +268,40 @@ TEST_F(SessionDatabaseTest, KnowsWhichCyclesLedToARevision) {
                                       "5 identified coil:3",
                                       "6 restored revision 2",
                                       "7 identified coil:3"}));
+}
+
+TEST_F(SessionDatabaseTest, KnowsWhichCyclesFailedMeanwhile) {
+  SessionDatabase database = open();
+  const CalibrationState state = database_examples::state(1, kParameters);
+  // samples_rejected tells the reports apart.
+  const auto run = [&](unsigned seed, bool success) {
+    CycleReport report = database_examples::report(seed, 0, 1);
+    report.success = success;
+    if (success) {
+      database.addCycle(report, state, false, kDate);
+    } else {
+      database.addCycle(report, kDate);
+    }
+  };
+  const auto cycles_of = [&](std::uint32_t number) {
+    std::vector<std::uint32_t> seeds;
+    for (const CycleReport& report : database.cyclesOfRevision(number)) {
+      seeds.push_back(report.samples_rejected);
+    }
+    return seeds;
+  };
+  run(1, false);
+  run(2, true);
+  run(3, false);
+  run(4, true);
+  run(5, false);
+  EXPECT_EQ(cycles_of(2), (Ids{1, 2, 3, 4, 5}));
+  database.addRevision(state, "restored", "revision 1", false, kDate, 1);
+  EXPECT_EQ(cycles_of(3), (Ids{1, 2})) << "what failed after revision 1 is not of its parameters";
+  run(6, false);
+  EXPECT_EQ(cycles_of(3), (Ids{1, 2, 6}));
+  database.addRevision(state, "nominal", "reset", false, kDate);
+  EXPECT_TRUE(cycles_of(4).empty());
 }
 
 TEST_F(SessionDatabaseTest, OtherProgramsReadWhileItIsOpen) {

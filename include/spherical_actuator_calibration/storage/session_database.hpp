@@ -73,8 +73,9 @@ class SessionDatabase {
                     const std::string& date);
   /// Report of the last cycle ever stored.
   std::optional<CycleReport> lastCycle() const;
-  /// Reports of the successful cycles that led to a revision, in their order: from the parameters
-  /// at the start, or from a reset.
+  /// Reports of the cycles that led to a revision, in their order: from the parameters at the
+  /// start, or from a reset. Among them those that failed meanwhile, and since it came into force;
+  /// a revision that is restored leaves behind what failed after it.
   std::vector<CycleReport> cyclesOfRevision(std::uint32_t number) const;
   /// Number of the last revision that the cycle `motion` made, of those that led to a revision.
   std::optional<std::uint32_t> motionBefore(std::uint32_t number) const;
