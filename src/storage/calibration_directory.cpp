@@ -111,8 +111,8 @@ std::string CalibrationDirectory::database() const {
   return (fs::path(path_) / "session.db").string();
 }
 
-std::string CalibrationDirectory::description(std::uint32_t revision) const {
-  return revisionFile(revision, ".yaml");
+std::string CalibrationDirectory::description(std::uint32_t revision, unsigned edition) const {
+  return revisionFile(revision, edition > 1 ? "_" + std::to_string(edition) + ".yaml" : ".yaml");
 }
 
 std::string CalibrationDirectory::urdf(std::uint32_t revision) const {
@@ -124,8 +124,8 @@ std::string CalibrationDirectory::report(std::uint32_t revision) const {
 }
 
 std::string CalibrationDirectory::revisionFile(std::uint32_t revision,
-                                               const std::string& extension) const {
-  const std::string file = name_ + "_revision_" + std::to_string(revision) + extension;
+                                               const std::string& ending) const {
+  const std::string file = name_ + "_revision_" + std::to_string(revision) + ending;
   return (fs::path(path_) / file).string();
 }
 

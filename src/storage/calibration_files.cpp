@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/storage/calibration_files.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -23,6 +25,30 @@ void writeOnce(const std::string& path, const std::string& content) {
   }
 }
 
+/// Whether a file is there with another content.
+bool isTaken(const std::string& path, const std::string& content) {
+  return fs::exists(path) && readInputFile(path) != content;
+}
+
+/// Grade that a report tells in its first lines; empty where there is none.
+std::string gradeInReport(const std::string& path) {
+  constexpr std::size_t kHead = 4096;  // byte
+  constexpr char kKey[] = "\n  verdict: {grade: ";
+  if (!unreadableKind(path).empty()) {
+    return {};
+  }
+  std::string head(kHead, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t key = head.find(kKey);
+  if (key == std::string::npos) {
+    return {};
+  }
+  const std::size_t begin = key + sizeof kKey - 1;
+  return head.substr(begin, head.find(',', begin) - begin);
+}
+
 bool anyIdentified(const CalibrationState& state) {
   return std::find(state.identified.begin(), state.identified.end(), true) !=
          state.identified.end();
@@ -30,10 +56,19 @@ bool anyIdentified(const CalibrationState& state) {
 
 }  // namespace
 
-bool CalibrationFiles::isSaved(std::uint32_t revision) const {
+bool CalibrationFiles::isSaved(std::uint32_t revision, Grade grade) const {
   // A folder that cannot be looked into holds nothing that is saved.
   std::error_code error;
-  return fs::exists(directory_.description(revision), error);
+  if (!fs::exists(directory_.description(revision), error)) {
+    return false;
+  }
+  const std::string saved = gradeInReport(reportFile(revision));
+  const bool is_judged = grade == Grade::kGood || grade == Grade::kUsable;
+  return !is_judged || saved.empty() || saved == gradeName(grade);
+}
+
+std::string CalibrationFiles::reportFile(std::uint32_t revision) const {
+  return (fs::path(directory_.report(revision)) / "report.yaml").string();
 }
 
 std::string CalibrationFiles::save(const LiveSession& session,
@@ -43,8 +78,12 @@ std::string CalibrationFiles::save(const LiveSession& session,
     throw DataError("Nothing is calibrated yet: run a cycle first.");
   }
   const CalibratedDescription description = session.description(revision.date);
-  const std::string yaml_path = directory_.description(revision.number);
-  const std::string yaml = renderDescription(description, yaml_path);
+  const std::string yaml = renderDescription(description, directory_.description(revision.number));
+  unsigned edition = 1;
+  while (isTaken(directory_.description(revision.number, edition), yaml)) {
+    ++edition;
+  }
+  const std::string yaml_path = directory_.description(revision.number, edition);
   if (!robot.urdf) {
     writeOnce(yaml_path, yaml);
     return "Saved " + yaml_path + "; no URDF, since " + robot.source + " is missing.";
@@ -66,7 +105,7 @@ std::string CalibrationFiles::saveReport(const LiveSession& session) const {
     throw DataError(folder + ": the folder cannot be made: " + error.message() + ".");
   }
   // Samples may have come and gone since the last time.
-  writeFileAtomically((fs::path(folder) / "report.yaml").string(),
+  writeFileAtomically(reportFile(revision.number),
                       renderReport(session.calibration(), session.origin(revision.date), {}),
                       OverwritePolicy::kReplace);
   return folder;

@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
@@ -52,7 +53,7 @@ class CalibrationFilesTest : public ::testing::Test {
 TEST_F(CalibrationFilesTest, NothingIsSavedBeforeAnythingIsCalibrated) {
   EXPECT_EQ(errorMessage<DataError>([&] { files_.save(session_, robot()); }),
             "Nothing is calibrated yet: run a cycle first.");
-  EXPECT_FALSE(files_.isSaved(session_.revision().number));
+  EXPECT_FALSE(files_.isSaved(session_.revision().number, Grade::kFailed));
 }
 
 TEST_F(CalibrationFilesTest, DescriptionsAreOfTheParametersInForce) {
@@ -60,7 +61,7 @@ TEST_F(CalibrationFilesTest, DescriptionsAreOfTheParametersInForce) {
   const std::string yaml = directory_.description(1);
   const std::string urdf = directory_.urdf(1);
   EXPECT_EQ(files_.save(session_, robot()), "Saved " + yaml + " and " + urdf + ".");
-  EXPECT_TRUE(files_.isSaved(1));
+  EXPECT_TRUE(files_.isSaved(1, session_.grade().grade));
   EXPECT_EQ(loadDescription(yaml).actuator.joints[0].offset, session_.actuator().joints[0].offset);
   EXPECT_TRUE(std::filesystem::exists(urdf));
   // Once more is no error: the same content is there.
@@ -69,11 +70,35 @@ TEST_F(CalibrationFilesTest, DescriptionsAreOfTheParametersInForce) {
 
 TEST_F(CalibrationFilesTest, ASavedRevisionIsNeverReplaced) {
   calibrateJoint();
-  std::ofstream(directory_.description(1)) << "by hand\n";
-  EXPECT_NE(errorMessage<DataError>([&] {
-              files_.save(session_, robot());
-            }).find("the file exists already"),
-            std::string::npos);
+  const std::string first = directory_.description(1);
+  std::ofstream(first) << "by hand\n";
+  const std::string second = directory_.description(1, 2);
+  EXPECT_EQ(files_.save(session_, robot()), "Saved " + second + " and " + directory_.urdf(1) + ".");
+  EXPECT_EQ(readInputFile(first), "by hand\n");
+  EXPECT_EQ(loadDescription(second).actuator.joints[0].offset,
+            session_.actuator().joints[0].offset);
+}
+
+TEST_F(CalibrationFilesTest, WhatHeldOutSamplesSayLaterIsToBeSaved) {
+  calibrateJoint();
+  files_.save(session_, robot());
+  files_.saveReport(session_);
+  EXPECT_TRUE(files_.isSaved(1, session_.grade().grade));
+  scenarios::Generator generator(4);
+  for (Sample& sample : scenarios::paperSession(
+           scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator)) {
+    if (sample.has_orientation) {
+      sample.validation = true;
+      session_.addSample(sample, kDate);
+    }
+  }
+  ASSERT_EQ(session_.grade().grade, Grade::kUsable) << session_.grade().reason;
+  EXPECT_FALSE(files_.isSaved(1, session_.grade().grade));
+  files_.save(session_, robot());
+  files_.saveReport(session_);
+  EXPECT_TRUE(files_.isSaved(1, session_.grade().grade));
+  EXPECT_TRUE(std::filesystem::exists(directory_.description(1, 2)));
+  EXPECT_TRUE(files_.isSaved(1, Grade::kNotValidated)) << "cleared samples take nothing back";
 }
 
 TEST_F(CalibrationFilesTest, WithoutARobotDescriptionThereIsNoUrdf) {
@@ -87,7 +112,7 @@ TEST_F(CalibrationFilesTest, WithoutARobotDescriptionThereIsNoUrdf) {
 TEST_F(CalibrationFilesTest, ARobotDescriptionOfAnotherMachineLeavesNoFile) {
   calibrateJoint();
   EXPECT_ANY_THROW(files_.save(session_, {"<robot name=\"x\"/>", "/robot_description"}));
-  EXPECT_FALSE(files_.isSaved(1));
+  EXPECT_FALSE(files_.isSaved(1, session_.grade().grade));
 }
 
 TEST_F(CalibrationFilesTest, TheReportIsReplaced) {

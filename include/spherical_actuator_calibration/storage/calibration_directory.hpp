@@ -21,15 +21,16 @@ class CalibrationDirectory {
   const std::string& path() const { return path_; }
   /// Path of the session database.
   std::string database() const;
-  /// Path of the calibrated description of a revision: <name>_revision_<number>.yaml.
-  std::string description(std::uint32_t revision) const;
+  /// Path of the calibrated description of a revision: <name>_revision_<number>.yaml, and
+  /// <name>_revision_<number>_<edition>.yaml from the second edition on.
+  std::string description(std::uint32_t revision, unsigned edition = 1) const;
   /// Path of the calibrated URDF of a revision.
   std::string urdf(std::uint32_t revision) const;
   /// Path of the folder for the report of a revision: report_revision_<number>.
   std::string report(std::uint32_t revision) const;
 
  private:
-  std::string revisionFile(std::uint32_t revision, const std::string& extension) const;
+  std::string revisionFile(std::uint32_t revision, const std::string& ending) const;
 
   std::string path_;
   std::string name_;

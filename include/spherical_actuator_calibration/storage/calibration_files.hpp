@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/storage/calibration_directory.hpp"
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
@@ -22,10 +23,13 @@ class CalibrationFiles {
  public:
   explicit CalibrationFiles(const CalibrationDirectory& directory) : directory_(directory) {}
 
-  /// Whether the description of a revision is there.
-  bool isSaved(std::uint32_t revision) const;
+  /// Whether the description of a revision is there. Where held-out samples agree (`grade`: good or
+  /// usable) its report must tell that grade, too: one from before they judged is to be saved anew.
+  bool isSaved(std::uint32_t revision, Grade grade) const;
 
   /// Writes the calibrated description and, where there is a robot description, the calibrated one.
+  /// A description tells what held-out samples say: where that, or anything else of it, is other
+  /// than in the file that is there, the new one has the next free number in its name.
   /// Nothing is written when either cannot be made. Returns the sentence that names the files.
   /// Throws DataError when nothing is calibrated yet.
   std::string save(const LiveSession& session, const RobotDescription& robot) const;
@@ -35,6 +39,8 @@ class CalibrationFiles {
   std::string saveReport(const LiveSession& session) const;
 
  private:
+  std::string reportFile(std::uint32_t revision) const;
+
   const CalibrationDirectory& directory_;
 };
 

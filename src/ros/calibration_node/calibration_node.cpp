@@ -335,7 +335,7 @@ void CalibrationNode::publishStatus() {
   try {
     SessionProgress progress = session_.progress();
     const GradedCalibration& graded = session_.grade();
-    progress.saved = files_.isSaved(session_.revision().number);
+    progress.saved = files_.isSaved(session_.revision().number, graded.grade);
     progress.contradicted = graded.grade == Grade::kContradicted;
     progress.good = graded.grade == Grade::kGood;
     progress.judged = progress.good || graded.grade == Grade::kUsable;
