@@ -16,6 +16,15 @@ namespace {
 
 constexpr double kComponents = 3.0;
 
+/// Of three components that follow from the parameters.
+Eigen::Matrix3d covarianceOf(const ResidualJacobian& jacobian, const Eigen::MatrixXd& parameters) {
+  return jacobian * parameters * jacobian.transpose();
+}
+
+double rootMeanVariance(double sum) {
+  return std::sqrt(std::max(0.0, sum) / kComponents);
+}
+
 std::shared_ptr<const CalibrationModel> modelOf(const CalibratedDescription& description) {
   return std::make_shared<const CalibrationModel>(
       ParameterSpace(description.actuator, effectsOf(description.calibration)));
@@ -29,11 +38,6 @@ Predictor::Predictor(const CalibratedDescription& description)
       covariance_(machineCovariance(model_->space(), description, false)),
       loaded_covariance_(machineCovariance(model_->space(), description, true)) {}
 
-double Predictor::parameterVariance(const ResidualJacobian& jacobian,
-                                    const Eigen::MatrixXd& covariance) {
-  return std::max(0.0, (jacobian * covariance * jacobian.transpose()).trace());
-}
-
 Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) const {
   Sample sample;
   sample.joint_position = reading;
@@ -44,7 +48,7 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
   predictMeasurements(point_, sample);
   ResidualJacobian jacobian;
   point_.orientationResidual(sample, &jacobian);
-  double variance = parameterVariance(jacobian, covariance_);
+  double variance = covarianceOf(jacobian, covariance_).trace();
   Orientation result;
   result.R_stator_rotor = sample.R_stator_rotor;
   const Actuator& actuator = model_->space().nominal();
@@ -53,7 +57,7 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
     variance += map.variance.sum() + map.noise.sum();
     result.is_supported = map.support >= kLeastMapSupport;
   }
-  result.stddev = std::sqrt(variance / kComponents);
+  result.stddev = rootMeanVariance(variance);
   return result;
 }
 
@@ -80,7 +84,7 @@ Predictor::Torque Predictor::torqueOfCoils(const Eigen::Vector3d& reading,
   ResidualJacobian jacobian;
   Torque result;
   result.torque = -point_.torqueResidual(sample, excitations, &jacobian);
-  double variance = parameterVariance(jacobian, covariance);
+  result.covariance = covarianceOf(jacobian, covariance);
   const Actuator& actuator = model_->space().nominal();
   if (actuator.orientation_map) {
     // A rotation error ξ acts on the torque as offsets do: ∂T/∂ξ = (∂T/∂offsets)(∂ξ/∂offsets)⁻¹.
@@ -93,9 +97,9 @@ Predictor::Torque Predictor::torqueOfCoils(const Eigen::Vector3d& reading,
     const Eigen::Matrix3d d_rotation =
         joints.d_offset.transpose().fullPivLu().solve(d_offset.transpose()).transpose();
     const Eigen::Vector3d rotation = map.variance + map.noise;
-    variance += (d_rotation * rotation.asDiagonal() * d_rotation.transpose()).trace();
+    result.covariance += d_rotation * rotation.asDiagonal() * d_rotation.transpose();
   }
-  result.stddev = std::sqrt(std::max(0.0, variance) / kComponents);
+  result.stddev = rootMeanVariance(result.covariance.trace());
   return result;
 }
 

@@ -70,7 +70,9 @@ CalibratedActuator::Currents CalibratedActuator::currents(const Eigen::Vector3d&
   // What is missing of the torque would come from Q⁺ times it.
   const Eigen::MatrixXd Q_inverse =
       Eigen::MatrixXd(Q).completeOrthogonalDecomposition().pseudoInverse();
-  result.stddev = made.stddev * Q_inverse.rowwise().norm();
+  result.stddev = ((Q_inverse * made.covariance).cwiseProduct(Q_inverse).rowwise().sum())
+                      .cwiseMax(0.0)
+                      .cwiseSqrt();
   return result;
 }
 

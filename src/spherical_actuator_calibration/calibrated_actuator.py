@@ -32,7 +32,7 @@ class Torque(typing.NamedTuple):
 class Currents(typing.NamedTuple):
     outcome: str  # reached; limited: less torque than asked for; singular: none, and no currents
     currents: list  # of every coil [A]
-    stddevs: list  # of each against the current that would make the torque in truth [A]
+    stddevs: list  # of the least change of each by which the torque would be made in truth [A]
     torque: list  # that they make, rotor frame [N m]
     torque_stddev: float  # of a component [N m]
 

@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/control/calibrated_actuator.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,42 @@ TEST(CalibratedActuator, CurrentsMakeTheTorqueThatWasAskedFor) {
   EXPECT_GT(found.stddev.maxCoeff(), 0.0);
   // Of currents below half an ampere, milliradians make no more than some hundredths.
   EXPECT_LT(found.stddev.maxCoeff(), 0.05);
+}
+
+// Against machines that differ from the description by what it states.
+TEST(CalibratedActuator, CurrentsAreAsUncertainAsTheTorqueThatTheyMake) {
+  constexpr int kMachines = 2000;
+  const CalibratedDescription description = calibrated();
+  const Eigen::Vector3d wanted(0.05, -0.03, 0.04);
+  const auto found = CalibratedActuator(description).currents(wanted, somewhere());
+  const TorqueCurve curve(*description.actuator.torque_curve);
+  const auto torque_matrix = [&](const Actuator& actuator) -> Eigen::Matrix3Xd {
+    const Eigen::Matrix3d R = rotorOrientation(jointGeometry(actuator), somewhere());
+    return torquePerAmpere(curve, torqueGeometry(actuator), R);
+  };
+  const Eigen::MatrixXd correction = Eigen::MatrixXd(torque_matrix(description.actuator))
+                                         .completeOrthogonalDecomposition()
+                                         .pseudoInverse();
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> error(0.0, 1e-3);
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(found.currents.size());
+  for (int n = 0; n < kMachines; ++n) {
+    Actuator machine = description.actuator;
+    for (PoleAxis& pole : machine.poles) {
+      pole.polar += error(generator);
+      pole.azimuth += error(generator);
+    }
+    for (CoilAxis& coil : machine.coils) {
+      coil.polar += error(generator);
+      coil.azimuth += error(generator);
+    }
+    const Eigen::Vector3d missing = wanted - torque_matrix(machine) * found.currents;
+    squares += (correction * missing).cwiseAbs2();
+  }
+  for (Eigen::Index j = 0; j < squares.size(); ++j) {
+    EXPECT_NEAR(found.stddev[j], std::sqrt(squares[j] / kMachines), 0.06 * found.stddev[j] + 1e-9)
+        << "coil " << j + 1;
+  }
 }
 
 TEST(CalibratedActuator, GainsCountOnce) {

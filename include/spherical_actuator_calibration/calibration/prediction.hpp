@@ -28,6 +28,9 @@ class Predictor {
   struct Torque {
     Eigen::Vector3d torque;  ///< of the coils on the rotor, rotor frame [N·m]
     double stddev = 0.0;     ///< of a component (1 σ) [N·m]
+    /// Of its components [N²·m²]: they are rarely known equally well, and `stddev` is the root mean
+    /// square over them.
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   };
 
   /// Throws ConfigError when the description is not valid, or its covariance is not of its
@@ -51,9 +54,6 @@ class Predictor {
   Torque torqueOfCoils(const Eigen::Vector3d& reading,
                        const Eigen::VectorXd& current,
                        const Eigen::MatrixXd& covariance) const;
-  /// Sum of the variances of three components that follow from the parameters.
-  static double parameterVariance(const ResidualJacobian& jacobian,
-                                  const Eigen::MatrixXd& covariance);
 
   std::shared_ptr<const CalibrationModel> model_;  ///< where the point finds it, also after a copy
   ModelPoint point_;  ///< all coordinates zero: the description is the nominal one of its model

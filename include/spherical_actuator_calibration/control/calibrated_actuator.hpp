@@ -21,8 +21,8 @@ class CalibratedActuator {
   struct Currents {
     Allocation outcome = Allocation::kSingular;
     Eigen::VectorXd currents;  ///< of every coil [A]
-    /// Of each coil [A] (1 σ): by how much it lies beside the current that would make the torque
-    /// in truth.
+    /// Of each coil [A] (1 σ): by how much it would have to change, least for all coils together,
+    /// for the torque to be made in truth.
     Eigen::VectorXd stddev;
     Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< that they make, rotor frame [N·m]
     double torque_stddev = 0.0;                        ///< of a component of it (1 σ) [N·m]
