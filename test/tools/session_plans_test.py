@@ -7,7 +7,12 @@ import sqlite3
 import tempfile
 import unittest
 
+from spherical_actuator_calibration.session_guide.account import Account
+from spherical_actuator_calibration.session_guide.options import Options
 from spherical_actuator_calibration.session_guide.plans import PlanError, read_plan, read_session
+from spherical_actuator_calibration.session_guide.progress import Measured, Pose
+from spherical_actuator_calibration.session_guide.session import Session
+from spherical_actuator_calibration.session_guide.task import Task
 
 ACTUATOR = {
     "name": "sphere",
@@ -119,6 +124,82 @@ class Sessions(InAFolder):
     def test_of_another_actuator(self):
         with self.assertRaisesRegex(PlanError, "for the actuator cube, not for sphere"):
             read_session(self.stored([], name="cube"), ACTUATOR, 0.05, 0.05)
+
+
+class Bench:
+    """A calibration node that plans poses of two coils, holds samples and never estimates; at 2 A."""
+
+    def __init__(self):
+        self.held = []
+        self.asked = []  # for how many poses
+
+    def measured(self):
+        return self.held
+
+    @staticmethod
+    def pose_tolerance():
+        return 0.05
+
+    def plan(self, poses, wanted_stddev, **_):
+        self.asked.append(poses)
+        begin = sum(self.asked[:-1])
+        return [Pose((0.1 * n, 0.0, 0.0), ((1,), (2,))) for n in range(begin, begin + poses)], "Planned."
+
+    def capture(self, pose, *patterns):
+        self.held += [Measured(pose.joints, pattern, pose.validation) for pattern in patterns]
+
+
+class Kept:
+    """The last plan."""
+
+    def __init__(self):
+        self.last = []
+
+    def keep(self, poses):
+        self.last = list(poses)
+
+    def poses(self):
+        return self.last
+
+
+class InterruptedSessions(unittest.TestCase):
+    def setUp(self):
+        self.bench, self.kept, self.account = Bench(), Kept(), Account()
+
+    def wanted(self, coils=4, **options):
+        options = Options(poses=4, validation_poses=0, **options)
+        actuator = {**ACTUATOR, "coils": [{}] * coils}
+        return Session(self.bench, None, actuator, options, Task(), self.account, self.kept)._wanted_poses()
+
+    def test_complete_the_pose_that_was_begun(self):
+        first, second, *_ = self.wanted()
+        self.bench.capture(first, (), (1,), (2,))
+        self.bench.capture(second, ())
+        poses = self.wanted()
+        self.assertEqual((poses[0], len(poses)), (second, 3))
+        self.assertIn("The session goes on: 2 poses are measured already, 1 of them in part.", self.account.message().sentences)
+        # Interrupted there once more, in the middle of the coils.
+        self.bench.capture(second, (), (1,))
+        self.assertEqual(self.wanted()[0], second)
+        self.bench.capture(second, (2,))
+        self.assertNotIn(second, self.wanted())
+
+    def test_go_on_when_all_poses_were_begun(self):
+        for pose in self.wanted():
+            self.bench.capture(pose, ())
+        self.assertEqual(self.wanted(), self.kept.last)
+        self.assertEqual(self.bench.asked, [4])
+
+    def test_forget_what_does_not_fit_any_more(self):
+        for pose in self.wanted():
+            self.bench.capture(pose, ())
+        self.assertEqual(self.wanted(coils=1), [])
+        self.kept.keep([Pose(pose.joints, ((1, -2),)) for pose in self.kept.last])
+        self.assertEqual(self.wanted(total_current=3.0), [])
+        self.assertEqual(len(self.wanted(total_current=4.0)), 4)
+        self.bench.held.clear()
+        self.assertEqual(len(self.wanted()), 4)
+        self.assertEqual(self.bench.asked, [4, 4])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 
 from . import progress
 from .linearity import LinearityTest
+from .open_plan import begun
 from .plans import read_plan, read_session
 from .pose_course import PoseCourse
 from .progress import Progress
@@ -16,12 +17,13 @@ class Session:
     """Leads through one session; everything measured is with the calibration node. Raises PlanError for a file that
     gives no poses, RuntimeError with a sentence where a person has to see to something, and Cancelled of its task."""
 
-    def __init__(self, calibration, laboratory, actuator, options, task, account):
+    def __init__(self, calibration, laboratory, actuator, options, task, account, open_plan):
         self._options = options
         self._actuator = actuator
         self._task = task
         self._account = account
         self._calibration = calibration
+        self._open_plan = open_plan
         self._course = PoseCourse(calibration, laboratory, options, task, account)
         self._linearity = LinearityTest(calibration, self._course, account, not options.skip_linearity)
         self._coils = len(actuator.get("coils", []))
@@ -52,12 +54,14 @@ class Session:
     def _wanted_poses(self):
         """Poses of this session, those that the node holds samples of left out or complete."""
         training = self._training_poses()
+        interrupted = [] if self._asks_for_files() else self._interrupted()
         if training:
             measured = "1 pose is" if training == 1 else f"{training} poses are"
-            self._account.say(f"The session goes on: {measured} measured already.")
-        planned = list(self._poses_of_files())
-        if not planned and training < self._options.poses:
-            planned = self._plan(self._options.poses - training, self._options.wanted_stddev)
+            partly = f", {len(interrupted)} of them in part" if interrupted else ""
+            self._account.say(f"The session goes on: {measured} measured already{partly}.")
+        planned = list(self._poses_of_files()) or interrupted
+        if not self._asks_for_files() and training < self._options.poses:
+            planned = self._plan(self._options.poses - training, self._options.wanted_stddev, interrupted)
         if any(pose.validation for pose in planned):
             return planned
         return planned + progress.validation_poses(
@@ -96,7 +100,15 @@ class Session:
         self._account.say(f"{len(plan.poses)} poses of {source}, coils at {plan.current:g} A.")
         return plan.poses
 
-    def _plan(self, count, wanted_stddev):
+    def _interrupted(self):
+        """Poses of the last plan that were begun, and that the currents of this session can complete."""
+        most = self._options.total_current / self._course.current
+        measured = self._calibration.measured()
+        poses = begun(self._open_plan.poses(), measured, self._calibration.pose_tolerance(), self._coils)
+        return [pose for pose in poses if all(len(pattern) <= most for pattern in pose.excitations)]
+
+    def _plan(self, count, wanted_stddev, interrupted=()):
+        """The interrupted poses and as many others."""
         self._account.set(stage=MeasurementProgress.PLANNING)
         poses, message = self._calibration.plan(
             count,
@@ -106,6 +118,8 @@ class Session:
             total_current=self._options.total_current,
         )
         self._account.say("Plan: " + message)
+        poses = [*interrupted, *poses]
+        self._open_plan.keep(poses)
         return poses
 
     def _measure(self, poses):
