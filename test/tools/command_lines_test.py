@@ -61,6 +61,19 @@ class CommandLines(unittest.TestCase):
         options = self.command_line.parse_args(["--force", "--", "--force", "--force"])
         self.assertEqual(options.files, ["--force", "--force"])
 
+    def test_a_guided_session_without_a_master_says_so(self):
+        nowhere = "http://127.0.0.1:9"
+        result = subprocess.run(
+            [SOURCE / "scripts" / "guided_session"],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+            env={**os.environ, "ROS_MASTER_URI": nowhere},
+        )
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn(f"guided_session: no ROS master answers at {nowhere}; start lab.launch.", result.stderr)
+
     def test_programs_refuse_what_they_do_not_know(self):
         with tempfile.TemporaryDirectory() as folder:
             for name in PROGRAMS:
