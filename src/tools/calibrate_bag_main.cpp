@@ -142,13 +142,15 @@ Recording readBags(const OpenRecordings& recordings,
   reading.progress = terminalProgress("reading");
   Recording recording = readRecordings(recordings, nominal, reading);
   std::string names;
-  for (const std::string& option : changedStreamOptions(config)) {
+  const std::vector<std::string> changed = changedStreamOptions(config);
+  for (const std::string& option : changed) {
     names += (names.empty() ? "" : ", ") + option;
   }
   // What was recorded with the samples acted on them.
   if (options.config_path && !recording.report.has_streams && !names.empty()) {
-    recording.report.notes.push_back("Samples are taken as they were recorded, so that " + names +
-                                     " of the configuration has no effect: --from streams.");
+    recording.report.notes.push_back(
+        "Samples are taken as they were recorded, so that " + names + " of the configuration " +
+        (changed.size() > 1 ? "have" : "has") + " no effect: --from streams.");
   }
   return recording;
 }
@@ -290,6 +292,10 @@ void writeResult(const CalibrationSession& session,
                  const CertificateIssuer& issuer,
                  const Files& files,
                  OverwritePolicy policy) {
+  if (files.description.empty()) {
+    std::cout << "Nothing is written: --output OUT.yaml keeps the result.\n";
+    return;
+  }
   const CalibratedDescription result = session.description(origin);
   saveDescription(files.description, result, policy);
   std::cout << "Calibrated description: " << files.description << "\n";
@@ -358,7 +364,7 @@ int calibrateBag(const CalibrateBagOptions& options) {
   if (options.check) {
     return printCheck(session) ? kComplete : kIncomplete;
   }
-  if (options.output_path.empty()) {
+  if (options.diagnose && options.output_path.empty()) {
     return diagnoseOnly(session, options);
   }
   const std::vector<Diagnosis> diagnoses = calibrate(session, options);
@@ -371,7 +377,9 @@ int calibrateBag(const CalibrateBagOptions& options) {
     writeReport(renderReport(session, origin, lines, diagnoses), files, options.overwrite);
   }
   if (!has_result) {
-    std::cout << "No cycle succeeded: " << files.description << " is not written.\n";
+    std::cout << "No cycle succeeded: "
+              << (files.description.empty() ? "the result" : files.description)
+              << " is not written.\n";
     printGrade(session);
     return kIncomplete;
   }

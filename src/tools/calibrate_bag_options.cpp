@@ -11,7 +11,7 @@ namespace sac {
 namespace {
 
 constexpr char kIntroduction[] =
-    "Usage: calibrate_bag --output OUT.yaml [options] BAG...\n"
+    "Usage: calibrate_bag [--output OUT.yaml] [options] BAG...\n"
     "\n"
     "Calibrates an actuator from recordings, read directly and without a master: from the topic\n"
     "samples where it was recorded, else (or with --from streams) from joint_states,\n"
@@ -48,19 +48,15 @@ void check(const CalibrateBagOptions& options) {
   if (options.bags.empty()) {
     throw ConfigError("At least one recording (BAG) is needed.");
   }
-  const bool only_judges = options.diagnose || options.check;
-  if (options.output_path.empty() && !only_judges) {
-    throw ConfigError("--output is needed; --help tells what it is.");
-  }
   if (options.check && !options.output_path.empty()) {
     throw ConfigError("--check judges a description and writes none: leave --output out.");
   }
   if (options.output_path.empty() && (options.urdf_path || options.report_folder)) {
-    throw ConfigError("--urdf and --report need --output: without it nothing is calibrated.");
+    throw ConfigError("--urdf and --report need --output: without it nothing is written.");
   }
   if (options.output_path.empty() && (options.covariance_path || options.certificate_path)) {
     throw ConfigError(
-        "--covariance and --certificate need --output: without it nothing is calibrated.");
+        "--covariance and --certificate need --output: without it nothing is written.");
   }
   if (options.issuer_path && !options.certificate_path) {
     throw ConfigError("--issuer serves --certificate only: name the file to write by it.");
@@ -112,7 +108,7 @@ void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
   line.addOutput("output",
                  words.output,
                  "YAML",
-                 "calibrated description to write; needed but for --diagnose or --check alone");
+                 "calibrated description to write; without it the result is told only");
   line.addSwitch("diagnose",
                  options.diagnose,
                  "tell mistakes of wiring and effects that the samples speak for: exit status 1 "

@@ -21,7 +21,7 @@ struct CalibrateBagOptions {
   /// In the order wanted, kCoil with coil 0 for all others; nothing: all that the data allow.
   std::optional<std::vector<CycleRequest>> cycles;
   std::optional<std::string> truth_path;
-  std::string output_path;  ///< empty: samples are diagnosed or checked only
+  std::string output_path;  ///< empty: the result is told, and not written
   bool diagnose = false;    ///< tell what the samples speak for, also where nothing fails
   bool check = false;       ///< judge the description by the samples, instead of calibrating it
   std::optional<std::string> corrected_path;  ///< of what corrects a diagnosed mistake

@@ -351,7 +351,7 @@ TEST_F(CalibrateBag, HelpTellsEveryOption) {
 TEST_F(CalibrateBag, RefusesBadUsage) {
   const std::string good = "--actuator " + actuator() + " --output " + output() + " " + session();
   expectRefusal("--output " + output() + " " + session(), "--actuator is needed");
-  expectRefusal("--actuator " + actuator() + " " + session(), "--output is needed");
+  expectRefusal("--urdf x.urdf " + session(), "--urdf and --report need --output");
   expectRefusal("--actuator " + actuator() + " --output " + output(), "recording (BAG) is needed");
   expectRefusal(good + " --cycles joint,pole:1", "The cycle \"pole:1\" is unknown");
   expectRefusal(good + " --cycles ''", "--cycles needs a value");

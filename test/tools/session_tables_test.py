@@ -112,6 +112,21 @@ class Folder(unittest.TestCase):
 class ImportOfSamples(Folder):
     HEADINGS = "joint_1 [deg],joint_2 [rad],joint_3,torque_x [N.mm],torque_y,torque_z [mNm],current_1 [mA],current_2 [A]"
 
+    def test_a_recording_with_its_description_is_calibrated_by_its_name_alone(self):
+        self.description(0)
+        lines = ["joint_1,joint_2,joint_3,orientation_x,orientation_y,orientation_z,orientation_w"]
+        for k in range(12):
+            q = np.array([0.4 * math.sin(k), 0.4 * math.cos(2.0 * k), 0.5 * k])
+            R = about(0, q[0]) @ about(1, q[1]) @ about(2, q[2])
+            w = 0.5 * math.sqrt(1.0 + np.trace(R))
+            x, y, z = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+            lines.append(",".join(map(repr, map(float, [*q, 0.25 * x / w, 0.25 * y / w, 0.25 * z / w, w]))))
+        self.assertEqual(self.import_csv(self.write("samples.csv", "\n".join(lines) + "\n")).returncode, 0)
+        said = run(CALIBRATE_BAG, self.folder / "out.bag")
+        self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
+        for part in ("Description: as recorded", "joint_3/axis_v", "Nothing is written", "grade: not_validated"):
+            self.assertIn(part, said.stdout)
+
     def test_units_of_headings(self):
         self.description(2)
         table = self.write("s.csv", f"{self.HEADINGS}\n# by hand\n180,0.5,0.25,1000,2,500,1500,-1\n\n90,0,0,,,,,\n")
