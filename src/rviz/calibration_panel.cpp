@@ -17,6 +17,7 @@
 #include "spherical_actuator_calibration/Restore.h"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "steady_label.hpp"
 
 namespace sac {
 namespace {
@@ -72,6 +73,7 @@ void CalibrationPanel::build() {
   layout->setSpacing(4);
   next_step_ = wrappingLabel();
   next_step_->setStyleSheet("font-weight: bold;");
+  reserveLines(*next_step_, 3);
   layout->addWidget(next_step_);
   health_ = new HealthView;
   layout->addWidget(health_);

@@ -1,5 +1,6 @@
 #include "hand_guide.hpp"
 
+#include <QApplication>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "named_button.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
+#include "steady_label.hpp"
 
 namespace sac {
 namespace {
@@ -69,6 +71,7 @@ void HandGuide::build() {
   layout->setContentsMargins(0, 0, 0, 0);
   advice_ = new QLabel;
   advice_->setWordWrap(true);
+  reserveLines(*advice_, 2);
   layout->addWidget(advice_);
   auto* row = new QHBoxLayout;
   plan_ = new QPushButton;
@@ -95,6 +98,7 @@ void HandGuide::build() {
   layout->addLayout(row);
   outcome_ = new QLabel;
   outcome_->setWordWrap(true);
+  reserveLines(*outcome_, 2);
   layout->addWidget(outcome_);
 }
 
@@ -134,9 +138,13 @@ void HandGuide::refresh() {
 
 void HandGuide::planOrStop() {
   if (planning_.isRunning()) {
-    planning_.cancel();
+    // The second click of a double click wants what the first one did.
+    if (planning_since_.elapsed() > QApplication::doubleClickInterval()) {
+      planning_.cancel();
+    }
     return;
   }
+  planning_since_.start();
   msg::PlanGoal goal;
   goal.max_poses = static_cast<std::uint32_t>(poses_->value());
   planned_ = "Planning …";

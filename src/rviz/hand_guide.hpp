@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QDoubleSpinBox>
+#include <QElapsedTimer>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -58,6 +59,7 @@ class HandGuide : public QWidget {
   ProgressWords words_;
   EngineAction<msg::CaptureAction> capture_;
   EngineAction<msg::PlanAction> planning_;
+  QElapsedTimer planning_since_;
   std::string planned_;  ///< how far it is
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;

@@ -25,6 +25,7 @@ EXCITE, PLAN, REVISIONS, RESTORE = "F12", "F2", "alt+r", "alt+e"
 CURRENT = 2.0  # [A] that the panel has by itself
 DURATION = 10.0  # [s] likewise
 PATIENCE = 20.0  # [s] in which the engine does what a key asks for; pressed again, it would stop that
+DOUBLE_CLICK = 0.6  # [s] after which a second press is one of its own
 CLOSE = (507, 73)  # button of the dock that the panel is in
 
 
@@ -44,7 +45,7 @@ class PanelActions(ViewedLabCase):
             rospy.Subscriber(f"{NAMESPACE}/{topic}", kind, messages.append)
         rospy.Subscriber(f"{NAMESPACE}/coil_currents", CoilCurrents, cls.keep_currents)
         cls.start_lab()
-        wait_for(lambda: find_button(cls.screen.pixels()), "the panel")
+        cls.wait_for_panel()
         wait_for(lambda: cls.currents, "the currents")
 
     @classmethod
@@ -76,6 +77,7 @@ class PanelActions(ViewedLabCase):
         os.kill(node, signal.SIGSTOP)
         try:
             self.press(PLAN, lambda: self.planning, "the plan under way", pause=PATIENCE)
+            time.sleep(DOUBLE_CLICK)
             self.press(PLAN, lambda: self.plans, "the end of the plan", pause=PATIENCE)
         finally:
             os.kill(node, signal.SIGCONT)
@@ -85,6 +87,13 @@ class PanelActions(ViewedLabCase):
         wait_for(lambda: self.wanted and self.wanted[-1].position, "the pose to go to")
         for told, planned in zip(self.wanted[-1].position, self.plans[-1].result.poses[0].joint_position):
             self.assertAlmostEqual(told, planned)
+
+    def test_3b_a_double_click_plans(self):
+        before = len(self.plans)
+        for _ in range(2):
+            self.key(PLAN)
+        wait_for(lambda: len(self.plans) > before, "a plan")
+        self.assertTrue(self.plans[-1].result.success, self.plans[-1].result.message)
 
     def test_4_restores_a_revision_of_the_list(self):
         for _ in range(2):
