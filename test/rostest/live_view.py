@@ -87,7 +87,7 @@ class LiveView(ViewedLabCase):
 
     def test_a_click_on_the_panels_capture_button_makes_a_sample(self):
         self.lab.move([0.1, 0.1, 0.5])
-        wait_for(lambda: find_button(self.screen.pixels()), "the capture button")
+        self.wait_for_panel()
         before = len(self.samples)
 
         def captured():

@@ -19,7 +19,7 @@ from calibration_client import (
     wait_for,
 )
 from launch_client import Launch, launch_file
-from viewed_lab import ViewedCase, find_button
+from viewed_lab import ViewedCase
 
 # Its laboratory is shared with the tests of independent data.
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "independent"))
@@ -63,7 +63,7 @@ class MotionPanel(ViewedCase):
         cls.client.start(cls.node)
         view = Launch(launch_file("view.launch"), environment=cls.make_screen())
         cls.addClassCleanup(view.stop)
-        wait_for(lambda: find_button(cls.screen.pixels()), "the panel")
+        cls.wait_for_panel()
 
     @classmethod
     def record(cls):

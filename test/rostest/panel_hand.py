@@ -9,7 +9,7 @@ from calibration_client import NAMESPACE, wait_for
 from sensor_msgs.msg import JointState
 from spherical_actuator_calibration.msg import CalibrationReport, CalibrationSample, CalibrationStatus, CoilCurrents
 from true_parameters import expect_truth
-from viewed_lab import ViewedLabCase, find_button
+from viewed_lab import ViewedLabCase
 
 PLAN, MEASURE, HOLD_OUT, REFINE, VALIDATE, SAVE = "F2", "F3", "F5", "F7", "F8", "F9"
 PATIENCE = 60.0  # [s] for a plan; pressed again before, its key would stop it
@@ -32,7 +32,7 @@ class PanelHandCase(ViewedLabCase):
         rospy.Subscriber(f"{NAMESPACE}/samples", CalibrationSample, cls.samples.append)
         rospy.Subscriber(f"{NAMESPACE}/report", CalibrationReport, cls.reports.append)
         cls.start_lab()
-        wait_for(lambda: find_button(cls.screen.pixels()), "the panel")
+        cls.wait_for_panel()
         wait_for(lambda: "wanted_pose" in cls.latest or "coil_currents" in cls.latest, "the streams")
 
     @classmethod

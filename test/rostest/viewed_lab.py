@@ -5,8 +5,10 @@ import subprocess
 import time
 import unittest
 
-from calibration_client import wait_for
-from emulated_lab import LabCase
+import rosgraph
+from calibration_client import DEADLINE, NAMESPACE, wait_for
+from emulated_lab import EmulatedLab, LabCase
+from launch_client import launch_file
 
 SIZE = (1280, 720)
 FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
@@ -69,6 +71,17 @@ def find_button(pixels):
     return round(sum(rows.values()) / len(rows)), round(sum(rows) / len(rows))
 
 
+def has_ended(node):
+    """Whether a node has been there, and its process is no more."""
+    try:
+        EmulatedLab.process_of(node)
+    except rosgraph.MasterException:
+        return False  # not there yet
+    except OSError:
+        return True
+    return False
+
+
 class ViewedCase(unittest.TestCase):
     """Tests with rviz on `screen`."""
 
@@ -78,6 +91,33 @@ class ViewedCase(unittest.TestCase):
         cls.screen = Screen()
         cls.addClassCleanup(cls.screen.stop)
         return {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+
+    @classmethod
+    def wait_for_panel(cls):
+        """rviz itself ends at its start at times, in the compiler of the renderer in software: then it is started once
+        more. One that is gone again fails the test."""
+        is_seen = []
+
+        def is_seen_or_gone():
+            is_seen[:] = [find_button(cls.screen.pixels())]
+            return is_seen[0] or has_ended("rviz")
+
+        wait_for(is_seen_or_gone, "the panel")
+        if not is_seen[0]:
+            cls.start_rviz()
+            wait_for(lambda: find_button(cls.screen.pixels()), "the panel of a second rviz", 2.0 * DEADLINE)
+
+    @classmethod
+    def start_rviz(cls):
+        """As view.launch does."""
+        print("rviz ended before it had a panel; it is started once more.")
+        view = os.path.join(os.path.dirname(launch_file("view.launch")), "..", "config", "view.rviz")
+        rviz = subprocess.Popen(
+            ["rosrun", "rviz", "rviz", "-d", view, "-f", "stator", f"__ns:={NAMESPACE}", "__name:=rviz"],
+            env={**os.environ, "DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"},
+        )
+        cls.addClassCleanup(rviz.wait)
+        cls.addClassCleanup(rviz.terminate)
 
     def press(self, key, done, what, pause=PAUSE):
         """A key, again after a pause [s] where the panel was still busy, until something is so."""
