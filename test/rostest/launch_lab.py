@@ -3,13 +3,16 @@
 
 import glob
 import os
+import pathlib
 import sys
 import tempfile
 import unittest
+from xml.etree import ElementTree
 
 import rosbag
 import rospy
 import rostest
+import yaml
 from calibration_client import NAMESPACE, PACKAGE, CalibrationClient, wait_for
 from geometry_msgs.msg import PoseStamped, QuaternionStamped
 from launch_client import Launch, configuration_of, launch_file, missing_programs, nodes_of
@@ -36,6 +39,22 @@ class LaunchLab(unittest.TestCase):
         expected = NODES + ["record", "rotor_ft_sensor", "rotor_marker", "stator_tracker"]
         self.assertEqual(names(nodes), sorted(expected))
         self.assertEqual(missing_programs(nodes), [])
+
+    def test_views_of_others_name_what_is_there(self):
+        config = pathlib.Path(launch_file("lab.launch")).parent.parent / "config"
+        content = yaml.safe_load((config / "diagnostic_aggregator.yaml").read_text())
+        branches = content["analyzers"]["spherical_actuator"]["analyzers"].values()
+        told = [branch["find_and_remove_prefix"] for branch in branches]
+        nodes = names(nodes_of(launch_file("lab.launch"), controller=True))
+        self.assertEqual(sorted(told), [f"actuator/{name}: " for name in nodes if name != "session_engine"])
+        layout = ElementTree.parse(config / "plotjuggler_layout.xml")
+        shown = [curve.get("name") for curve in layout.iter("curve")]
+        measured = [f"joint_states/joint_{k}/position" for k in (1, 2, 3)]
+        measured += [f"measured_orientation/quaternion/{part}" for part in "xyzw"]
+        measured += [f"measured_torque/vector/{part}" for part in "xyz"]
+        for topic in ("coil_command", "coil_currents"):
+            measured += [f"{topic}/current[{coil}]" for coil in range(24)]
+        self.assertEqual(shown, [f"{NAMESPACE}/{name}" for name in measured])
 
     def test_arguments_choose_what_is_started(self):
         path = launch_file("lab.launch")
