@@ -2,6 +2,7 @@
 """The page of a report: complete, self-contained, and harmless whatever names it is given."""
 
 import base64
+import copy
 import html.parser
 import os
 import re
@@ -148,6 +149,13 @@ class ReportPage(unittest.TestCase):
         axis = svg.split('<g id="matplotlib.axis_2"')[1]
         numbers = [float(text) for text in re.findall(r">([0-9.]+)</text>", axis)]
         self.assertGreaterEqual(len(numbers), 2, numbers)
+
+    def test_the_error_after_is_that_of_the_last_cycle_of_its_kind(self):
+        figures = copy.deepcopy(self.figures)
+        first = next(cycle for cycle in figures["cycles"] if cycle["cycle"] == "joint")
+        first["error_history"] = [0.0331, 0.000011]
+        figures["cycles"].append({**first, "error_history": [0.000011, 0.000099]})
+        self.assertIn("33.1 → 0.099 mrad", self.render(figures, "again").text)
 
     def test_tells_errors_before_and_after_and_axes_as_vectors(self):
         self.assertIn("Orientations, before → after", self.page.text)

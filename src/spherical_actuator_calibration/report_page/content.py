@@ -98,13 +98,16 @@ class Report:
         return cards
 
     def _errors_before_and_after(self):
-        """Of the first cycles of orientations and torques that succeeded: by the drawing, and calibrated."""
+        """Of orientations and torques: before the first cycle that succeeded, by the drawing, and after the last one of
+        its kind, which has all samples."""
         cards = []
         for kinds, title in ((("joint", "motion"), "Orientations"), (("poles",), "Torques")):
-            cycle = next((one for one in self._cycles if one["success"] and one["cycle"] in kinds), None)
-            if cycle and cycle["error_history"] and cycle["error_unit"] != "1":
-                change = change_of(cycle["error_history"][0], cycle["error_history"][-1], cycle["error_unit"])
-                cards.append((f"{title}, before → after", change, f"error, cycle {cycle['title'].lower()}"))
+            done = [one for one in self._cycles if one["success"] and one["cycle"] in kinds and one["error_history"]]
+            if done and done[0]["error_unit"] != "1":
+                first = done[0]
+                last = [one for one in done if (one["cycle"], one["coil"]) == (first["cycle"], first["coil"])][-1]
+                change = change_of(first["error_history"][0], last["error_history"][-1], first["error_unit"])
+                cards.append((f"{title}, before → after", change, f"error, cycle {first['title'].lower()}"))
         return cards
 
     def joint_axes(self):
