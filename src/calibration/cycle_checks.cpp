@@ -227,6 +227,20 @@ std::string axisName(const ParameterSpace& space, Eigen::Index p) {
   return (is_pole ? "pole " : "coil ") + std::to_string(numberOf(id.index));
 }
 
+std::string ambiguityInWords(const ParameterSpace& space,
+                             const std::vector<Eigen::Index>& ambiguous) {
+  std::string names;
+  for (const Eigen::Index p : ambiguous) {
+    const bool is_last = p == ambiguous.back();
+    names += (names.empty() ? "" : is_last ? " and " : ", ") + axisName(space, p);
+  }
+  return ambiguous.size() == 1
+             ? "Ambiguous: another place of " + names +
+                   " explains its torques nearly as well; measure it at further poses."
+             : "Ambiguous: other places of " + names +
+                   " explain their torques nearly as well; measure them at further poses.";
+}
+
 /// Axes of which no sample was left, though there had been many.
 std::string lostAxes(const EstimationProblem& problem,
                      const Estimate& estimate,
@@ -321,9 +335,8 @@ std::vector<std::string> doubts(const EstimationProblem& problem,
                "large, or samples are copies of each other.",
                std::sqrt(chi_square)));
   }
-  for (const Eigen::Index p : estimate.ambiguous) {
-    words.push_back("Ambiguous: another place of " + axisName(problem.model->space(), p) +
-                    " explains its torques nearly as well; measure it at further poses.");
+  if (!estimate.ambiguous.empty()) {
+    words.push_back(ambiguityInWords(problem.model->space(), estimate.ambiguous));
   }
   return words;
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -73,6 +75,25 @@ class Refinement : public testing::Test {
   const EstimationOptions options_{};
   std::vector<Eigen::Index> all_ = std::vector<Eigen::Index>(73);
 };
+
+TEST_F(Refinement, NamesAxesThatHaveTwoPlacesInOneSentence) {
+  scenarios::Generator generator(4);
+  std::vector<Sample> samples = scenarios::paperSession(
+      scenarios::paperTruth(), scenarios::Tracker::kFirstTenPoses, generator);
+  // One torque is left of each of these coils.
+  for (const Eigen::Index coil : {5, 22}) {
+    const auto excites = [coil](const Sample& sample) {
+      return sample.has_torque && std::abs(sample.current[coil]) > 1.0;
+    };
+    const auto first = std::find_if(samples.begin(), samples.end(), excites);
+    ASSERT_NE(first, samples.end());
+    samples.erase(std::remove_if(first + 1, samples.end(), excites), samples.end());
+  }
+  const CycleReport report = refine(samples).report;
+  ASSERT_TRUE(report.success) << report.message;
+  const std::string places = "Ambiguous: other places of coil 6 and coil 23 explain their torques";
+  EXPECT_NE(report.message.find(places), std::string::npos) << report.message;
+}
 
 TEST_F(Refinement, ReachesTheBoundWithTheTrackerAtTenPoses) {
   checkTrials(scenarios::Tracker::kFirstTenPoses);
