@@ -181,8 +181,15 @@ class Judge {
       }
     }
     if (!ids.empty()) {
-      steps.push_back("Add poses near those of samples " + enumerate(ids) +
-                      ": nothing checks them, so that an error in them would not be noticed.");
+      const bool is_one = ids.size() == 1;
+      const char* them = is_one ? "it" : "them";
+      steps.push_back(
+          format("Add poses near %s %s: nothing checks %s, so that an error in %s would "
+                 "not be noticed.",
+                 is_one ? "that of sample" : "those of samples",
+                 enumerate(ids).c_str(),
+                 them,
+                 them));
     }
   }
 
