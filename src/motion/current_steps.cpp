@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "joint_track.hpp"
 #include "motion_point.hpp"
-#include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
 
@@ -25,20 +24,17 @@ void CurrentSteps::add(const MotionStreams& streams) {
   }
   const auto at = [&](Eigen::Index n) { return streams.currents.row(n).cast<double>(); };
   const std::vector<Stamp>& stamps = streams.current_stamps;
-  std::vector<double> intervals;
-  for (std::size_t n = 1; n < stamps.size(); ++n) {
-    intervals.push_back(secondsBetween(stamps[n - 1], stamps[n]));
-  }
-  const double longest = kGap * medianOf(intervals);
+  const auto interval = [&](std::size_t n) { return secondsBetween(stamps[n - 1], stamps[n]); };
+  const double longest = kGap * usualStep(StampTimes(stamps.front(), stamps));
   for (std::size_t n = 2; n < stamps.size(); ++n) {
-    if (std::max(intervals[n - 1], intervals[n - 2]) > longest) {
+    if (std::max(interval(n), interval(n - 1)) > longest) {
       continue;
     }
     const auto row = static_cast<Eigen::Index>(n);
     changes_ += (at(row) - at(row - 1)).squaredNorm();
     bends_ += (at(row) - 2.0 * at(row - 1) + at(row - 2)).squaredNorm();
     values_ += static_cast<double>(streams.currents.cols());
-    duration_ += intervals[n - 1];
+    duration_ += interval(n);
     intervals_ += 1.0;
   }
 }

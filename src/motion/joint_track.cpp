@@ -7,15 +7,30 @@
 
 namespace sac {
 
-double usualStep(const std::vector<double>& times) {
+namespace {
+
+template <typename Times>
+double medianStep(const Times& times) {
+  constexpr std::size_t kEnough = 20000;
   if (times.size() < 2) {
     return 0.0;
   }
-  std::vector<double> steps(times.size() - 1);
-  for (std::size_t n = 0; n < steps.size(); ++n) {
-    steps[n] = times[n + 1] - times[n];
+  const std::size_t stride = std::max<std::size_t>(1, times.size() / kEnough);
+  std::vector<double> steps;
+  for (std::size_t n = 0; n + 1 < times.size(); n += stride) {
+    steps.push_back(times[n + 1] - times[n]);
   }
   return medianOf(std::move(steps));
+}
+
+}  // namespace
+
+double usualStep(const std::vector<double>& times) {
+  return medianStep(times);
+}
+
+double usualStep(const StampTimes& times) {
+  return medianStep(times);
 }
 
 std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) {
@@ -28,17 +43,17 @@ std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) 
 }
 
 JointTrack::JointTrack(const MotionStreams& streams, Stamp origin)
-    : streams_(&streams), times_(secondsFrom(origin, streams.joint_stamps)) {
+    : streams_(&streams), times_(origin, streams.joint_stamps) {
   step_ = usualStep(times_);
 }
 
 std::optional<TrackPoint> JointTrack::at(double time) const {
   constexpr std::size_t kStencil = 4;
-  const auto above = std::upper_bound(times_.begin(), times_.end(), time);
-  if (times_.size() < kStencil || above == times_.begin() || above == times_.end()) {
+  const std::size_t above = times_.firstAfter(time);
+  if (times_.size() < kStencil || above == 0 || above == times_.size()) {
     return std::nullopt;
   }
-  const auto n = static_cast<std::size_t>(above - times_.begin()) - 1;
+  const std::size_t n = above - 1;
   TrackPoint point;
   point.first = std::min(n == 0 ? 0 : n - 1, times_.size() - kStencil);
   for (std::size_t k = 0; k + 1 < kStencil; ++k) {
@@ -48,6 +63,10 @@ std::optional<TrackPoint> JointTrack::at(double time) const {
   }
   point.position.setZero();
   point.velocity.setZero();
+  std::array<double, kStencil> times{};
+  for (std::size_t a = 0; a < kStencil; ++a) {
+    times[a] = times_[point.first + a];
+  }
   for (std::size_t a = 0; a < kStencil; ++a) {
     // Lagrange's polynomial of reading a and its derivative.
     double value = 1.0;
@@ -56,8 +75,8 @@ std::optional<TrackPoint> JointTrack::at(double time) const {
       if (a == b) {
         continue;
       }
-      const double width = times_[point.first + a] - times_[point.first + b];
-      const double factor = (time - times_[point.first + b]) / width;
+      const double width = times[a] - times[b];
+      const double factor = (time - times[b]) / width;
       slope = slope * factor + value / width;
       value *= factor;
     }

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/motion/motion_streams.hpp"
+#include "stamp_times.hpp"
 
 namespace sac {
 
@@ -40,12 +41,13 @@ class JointTrack {
   static constexpr double kGap = 2.5;  ///< steps
 
   const MotionStreams* streams_;
-  std::vector<double> times_;
+  StampTimes times_;
   double step_ = 0.0;
 };
 
-/// Median step of increasing times; 0 for fewer than two.
+/// Median step of increasing times, by some of them where there are many; 0 for fewer than two.
 double usualStep(const std::vector<double>& times);
+double usualStep(const StampTimes& times);
 
 /// Seconds from `origin`.
 std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps);

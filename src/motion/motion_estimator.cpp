@@ -72,11 +72,7 @@ double Estimator::windowFreedom() const {
 }
 
 double Estimator::windowSquares() const {
-  double sum = 0.0;
-  for (const WindowTerm& term : terms_.windows()) {
-    sum += term.serves() ? term.square * static_cast<double>(terms_.valuesPerWindow()) : 0.0;
-  }
-  return sum;
+  return terms_.squares(descent_.x());
 }
 
 /// Marks what does not fit as inactive, and as active again what does; whether that changed
@@ -108,8 +104,9 @@ bool Estimator::rejectOutliers() {
   const bool windows = reject(terms_.windows(),
                               static_cast<double>(terms_.valuesPerWindow()),
                               [](const WindowTerm& term) { return term.residual.size() > 0; });
-  const bool orientations =
-      reject(terms_.orientations(), 3.0, [](const OrientationTerm& term) { return term.is_known; });
+  const bool orientations = reject(terms_.orientations().terms(),
+                                   3.0,
+                                   [](const OrientationTerm& term) { return term.is_known; });
   return windows || orientations;
 }
 
@@ -138,38 +135,9 @@ bool Estimator::solve() {
   return descent_.solveFinely([this] { return weighAnew(); });
 }
 
-/// Reduced χ² of the tracker's means over windows: drift and wrong joints show there, white noise
-/// does not.
 double Estimator::orientationChiSquare() const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  double squares = 0.0;
-  double freedom = 0.0;
-  std::size_t span = 0;
-  double begin = 0.0;
-  const auto close = [&] {
-    if (count > 0.0) {
-      squares += sum.squaredNorm() / count;
-      freedom += 3.0;
-    }
-    sum.setZero();
-    count = 0.0;
-  };
-  for (const OrientationTerm& term : terms_.orientations()) {
-    if (!term.serves()) {
-      continue;
-    }
-    if (term.span != span || term.time - begin > options_.window) {
-      close();
-      span = term.span;
-      begin = term.time;
-    }
-    sum += term.residual;
-    count += 1.0;
-  }
-  close();
   const auto joints = static_cast<double>(problem_.model->space().pole(0));
-  return freedom > 2.0 * joints ? squares / (freedom - joints) : 0.0;
+  return terms_.orientations().chiSquare(descent_.x(), joints);
 }
 
 void Estimator::judgeMisfit() {
@@ -247,10 +215,10 @@ HeldOutMotion Estimator::countHeldOut() {
   }
   held_out.windows = held_out.residuals.size();
   double turns = 0.0;
-  for (const OrientationTerm& term : terms_.orientations()) {
-    if (term.held_out && term.is_known && term.active) {
-      ++held_out.orientations;
-      turns += std::pow(terms_.noise().orientation, 2) * term.residual.squaredNorm();
+  for (const OrientationGroup& group : terms_.orientations().groups()) {
+    if (group.held_out) {
+      held_out.orientations += static_cast<std::size_t>(group.mean.count);
+      turns += std::pow(terms_.noise().orientation, 2) * group.squares;
     }
   }
   const auto root_mean = [](double sum, std::size_t count) {
@@ -301,7 +269,9 @@ ObservationResidual Estimator::residualOf(std::size_t window) const {
   const TestFunctions functions(
       track.time(term.window.first), track.time(term.window.last), options_.test_functions);
   const Eigen::VectorXd residual =
-      term.whitening.triangularView<Eigen::Lower>().solve(term.residual);
+      term.isKept()
+          ? Eigen::VectorXd(term.whitening.triangularView<Eigen::Lower>().solve(term.residual))
+          : term.balance.residual;
   ObservationResidual result;
   result.observation = {window, Quantity::kTorque};
   result.residual = residual.head<3>() / functions.integralOfFirst();
@@ -338,8 +308,10 @@ void Estimator::summarise() {
     summary.duration += track.time(term.window.last) - track.time(term.window.first);
     ++summary.used;
   }
-  for (const OrientationTerm& term : terms_.orientations()) {
-    summary.orientations += term.serves() ? 1 : 0;
+  for (const OrientationGroup& group : terms_.orientations().groups()) {
+    summary.orientations += group.held_out ? 0 : static_cast<std::size_t>(group.mean.count);
+  }
+  for (const OrientationTerm& term : terms_.orientations().terms()) {
     summary.orientations_rejected += term.is_known && !term.active ? 1 : 0;
   }
   summary.joint_stddev = std::sqrt(factors_.joints) * terms_.noise().joint;

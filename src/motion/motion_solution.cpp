@@ -47,7 +47,7 @@ void MotionDescent::rescale() {
   for (std::size_t n = 0; n < terms_.windowCount(); n += terms_.every()) {
     windows.push_back(terms_.windows()[n].square);
   }
-  for (const OrientationTerm& term : terms_.orientations()) {
+  for (const OrientationTerm& term : terms_.orientations().terms()) {
     if (term.is_known) {
       orientations.push_back(term.square);
     }
@@ -308,6 +308,13 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
 }
 
 bool MotionDescent::settleAnew() {
+  if (!settle(kSettled)) {
+    return false;
+  }
+  if (!terms_.areSummed()) {
+    return true;
+  }
+  linearizeAt(x_, {});
   return settle(kSettled);
 }
 

@@ -36,6 +36,7 @@ class MotionDescent {
   bool solveFinely(const std::function<bool()>& weigh_anew);
 
   /// On with terms that serve only now, as they are linearised; false where nothing can be told.
+  /// Windows that are summed up are linearised once more: each tells its misfit only then.
   bool settleAnew();
 
   const Eigen::VectorXd& x() const { return x_; }

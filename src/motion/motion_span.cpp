@@ -9,13 +9,13 @@ namespace {
 /// Whether currents were measured without a hole from `begin` to `end`.
 bool hasCurrents(const MotionSpan& span, double begin, double end) {
   constexpr double kGap = 3.0;  // steps
-  const std::vector<double>& times = span.current_times;
-  auto place = std::lower_bound(times.begin(), times.end(), begin);
-  if (place == times.begin() || times.back() < end) {
+  const StampTimes& times = span.current_times;
+  const std::size_t from = times.firstFrom(begin);
+  if (from == 0 || times.back() < end) {
     return false;
   }
-  for (--place; *place < end; ++place) {
-    if (place[1] - place[0] > kGap * span.current_step) {
+  for (std::size_t n = from - 1; times[n] < end; ++n) {
+    if (times[n + 1] - times[n] > kGap * span.current_step) {
       return false;
     }
   }
@@ -93,8 +93,8 @@ double largestSpeed(const JointTrack& track, const MotionWindow& window) {
 MotionSpan::MotionSpan(const MotionStreams& recorded)
     : streams(&recorded),
       track(recorded, recorded.joint_stamps.front()),
-      current_times(secondsFrom(recorded.joint_stamps.front(), recorded.current_stamps)),
-      orientation_times(secondsFrom(recorded.joint_stamps.front(), recorded.orientation_stamps)),
+      current_times(recorded.joint_stamps.front(), recorded.current_stamps),
+      orientation_times(recorded.joint_stamps.front(), recorded.orientation_stamps),
       current_step(usualStep(current_times)) {}
 
 void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_out) {

@@ -18,9 +18,9 @@ struct MotionSpan {
 
   const MotionStreams* streams;
   JointTrack track;
-  std::vector<double> current_times;      ///< stamps
-  std::vector<double> orientation_times;  ///< stamps
-  double current_step;                    ///< usual
+  StampTimes current_times;
+  StampTimes orientation_times;
+  double current_step;  ///< usual
 };
 
 /// A stretch of readings without holes, over which momentum is balanced.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -37,22 +38,43 @@ std::vector<MotionWindow> windowsOf(const MotionRecording& recording,
   return windows;
 }
 
-/// What the orientations of a window tell together.
-struct OrientationSum {
-  Eigen::MatrixXd jacobian;
-  Eigen::VectorXd residual;
-  double count = 0.0;
+/// They judge before they serve: every so manieth, where there are enough.
+bool areHeldOut(std::size_t windows, const MotionOptions& options) {
+  return options.hold_out_every >= 2 && windows >= options.least_windows_to_hold_out;
+}
 
-  void add(const Eigen::MatrixXd& one_jacobian, const Eigen::Vector3d& one_residual) {
-    if (count == 0.0) {
-      jacobian.setZero(3, one_jacobian.cols());
-      residual.setZero(3);
-    }
-    jacobian += one_jacobian;
-    residual += one_residual;
-    count += 1.0;
+std::vector<WindowTerm> termsOf(const std::vector<MotionWindow>& windows,
+                                const MotionOptions& options) {
+  std::vector<WindowTerm> terms(windows.size());
+  const bool some_are_held_out = areHeldOut(windows.size(), options);
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    terms[n].window = windows[n];
+    terms[n].held_out =
+        some_are_held_out && n % options.hold_out_every == options.hold_out_every / 2;
   }
-};
+  return terms;
+}
+
+/// Windows that are held out, with the orientations within them.
+std::vector<HeldOutStretch> heldOutOf(const std::vector<WindowTerm>& windows,
+                                      const std::vector<MotionSpan>& spans) {
+  std::vector<HeldOutStretch> stretches;
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    if (windows[n].held_out) {
+      const MotionWindow& window = windows[n].window;
+      const JointTrack& track = spans[window.span].track;
+      stretches.push_back({window.span, track.time(window.first), track.time(window.last), n});
+    }
+  }
+  return stretches;
+}
+
+/// To a sum of as many coordinates.
+void addAll(const InformationSum& other, InformationSum& sum) {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(other.gradient().size()));
+  std::iota(all.begin(), all.end(), 0);
+  sum.addAt(all, other);
+}
 
 }  // namespace
 
@@ -62,28 +84,9 @@ Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance) {
       Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
-double robustWeight(double s) {
-  constexpr double kTransition = 4.0;
-  return s <= kTransition ? 1.0 : std::sqrt(kTransition / s);
-}
-
-std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
-                                               const MotionPlaces& places) {
-  std::vector<Eigen::Index> coordinates;
-  for (Eigen::Index p = 0; p < space.pole(0); ++p) {
-    coordinates.push_back(p);
-  }
-  for (const PlacedEffect& placed : space.effects().effects()) {
-    const bool turns = placed.acts_on == LaboratoryEffect::ActsOn::kOrientations ||
-                       placed.acts_on == LaboratoryEffect::ActsOn::kEverything;
-    const Eigen::Index first = space.effect() + placed.first;
-    for (Eigen::Index n = 0; n < placed.size(); ++n) {
-      if (turns || first + n == places.tracker_delay) {
-        coordinates.push_back(first + n);
-      }
-    }
-  }
-  return coordinates;
+std::size_t noiseStride(std::size_t windows) {
+  constexpr std::size_t kEnough = 60;
+  return std::max<std::size_t>(1, windows / kEnough);
 }
 
 MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& options)
@@ -92,24 +95,11 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       places_(problem.model->space()),
       spans_(spansOf(*problem.recording)),
       noise_(noiseOf(spans_, *problem.model, problem.prior.x)),
+      windows_(termsOf(windowsOf(*problem.recording, spans_, options, left_out_), options)),
+      orientations_(*problem.model, places_, spans_, options.window, heldOutOf(windows_, spans_)),
+      sums_(problem.prior.x.size()),
       evaluators_(std::max(1U, std::thread::hardware_concurrency()),
-                  BalanceEvaluator(options, noise_.joint)) {
-  for (const MotionWindow& window : windowsOf(*problem.recording, spans_, options, left_out_)) {
-    WindowTerm term;
-    term.window = window;
-    windows_.push_back(std::move(term));
-  }
-  for (std::size_t s = 0; s < spans_.size(); ++s) {
-    for (std::size_t n = 0; n < spans_[s].orientation_times.size(); ++n) {
-      OrientationTerm term;
-      term.span = s;
-      term.index = n;
-      orientations_.push_back(term);
-    }
-  }
-  holdOut();
-  orienting_ = orientingCoordinates(problem.model->space(), places_);
-}
+                  BalanceEvaluator(options, noise_.joint)) {}
 
 std::size_t MotionTerms::servingWindows() const {
   std::size_t count = 0;
@@ -134,7 +124,7 @@ std::size_t MotionTerms::coarseStride() const {
 
 void MotionTerms::setScales(double windows, double orientations) {
   window_scale_ = windows;
-  orientation_scale_ = orientations;
+  orientations_.setScale(orientations);
 }
 
 Eigen::MatrixXd MotionTerms::whiteningFor(const WindowBalance& balance) const {
@@ -149,40 +139,130 @@ void MotionTerms::setNoiseFactors(double joints, double currents) {
     if (term.balance.by_joints.size() > 0) {
       term.whitening = whiteningFor(term.balance);
     }
+    sums_are_old_ = sums_are_old_ || term.is_summed;
   }
 }
 
 void MotionTerms::linearize(const Eigen::VectorXd& x, const TermOrder& order) {
   linearized_at_ = x;
   every_ = order.every;
-  linearizeWindows(order);
+  linearizeWindows(order.balance);
   if (order.orientations) {
-    linearizeOrientations();
+    orientations_.linearize(x, noise_.orientation, static_cast<unsigned>(evaluators_.size()));
   }
 }
 
-void MotionTerms::linearizeWindows(const TermOrder& order) {
+/// In a long recording the derivatives of few windows are kept.
+void MotionTerms::linearizeWindows(const BalanceOrder& order) {
+  constexpr std::size_t kChunks = 16;
   const MotionPoint point(*problem_.model, places_, linearized_at_);
-  const std::size_t count = (windows_.size() + every_ - 1) / every_;
   const auto threads = static_cast<unsigned>(evaluators_.size());
-  parallelFor(count, threads, [&](unsigned worker, std::size_t n) {
-    WindowTerm& term = windows_[n * every_];
-    BalanceOrder balance = order.balance;
-    balance.covariance = balance.covariance || term.whitening.size() == 0;
-    const MotionSpan& span = spans_[term.window.span];
-    evaluators_[worker].evaluate(span, term.window, point, balance, term.balance);
-    if (balance.covariance) {
-      term.whitening = whiteningFor(term.balance);
+  const std::size_t count = (windows_.size() + every_ - 1) / every_;
+  order_ = order;
+  summed_scale_ = window_scale_;
+  sums_are_old_ = false;
+  sums_ = WindowSums(linearized_at_.size());
+  if (every_ > 1 || windows_.size() <= options_.most_kept_windows) {
+    parallelFor(count, threads, [&](unsigned worker, std::size_t n) {
+      keep(windows_[n * every_], point, evaluators_[worker]);
+    });
+    return;
+  }
+  // Each in its own order: what is summed up must not depend on who does it.
+  std::vector<WindowSums> sums(kChunks, sums_);
+  parallelFor(kChunks, threads, [&](unsigned worker, std::size_t chunk) {
+    for (std::size_t n = count * chunk / kChunks; n < count * (chunk + 1) / kChunks; ++n) {
+      if (n % noiseStride(count) == 0) {
+        keep(windows_[n], point, evaluators_[worker]);
+      } else {
+        sumUp(windows_[n], point, evaluators_[worker], sums[chunk]);
+      }
     }
   });
+  for (const WindowSums& sum : sums) {
+    addAll(sum.serving, sums_.serving);
+    addAll(sum.held_out, sums_.held_out);
+  }
+}
+
+void MotionTerms::keep(WindowTerm& term, const MotionPoint& point, BalanceEvaluator& evaluator) {
+  BalanceOrder order = order_;
+  order.covariance = order.covariance || !term.isKept();
+  evaluator.evaluate(spans_[term.window.span], term.window, point, order, term.balance);
+  if (order.covariance) {
+    term.whitening = whiteningFor(term.balance);
+  }
+  term.is_summed = false;
+}
+
+/// Unless it stands out: then its weight may have to be another.
+void MotionTerms::sumUp(WindowTerm& term,
+                        const MotionPoint& point,
+                        BalanceEvaluator& evaluator,
+                        WindowSums& sums) {
+  constexpr double kUsual = 2.5;
+  term.whitening.resize(0, 0);
+  keep(term, point, evaluator);
+  term.residual = term.whitening.triangularView<Eigen::Lower>() * term.balance.residual;
+  term.square = term.residual.squaredNorm() / static_cast<double>(valuesPerWindow());
+  if (term.serves() && term.square > kUsual * window_scale_) {
+    return;
+  }
+  term.is_summed = true;
+  term.is_in_sum = term.active;
+  if (term.is_in_sum) {
+    addToSums(term, 1.0, sums);
+  }
+  WindowBalance rest;
+  rest.residual = term.balance.residual;
+  term.balance = std::move(rest);
+  term.whitening.resize(0, 0);
+}
+
+void MotionTerms::addToSums(const WindowTerm& term, double weight, WindowSums& sums) {
+  const Eigen::MatrixXd jacobian =
+      term.whitening.triangularView<Eigen::Lower>() * term.balance.jacobian;
+  (term.held_out ? sums.held_out : sums.serving).addDense(jacobian, term.residual, weight);
+}
+
+bool MotionTerms::areSummed() const {
+  return std::any_of(
+      windows_.begin(), windows_.end(), [](const WindowTerm& term) { return term.is_summed; });
+}
+
+/// What is summed up stays so as long as the windows in it serve, and count in full.
+void MotionTerms::sumUpWhatChanged() {
+  constexpr double kSame = 1.5;
+  if (!areSummed()) {
+    return;
+  }
+  if (sums_are_old_ || kSame * window_scale_ < summed_scale_) {
+    linearizeWindows(order_);
+    return;
+  }
+  const MotionPoint point(*problem_.model, places_, linearized_at_);
+  for (WindowTerm& term : windows_) {
+    if (!term.is_summed || term.active == term.is_in_sum) {
+      continue;
+    }
+    keep(term, point, evaluators_.front());
+    if (term.is_in_sum) {
+      addToSums(term, -1.0, sums_);
+    }
+  }
 }
 
 InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
-  InformationSum sum(x.size());
+  sumUpWhatChanged();
   const Eigen::VectorXd apart = x - linearized_at_;
+  InformationSum sum = sums_.serving;
+  sum.moveBy(apart);
   Eigen::MatrixXd jacobian;
   for (std::size_t n = 0; n < windows_.size(); n += every_) {
     WindowTerm& term = windows_[n];
+    if (!term.isKept()) {
+      continue;
+    }
     const auto whitening = term.whitening.triangularView<Eigen::Lower>();
     term.residual = whitening * (term.balance.residual + term.balance.jacobian * apart);
     term.square = term.residual.squaredNorm() / static_cast<double>(valuesPerWindow());
@@ -195,78 +275,21 @@ InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
   return sum;
 }
 
-void MotionTerms::linearizeOrientations() {
-  constexpr std::size_t kAtOnce = 200;
-  const std::size_t count = orientations_.size();
-  orientation_jacobians_.resize(static_cast<Eigen::Index>(orienting_.size()),
-                                3 * static_cast<Eigen::Index>(count));
-  const double whitening = 1.0 / noise_.orientation;
-  const auto threads = static_cast<unsigned>(evaluators_.size());
-  parallelFor((count + kAtOnce - 1) / kAtOnce, threads, [&](unsigned, std::size_t part) {
-    TrackerTerm tracker(*problem_.model, places_, linearized_at_);
-    for (std::size_t n = part * kAtOnce; n < std::min(count, (part + 1) * kAtOnce); ++n) {
-      OrientationTerm& term = orientations_[n];
-      term.is_known = tracker.evaluate(spans_[term.span], term.index);
-      if (!term.is_known) {
-        continue;
-      }
-      term.time = tracker.time();
-      term.linearized = whitening * tracker.residual();
-      auto columns = orientation_jacobians_.middleCols<3>(3 * static_cast<Eigen::Index>(n));
-      for (std::size_t c = 0; c < orienting_.size(); ++c) {
-        columns.row(static_cast<Eigen::Index>(c)) =
-            whitening * tracker.jacobian().col(orienting_[c]).transpose();
-      }
-    }
-  });
-}
-
-void MotionTerms::moveOrientations(const Eigen::VectorXd& x) {
-  const Eigen::VectorXd moved = x - linearized_at_;
-  const Eigen::VectorXd apart = moved(orienting_);
-  for (std::size_t n = 0; n < orientations_.size(); ++n) {
-    OrientationTerm& term = orientations_[n];
-    if (term.is_known) {
-      term.residual = term.linearized + orientationJacobian(n) * apart;
-      term.square = term.residual.squaredNorm() / 3.0;
-    }
+double MotionTerms::squares(const Eigen::VectorXd& x) const {
+  InformationSum summed = sums_.serving;
+  summed.moveBy(x - linearized_at_);
+  double squares = summed.squaredMisfit();
+  for (const WindowTerm& term : windows_) {
+    const bool counts = term.serves() && term.isKept();
+    squares += counts ? term.square * static_cast<double>(valuesPerWindow()) : 0.0;
   }
+  return squares;
 }
 
 InformationSum MotionTerms::orientation(const Eigen::VectorXd& x) {
-  moveOrientations(x);
-  InformationSum orienting(static_cast<Eigen::Index>(orienting_.size()));
-  for (std::size_t n = 0; n < orientations_.size(); ++n) {
-    const OrientationTerm& term = orientations_[n];
-    if (term.serves()) {
-      orienting.addDense(
-          orientationJacobian(n), term.residual, robustWeight(term.square / orientation_scale_));
-    }
-  }
   InformationSum sum(x.size());
-  sum.addAt(orienting_, orienting);
+  sum.addAt(orientations_.coordinates(), orientations_.sum(x));
   return sum;
-}
-
-/// Every so manieth window, and the orientations within it.
-void MotionTerms::holdOut() {
-  const std::size_t every = options_.hold_out_every;
-  if (every < 2 || windows_.size() < options_.least_windows_to_hold_out) {
-    return;
-  }
-  for (std::size_t n = every / 2; n < windows_.size(); n += every) {
-    windows_[n].held_out = true;
-    const JointTrack& track = spans_[windows_[n].window.span].track;
-    const double begin = track.time(windows_[n].window.first);
-    const double end = track.time(windows_[n].window.last);
-    for (OrientationTerm& term : orientations_) {
-      const double time = spans_[term.span].orientation_times[term.index];
-      if (term.span == windows_[n].window.span && time >= begin && time <= end) {
-        term.held_out = true;
-        term.window = n;
-      }
-    }
-  }
 }
 
 bool MotionTerms::holdsOut() const {
@@ -275,43 +298,41 @@ bool MotionTerms::holdsOut() const {
 }
 
 void MotionTerms::admitHeldOut() {
+  sumUpWhatChanged();
   for (WindowTerm& term : windows_) {
     term.held_out = false;
   }
-  for (OrientationTerm& term : orientations_) {
-    term.held_out = false;
-  }
+  addAll(sums_.held_out, sums_.serving);
+  sums_.held_out = InformationSum(sums_.serving.gradient().size());
+  orientations_.admitHeldOut();
 }
 
 InformationSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& values) {
-  InformationSum sum(x.size());
-  values = 0;
-  const auto add = [&](const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual) {
-    sum.addDense(jacobian, residual);
-    values += static_cast<std::size_t>(residual.size());
-  };
+  sumUpWhatChanged();
   const Eigen::VectorXd apart = x - linearized_at_;
-  moveOrientations(x);
-  std::map<std::size_t, OrientationSum> means;
-  for (std::size_t n = 0; n < orientations_.size(); ++n) {
-    const OrientationTerm& term = orientations_[n];
-    if (term.held_out && term.active && term.is_known) {
-      means[term.window].add(orientationJacobian(n), term.residual);
-    }
-  }
+  InformationSum sum = sums_.held_out;
+  sum.moveBy(apart);
+  values = 0;
+  const std::map<std::size_t, OrientationMean> means = orientations_.heldOut(x);
   for (std::size_t n = 0; n < windows_.size(); ++n) {
     const WindowTerm& term = windows_[n];
     if (!term.held_out || !term.active) {
       continue;
     }
-    const auto whitening = term.whitening.triangularView<Eigen::Lower>();
-    add(whitening * term.balance.jacobian,
-        whitening * (term.balance.residual + term.balance.jacobian * apart));
+    values += static_cast<std::size_t>(valuesPerWindow());
+    if (term.isKept()) {
+      const auto whitening = term.whitening.triangularView<Eigen::Lower>();
+      const Eigen::MatrixXd jacobian = whitening * term.balance.jacobian;
+      const Eigen::VectorXd residual = term.balance.residual + term.balance.jacobian * apart;
+      sum.addDense(jacobian, whitening * residual);
+    }
     const auto mean = means.find(n);
     if (mean != means.end()) {
+      const double root = std::sqrt(mean->second.count);
       Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3, x.size());
-      all(Eigen::all, orienting_) = mean->second.jacobian / std::sqrt(mean->second.count);
-      add(all, mean->second.residual / std::sqrt(mean->second.count));
+      all(Eigen::all, orientations_.coordinates()) = mean->second.jacobian / root;
+      sum.addDense(all, mean->second.residual / root);
+      values += 3;
     }
   }
   return sum;

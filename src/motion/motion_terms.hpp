@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 
 #include "motion_span.hpp"
+#include "orientation_terms.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "spherical_actuator_calibration/motion/motion_problem.hpp"
 #include "stream_noise.hpp"
-#include "tracker_term.hpp"
 #include "window_balance.hpp"
 
 namespace sac {
@@ -16,30 +16,18 @@ namespace sac {
 /// One window in the estimation.
 struct WindowTerm {
   MotionWindow window;
-  WindowBalance balance;  ///< where it was linearised last
+  WindowBalance
+      balance;  ///< where it was linearised last; of one that is summed the residual alone
   Eigen::MatrixXd whitening;
   Eigen::VectorXd residual;  ///< whitened
   double square = 0.0;       ///< squared whitened residual, over the number of residuals
   bool active = true;
-  bool held_out = false;  ///< judges, and does not serve as long as it does
+  bool held_out = false;   ///< judges, and does not serve as long as it does
+  bool is_summed = false;  ///< its derivatives are not kept: what it tells is in a sum of many
+  bool is_in_sum = false;  ///< it was active when it was summed up
 
   bool serves() const { return active && !held_out; }
-};
-
-/// One orientation of the tracker.
-struct OrientationTerm {
-  std::size_t span = 0;
-  std::size_t index = 0;
-  Eigen::Vector3d linearized = Eigen::Vector3d::Zero();  ///< whitened residual, where it was last
-  Eigen::Vector3d residual = Eigen::Vector3d::Zero();    ///< whitened
-  double time = 0.0;
-  double square = 0.0;  ///< the same
-  bool active = true;
-  bool is_known = false;  ///< readings are there
-  bool held_out = false;
-  std::size_t window = 0;  ///< in which it is held out
-
-  bool serves() const { return is_known && active && !held_out; }
+  bool isKept() const { return whitening.size() > 0; }
 };
 
 /// How windows are linearised.
@@ -50,7 +38,9 @@ struct TermOrder {
 };
 
 /// All that a recording tells at coordinates x. Terms are linearised at one place, which takes
-/// time, and then tell of the places around it, as often as weights are looked at anew.
+/// time, and then tell of the places around it, as often as weights are looked at anew. Derivatives
+/// of so many windows are kept as the options say; of more, sums: in them weights are those of
+/// where they were linearised.
 class MotionTerms {
  public:
   /// Keeps references.
@@ -63,12 +53,14 @@ class MotionTerms {
   std::size_t servingWindows() const;
   const std::vector<WindowTerm>& windows() const { return windows_; }
   std::vector<WindowTerm>& windows() { return windows_; }
-  const std::vector<OrientationTerm>& orientations() const { return orientations_; }
-  std::vector<OrientationTerm>& orientations() { return orientations_; }
+  const OrientationTerms& orientations() const { return orientations_; }
+  OrientationTerms& orientations() { return orientations_; }
   const std::vector<MotionSpan>& spans() const { return spans_; }
   const std::vector<WindowsLeftOut>& leftOut() const { return left_out_; }
   const StreamNoise& noise() const { return noise_; }
   const MotionPlaces& places() const { return places_; }
+  /// Whether derivatives of some windows are not kept.
+  bool areSummed() const;
   /// Residuals of a window.
   Eigen::Index valuesPerWindow() const {
     return 3 * static_cast<Eigen::Index>(options_.test_functions);
@@ -85,6 +77,8 @@ class MotionTerms {
   // Of the terms that serve, by the last linearisation and robustly weighted, in all coordinates.
   InformationSum balance(const Eigen::VectorXd& x);
   InformationSum orientation(const Eigen::VectorXd& x);
+  /// Squared whitened residuals of the windows that serve, at x, where balance() was asked last.
+  double squares(const Eigen::VectorXd& x) const;
   /// Of what is held out and active, without robust weights: the windows' balance, and the mean
   /// orientation within each, so that white noise of the tracker does not hide the rest. `values`:
   /// how many residuals.
@@ -95,14 +89,23 @@ class MotionTerms {
   void admitHeldOut();
 
  private:
-  void holdOut();
+  /// What windows that are not kept tell where they are linearised.
+  struct WindowSums {
+    explicit WindowSums(Eigen::Index size) : serving(size), held_out(size) {}
+
+    InformationSum serving;
+    InformationSum held_out;
+  };
+
   Eigen::MatrixXd whiteningFor(const WindowBalance& balance) const;
-  void linearizeWindows(const TermOrder& order);
-  void linearizeOrientations();
-  void moveOrientations(const Eigen::VectorXd& x);
-  auto orientationJacobian(std::size_t n) const {
-    return orientation_jacobians_.middleCols<3>(3 * static_cast<Eigen::Index>(n)).transpose();
-  }
+  void linearizeWindows(const BalanceOrder& order);
+  void keep(WindowTerm& term, const MotionPoint& point, BalanceEvaluator& evaluator);
+  void sumUp(WindowTerm& term,
+             const MotionPoint& point,
+             BalanceEvaluator& evaluator,
+             WindowSums& sums);
+  static void addToSums(const WindowTerm& term, double weight, WindowSums& sums);
+  void sumUpWhatChanged();
 
   const MotionProblem& problem_;
   const MotionOptions& options_;
@@ -111,29 +114,23 @@ class MotionTerms {
   std::vector<WindowsLeftOut> left_out_;
   StreamNoise noise_;
   std::vector<WindowTerm> windows_;
-  std::vector<OrientationTerm> orientations_;
-  std::vector<Eigen::Index> orienting_;  ///< coordinates that orientations tell of
+  OrientationTerms orientations_;
   double window_scale_ = 1.0;
-  double orientation_scale_ = 1.0;
   double joint_factor_ = 1.0;
   double current_factor_ = 1.0;
   Eigen::VectorXd linearized_at_;
-  std::size_t every_ = 1;  ///< window is linearised
-  /// By the coordinates that orientations tell of, transposed: three columns for each.
-  Eigen::MatrixXd orientation_jacobians_;
+  std::size_t every_ = 1;      ///< window is linearised
+  BalanceOrder order_;         ///< of the last linearisation
+  double summed_scale_ = 1.0;  ///< of windows, when they were summed up
+  bool sums_are_old_ = false;  ///< noise is another since
+  WindowSums sums_;
   std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
 };
 
+/// Of so many windows one tells the noise, and is kept.
+std::size_t noiseStride(std::size_t windows);
+
 /// W with WᵀW the inverse of a covariance.
 Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance);
-
-/// Weight of a misfit whose square over its scale is s: beyond twice the scale it counts linearly
-/// (Huber).
-double robustWeight(double s);
-
-/// Coordinates that orientations of the tracker tell of, ascending: of joints and their sensors, of
-/// registrations, and its delay.
-std::vector<Eigen::Index> orientingCoordinates(const ParameterSpace& space,
-                                               const MotionPlaces& places);
 
 }  // namespace sac

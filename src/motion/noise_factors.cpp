@@ -74,14 +74,13 @@ NoiseFactors walk(const std::vector<Evidence>& evidence,
 NoiseFactors likelyFactors(const std::vector<WindowTerm>& windows,
                            double current_variance,
                            double share) {
-  constexpr std::size_t kEnough = 60;
   // Differences tell the noise well: they are doubted only where likelihood is certain.
   constexpr double kCertain = 12.0;
   std::vector<Evidence> evidence;
-  const std::size_t stride = std::max<std::size_t>(1, windows.size() / kEnough);
+  const std::size_t stride = noiseStride(windows.size());
   for (std::size_t n = 0; n < windows.size(); n += stride) {
     const WindowTerm& term = windows[n];
-    if (term.serves() && term.whitening.size() > 0) {
+    if (term.serves() && term.isKept()) {
       evidence.push_back({term.whitening.triangularView<Eigen::Lower>().solve(term.residual),
                           term.balance.by_joints,
                           current_variance * term.balance.by_currents});

@@ -200,18 +200,16 @@ void BalanceEvaluator::addImpulse(const MotionSpan& span,
   const double begin = span.track.time(window_.first);
   const double end = span.track.time(window_.last);
   const double delay = point.currentDelay();
-  const std::vector<double>& times = span.current_times;
-  const auto inside = std::upper_bound(times.begin(), times.end(), begin + delay);
-  const auto behind = std::lower_bound(inside, times.end(), end + delay);
+  const StampTimes& times = span.current_times;
   const TestFunctions functions(begin, end, options_.test_functions);
   const Eigen::Index coils = span.streams->currents.cols();
   current_.resize(coils);
   bend_.resize(coils);
   const std::size_t stride = order.stride;
   // One has neighbours on both sides.
-  const std::size_t first = std::max(static_cast<std::size_t>(inside - times.begin()), stride);
-  const std::size_t last = std::min(static_cast<std::size_t>(behind - times.begin()),
-                                    std::max(times.size(), stride) - stride);
+  const std::size_t first = std::max(times.firstAfter(begin + delay), stride);
+  const std::size_t last =
+      std::min(times.firstFrom(end + delay), std::max(times.size(), stride) - stride);
   const std::size_t count = last > first ? (last - first + stride - 1) / stride : 0;
   for (std::size_t m = beginOf(count, part); m < endOf(count, part); ++m) {
     const std::size_t n = first + m * stride;

@@ -97,6 +97,42 @@ TEST(MotionEstimator, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
   EXPECT_LT(apart.head(space.effect()).cwiseAbs().maxCoeff(), 5e-4);
 }
 
+// Sums in place of derivatives, as of a long recording.
+TEST(MotionEstimator, TellsTheSameWithFewDerivativesKept) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 14.0;
+  moving.push = 5e-3;
+  const MotionRecording recording = noisy(moving.record());
+  const CalibrationModel model = motionModel();
+  MotionOptions options;
+  options.window = 0.1;
+  options.most_kept_windows = 1000;
+  const MotionEstimate all = estimated(model, recording, options);
+  options.most_kept_windows = 100;
+  const MotionEstimate few = estimated(model, recording, options);
+  ASSERT_EQ(few.estimate.termination, Termination::kConverged);
+  EXPECT_GT(all.summary.windows, 130U);
+  const Eigen::ArrayXd stddevs = all.estimate.belief.covariance.diagonal().array().sqrt();
+  const Eigen::ArrayXd apart = (few.estimate.belief.x - all.estimate.belief.x).array() / stddevs;
+  EXPECT_LT(apart.abs().maxCoeff(), 0.02);
+  const Eigen::ArrayXd ratios = few.estimate.belief.covariance.diagonal().array().sqrt() / stddevs;
+  EXPECT_LT((ratios - 1.0).abs().maxCoeff(), 2e-3);
+  EXPECT_LT(all.summary.used, all.summary.windows);  // a hand touched the rotor
+  EXPECT_EQ(few.summary.used, all.summary.used);
+  EXPECT_EQ(few.summary.orientations, all.summary.orientations);
+  EXPECT_EQ(few.summary.held_out.windows, all.summary.held_out.windows);
+  EXPECT_NEAR(few.summary.held_out.reduced_chi_square,
+              all.summary.held_out.reduced_chi_square,
+              2e-3 * all.summary.held_out.reduced_chi_square);
+  EXPECT_NEAR(few.summary.window_chi_square, all.summary.window_chi_square, 2e-3);
+  ASSERT_EQ(few.estimate.residuals.size(), all.estimate.residuals.size());
+  for (std::size_t n = 0; n < all.estimate.residuals.size(); ++n) {
+    EXPECT_NEAR(
+        few.estimate.residuals[n].standardized, all.estimate.residuals[n].standardized, 0.02);
+    EXPECT_EQ(few.estimate.residuals[n].rejected, all.estimate.residuals[n].rejected);
+  }
+}
+
 TEST(MotionEstimator, HoldsOutEveryTenthWindowOfALongRecording) {
   MovingRotor moving = madeRotor();
   moving.duration = 10.6;

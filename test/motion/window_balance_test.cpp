@@ -153,7 +153,7 @@ TEST_F(WindowBalanceTest, WindowsFillWhatHasCurrents) {
   ASSERT_EQ(windows_.size(), 3U);
   EXPECT_TRUE(left_out_.empty());
   const JointTrack& track = spans_[0].track;
-  const std::vector<double>& currents = spans_[0].current_times;
+  const StampTimes& currents = spans_[0].current_times;
   const double step = track.step();
   EXPECT_NEAR(track.time(windows_.front().first), currents.front() + options_.largest_delay, step);
   EXPECT_NEAR(track.time(windows_.back().last), currents.back() - options_.largest_delay, step);
