@@ -9,12 +9,13 @@
 #include <Eigen/Eigenvalues>
 
 #include "current_steps.hpp"
+#include "motion_outliers.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
-#include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
+#include "steady_torque.hpp"
 
 namespace sac {
 namespace {
@@ -35,8 +36,10 @@ class Estimator {
 
  private:
   bool solve();
+  bool solveFinely();
+  bool leavePushed();
+  bool fits() const;
   bool takeHeldOut();
-  bool rejectOutliers();
   bool weighAnew();
   std::size_t activeWindows() const;
   double windowFreedom() const;
@@ -75,41 +78,6 @@ double Estimator::windowSquares() const {
   return terms_.squares(descent_.x());
 }
 
-/// Marks what does not fit as inactive, and as active again what does; whether that changed
-/// anything. Where most fit badly, outliers stand out of their scatter.
-bool Estimator::rejectOutliers() {
-  const auto reject = [this](auto& terms, double freedom, const auto& counts) {
-    std::vector<double> squares;
-    for (const auto& term : terms) {
-      if (counts(term)) {
-        squares.push_back(term.square);
-      }
-    }
-    if (squares.empty()) {
-      return false;
-    }
-    const double usual = chiSquareLimit(freedom, 0.5) / freedom;
-    const double probability =
-        estimation_.false_alarm_probability / static_cast<double>(squares.size());
-    const double limit =
-        chiSquareLimit(freedom, probability) / freedom * std::max(1.0, medianOf(squares) / usual);
-    bool changed = false;
-    for (auto& term : terms) {
-      const bool active = !counts(term) || term.square <= limit;
-      changed = changed || active != term.active;
-      term.active = active;
-    }
-    return changed;
-  };
-  const bool windows = reject(terms_.windows(),
-                              static_cast<double>(terms_.valuesPerWindow()),
-                              [](const WindowTerm& term) { return term.residual.size() > 0; });
-  const bool orientations = reject(terms_.orientations().terms(),
-                                   3.0,
-                                   [](const OrientationTerm& term) { return term.is_known; });
-  return windows || orientations;
-}
-
 /// Noise and outliers at the present solution; whether that changes anything that counts.
 bool Estimator::weighAnew() {
   constexpr double kNoticeable = 1.1;
@@ -127,12 +95,52 @@ bool Estimator::weighAnew() {
     factors_ = factors;
     terms_.setNoiseFactors(factors.joints, factors.currents);
   }
-  return rejectOutliers() || changes;
+  return rejectOutliers(terms_, estimation_.false_alarm_probability) || changes;
 }
 
 bool Estimator::solve() {
   descent_.solveCoarsely();
+  return solveFinely();
+}
+
+bool Estimator::solveFinely() {
   return descent_.solveFinely([this] { return weighAnew(); });
+}
+
+/// Whether the misfit of what serves is that of noise.
+bool Estimator::fits() const {
+  constexpr double kSignificance = 1e-3;
+  const double freedom = windowFreedom();
+  return freedom > 0.0 && windowSquares() <= chiSquareLimit(freedom, kSignificance);
+}
+
+/// Without the windows over which something small held the rotor for long, where the others then
+/// fit: where they do not, the model lacks something, and that must show.
+bool Estimator::leavePushed() {
+  constexpr int kMostRuns = 4;
+  constexpr std::size_t kLeastShare = 3;  // of so many windows one must be left
+  const std::size_t all = activeWindows();
+  std::vector<WindowTerm>& windows = terms_.windows();
+  bool any = false;
+  bool solved = true;
+  for (int n = 0; n < kMostRuns && solved; ++n) {
+    const std::optional<WindowRun> run = steadilyPushed(terms_);
+    if (!run || activeWindows() < all / kLeastShare + run->count) {
+      break;
+    }
+    for (std::size_t k = run->first; k < run->first + run->count; ++k) {
+      windows[k].is_pushed = true;
+    }
+    any = true;
+    solved = solveFinely();
+  }
+  if (!any || (solved && fits())) {
+    return true;
+  }
+  for (WindowTerm& term : windows) {
+    term.is_pushed = false;
+  }
+  return solveFinely();
 }
 
 double Estimator::orientationChiSquare() const {
@@ -206,7 +214,7 @@ HeldOutMotion Estimator::countHeldOut() {
     if (!windows[n].held_out || windows[n].residual.size() == 0) {
       continue;
     }
-    if (windows[n].active) {
+    if (windows[n].isSound()) {
       held_out.residuals.push_back(residualOf(n));
       torques += held_out.residuals.back().residual.squaredNorm();
     } else {
@@ -276,7 +284,7 @@ ObservationResidual Estimator::residualOf(std::size_t window) const {
   result.observation = {window, Quantity::kTorque};
   result.residual = residual.head<3>() / functions.integralOfFirst();
   result.standardized = std::sqrt(term.square);
-  result.rejected = !term.active;
+  result.rejected = !term.isSound();
   return result;
 }
 
@@ -302,6 +310,10 @@ void Estimator::summarise() {
     }
     if (!term.active) {
       countLeftOut("it contradicts the others: something else moved the rotor", summary.left_out);
+      continue;
+    }
+    if (term.is_pushed) {
+      countLeftOut("something held or turned the rotor steadily for longer", summary.left_out);
       continue;
     }
     const JointTrack& track = terms_.spans()[term.window.span].track;
@@ -331,7 +343,7 @@ MotionEstimate Estimator::run() {
     summarise();
     return std::move(result_);
   }
-  const bool solved = solve() && takeHeldOut();
+  const bool solved = solve() && leavePushed() && takeHeldOut();
   estimate.unobservable = descent_.open().coordinates;
   estimate.open_directions = descent_.open().directions;
   estimate.error_history = descent_.errors();

@@ -69,6 +69,15 @@ std::vector<HeldOutStretch> heldOutOf(const std::vector<WindowTerm>& windows,
   return stretches;
 }
 
+/// Of a window whose derivatives are there. A steady torque acts by the first test function: the
+/// integral of all others is zero.
+TorqueEvidence evidenceOf(const WindowTerm& term, const JointTrack& track) {
+  const TestFunctions functions(track.time(term.window.first), track.time(term.window.last), 1);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> by_torque =
+      functions.integralOfFirst() * term.whitening.leftCols<3>();
+  return {by_torque.transpose() * by_torque, by_torque.transpose() * term.residual};
+}
+
 /// To a sum of as many coordinates.
 void addAll(const InformationSum& other, InformationSum& sum) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(other.gradient().size()));
@@ -208,8 +217,9 @@ void MotionTerms::sumUp(WindowTerm& term,
   if (term.serves() && term.square > kUsual * window_scale_) {
     return;
   }
+  term.steady = evidenceOf(term, spans_[term.window.span].track);
   term.is_summed = true;
-  term.is_in_sum = term.active;
+  term.is_in_sum = term.isSound();
   if (term.is_in_sum) {
     addToSums(term, 1.0, sums);
   }
@@ -242,7 +252,7 @@ void MotionTerms::sumUpWhatChanged() {
   }
   const MotionPoint point(*problem_.model, places_, linearized_at_);
   for (WindowTerm& term : windows_) {
-    if (!term.is_summed || term.active == term.is_in_sum) {
+    if (!term.is_summed || term.isSound() == term.is_in_sum) {
       continue;
     }
     keep(term, point, evaluators_.front());
@@ -273,6 +283,11 @@ InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
     sum.addDense(jacobian, term.residual, robustWeight(term.square / window_scale_));
   }
   return sum;
+}
+
+TorqueEvidence MotionTerms::steadyTorque(std::size_t window) const {
+  const WindowTerm& term = windows_[window];
+  return term.isKept() ? evidenceOf(term, spans_[term.window.span].track) : term.steady;
 }
 
 double MotionTerms::squares(const Eigen::VectorXd& x) const {
@@ -316,7 +331,7 @@ InformationSum MotionTerms::heldOut(const Eigen::VectorXd& x, std::size_t& value
   const std::map<std::size_t, OrientationMean> means = orientations_.heldOut(x);
   for (std::size_t n = 0; n < windows_.size(); ++n) {
     const WindowTerm& term = windows_[n];
-    if (!term.held_out || !term.active) {
+    if (!term.held_out || !term.isSound()) {
       continue;
     }
     values += static_cast<std::size_t>(valuesPerWindow());

@@ -13,6 +13,12 @@
 
 namespace sac {
 
+/// What windows tell of a torque that is the same all the time, stator frame.
+struct TorqueEvidence {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
 /// One window in the estimation.
 struct WindowTerm {
   MotionWindow window;
@@ -24,9 +30,12 @@ struct WindowTerm {
   bool active = true;
   bool held_out = false;   ///< judges, and does not serve as long as it does
   bool is_summed = false;  ///< its derivatives are not kept: what it tells is in a sum of many
-  bool is_in_sum = false;  ///< it was active when it was summed up
+  bool is_in_sum = false;  ///< it was sound when it was summed up
+  bool is_pushed = false;  ///< with others around it: see steadilyPushed()
+  TorqueEvidence steady;   ///< of one that is summed
 
-  bool serves() const { return active && !held_out; }
+  bool isSound() const { return active && !is_pushed; }
+  bool serves() const { return isSound() && !held_out; }
   bool isKept() const { return whitening.size() > 0; }
 };
 
@@ -77,6 +86,8 @@ class MotionTerms {
   // Of the terms that serve, by the last linearisation and robustly weighted, in all coordinates.
   InformationSum balance(const Eigen::VectorXd& x);
   InformationSum orientation(const Eigen::VectorXd& x);
+  /// What a window tells of a steady torque that is not modelled, where balance() was asked last.
+  TorqueEvidence steadyTorque(std::size_t window) const;
   /// Squared whitened residuals of the windows that serve, at x, where balance() was asked last.
   double squares(const Eigen::VectorXd& x) const;
   /// Of what is held out and active, without robust weights: the windows' balance, and the mean

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -95,6 +96,36 @@ TEST(MotionEstimator, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
   const ParameterSpace& space = model.space();
   const Eigen::VectorXd apart = found.estimate.belief.x - space.coordinatesOf(moving.truth);
   EXPECT_LT(apart.head(space.effect()).cwiseAbs().maxCoeff(), 5e-4);
+}
+
+std::size_t leftOutFor(const MotionSummary& summary, const char* reason) {
+  std::size_t count = 0;
+  for (const WindowsLeftOut& left_out : summary.left_out) {
+    count += left_out.reason.find(reason) != std::string::npos ? left_out.count : 0;
+  }
+  return count;
+}
+
+// A torque that no window shows alone would go into the parameters.
+TEST(MotionEstimator, LeavesOutWindowsInWhichAHandLeansOnTheRotor) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 14.0;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate free = estimated(model, noisy(moving.record()));
+  EXPECT_EQ(free.summary.used, free.summary.windows);
+  moving.push = 3e-4;
+  moving.push_begin = 4.0;
+  moving.push_end = 10.0;
+  const MotionEstimate found = estimated(model, noisy(moving.record()));
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_GT(leftOutFor(found.summary, "steadily"), 0U);
+  EXPECT_GE(found.summary.windows - found.summary.used, 20U);
+  EXPECT_LE(found.summary.windows - found.summary.used, 30U);
+  EXPECT_EQ(accountedFor(found.summary), found.summary.windows);
+  const ParameterSpace& space = model.space();
+  const Eigen::ArrayXd apart = found.estimate.belief.x - space.coordinatesOf(moving.truth);
+  const Eigen::ArrayXd stddevs = found.estimate.belief.covariance.diagonal().array().sqrt();
+  EXPECT_LT((apart / stddevs).head(space.effect()).square().mean(), 2.0);
 }
 
 // Sums in place of derivatives, as of a long recording.

@@ -24,7 +24,9 @@ struct MovingRotor {
   Actuator truth = scenarios::paperNominal();
   RigidRotor rotor;
   double duration = 6.0;       ///< [s]
-  double push = 0.0;           ///< [N·m] of a hand about the rotor's z, from 2.0 to 2.3 s
+  double push = 0.0;           ///< [N·m] of a hand about the stator's z
+  double push_begin = 2.0;     ///< [s]
+  double push_end = 2.3;       ///< [s]
   double current_delay = 0.0;  ///< [s]
   double tracker_delay = 0.0;  ///< [s]
   bool has_tracker = true;
@@ -76,7 +78,7 @@ struct MovingRotor {
       if (has_tracker && n % 4 == 0) {
         recorder.add(OrientationMeasurement{stamp(t + tracker_delay), Eigen::Quaterniond(R)});
       }
-      const bool is_pushed = push != 0.0 && t >= 2.0 && t < 2.3;
+      const bool is_pushed = push != 0.0 && t >= push_begin && t < push_end;
       state = advance(
           rotor,
           state,
