@@ -128,6 +128,25 @@ TEST(MotionEstimator, LeavesOutWindowsInWhichAHandLeansOnTheRotor) {
   EXPECT_LT((apart / stddevs).head(space.effect()).square().mean(), 2.0);
 }
 
+TEST(MotionEstimator, LeavesThemOutOfALongRecordingToo) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 14.0;
+  moving.push = 3e-4;
+  moving.push_begin = 4.0;
+  moving.push_end = 10.0;
+  const MotionRecording recording = noisy(moving.record());
+  const CalibrationModel model = motionModel();
+  MotionOptions options;
+  options.window = 0.1;
+  options.most_kept_windows = 1000;
+  const MotionEstimate all = estimated(model, recording, options);
+  options.most_kept_windows = 100;
+  const MotionEstimate few = estimated(model, recording, options);
+  EXPECT_GT(leftOutFor(all.summary, "steadily"), 0U);
+  EXPECT_EQ(leftOutFor(few.summary, "steadily"), leftOutFor(all.summary, "steadily"));
+  EXPECT_EQ(few.summary.used, all.summary.used);
+}
+
 // Sums in place of derivatives, as of a long recording.
 TEST(MotionEstimator, TellsTheSameWithFewDerivativesKept) {
   MovingRotor moving = madeRotor();
