@@ -6,8 +6,12 @@ namespace sac {
 
 /// K test functions of a window at one time.
 struct TestFunctionValues {
-  Eigen::VectorXd value;   ///< φ
-  Eigen::VectorXd first;   ///< dφ/dt [1/s]
+  Eigen::VectorXd value;  ///< φ
+  Eigen::VectorXd first;  ///< dφ/dt [1/s]
+};
+
+/// How their slopes change there.
+struct TestFunctionBends {
   Eigen::VectorXd second;  ///< d²φ/dt² [1/s²]
   Eigen::VectorXd third;   ///< d³φ/dt³ [1/s³]
 };
@@ -21,8 +25,9 @@ class TestFunctions {
   TestFunctions(double begin, double end, int count);
 
   int count() const { return count_; }
-  /// Fills `out`, whose storage is reused. `time` in the window.
+  /// Fill `out`, whose storage is reused. `time` in the window.
   void evaluate(double time, TestFunctionValues& out) const;
+  void evaluate(double time, TestFunctionBends& out) const;
   /// ∫ φ_2 dt of the first one, which has one sign [s].
   double integralOfFirst() const;
 

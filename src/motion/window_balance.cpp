@@ -68,26 +68,28 @@ void BalanceEvaluator::start(const MotionSpan& span,
   const TestFunctions functions(
       span.track.time(window.first), span.track.time(window.last), options_.test_functions);
   middle_.resize(readings - 1);
+  bends_.resize(readings - 1);
   // Of those around its intervals alone a part asks.
-  const std::size_t reach = frictionReach(span.track);
+  const std::size_t reach = std::max<std::size_t>(frictionReach(span.track), 1);
   const std::size_t begin = beginOf(readings - 1, part);
   const std::size_t end = endOf(readings - 1, part) + reach + 1;
   for (std::size_t n = 0; n < readings; ++n) {
     const std::size_t reading = window.first - 1 + n;
-    if (n + reach >= begin && n < end) {
-      point.turn(span.track.reading(reading), turned_[n]);
+    if (n + reach < begin || n >= end) {
+      continue;
     }
+    point.turn(span.track.reading(reading), turned_[n]);
     if (n == 0 || n + 2 >= readings) {
       continue;
     }
-    functions.evaluate(0.5 * (span.track.time(reading) + span.track.time(reading + 1)), middle_[n]);
+    const double middle = 0.5 * (span.track.time(reading) + span.track.time(reading + 1));
+    functions.evaluate(middle, middle_[n]);
+    functions.evaluate(middle, bends_[n]);
   }
   // Outside of the window the functions are zero.
-  for (TestFunctionValues* outside : {&middle_.front(), &middle_.back()}) {
-    outside->value.setZero(count_);
-    outside->first.setZero(count_);
-    outside->second.setZero(count_);
-    outside->third.setZero(count_);
+  for (const std::size_t outside : {std::size_t{0}, readings - 2}) {
+    middle_[outside] = {Eigen::VectorXd::Zero(count_), Eigen::VectorXd::Zero(count_)};
+    bends_[outside] = {Eigen::VectorXd::Zero(count_), Eigen::VectorXd::Zero(count_)};
   }
   momentum_.start(turning_ + kBehind, count_);
   impulse_.start(3 * point.space().size() + 3, count_);
@@ -101,12 +103,12 @@ void BalanceEvaluator::start(const MotionSpan& span,
 /// Of M = −Σ factor A Δ: −∫φ̇ L dt is −Σ (mean of φ̇) A Δ − Σ φ̈ A ω̇ h³/12, with ω̇ from the turns of
 /// both neighbours.
 void BalanceEvaluator::setMomentumFactors(std::size_t place, double h) {
-  factor_ = middle_[place].first + (h * h / 24.0) * middle_[place].third;
+  factor_ = middle_[place].first + (h * h / 24.0) * bends_[place].third;
   if (place > 0) {
-    factor_ += (h / 24.0) * middle_[place - 1].second;
+    factor_ += (h / 24.0) * bends_[place - 1].second;
   }
   if (place + 1 < middle_.size()) {
-    factor_ -= (h / 24.0) * middle_[place + 1].second;
+    factor_ -= (h / 24.0) * bends_[place + 1].second;
   }
 }
 

@@ -110,6 +110,7 @@ class BalanceEvaluator {
   Eigen::Index turning_ = 0;                ///< rows of what turns the rotor
   std::vector<TurnedRotor> turned_;         ///< at the readings, one more on either side
   std::vector<TestFunctionValues> middle_;  ///< between them
+  std::vector<TestFunctionBends> bends_;    ///< there
   TurnedRotor between_;
   TestFunctionValues test_;
   Eigen::VectorXd factor_;
