@@ -1,8 +1,7 @@
 """How large rooms, sources and functions are, for dev/check_rooms: no larger than what one can know by heart.
 
-Of functions in C++ clang-tidy measures the bodies, see readability-function-size in .clang-tidy; those outside of
-classes, tests, which are macros to it, and lambdas outside of functions, which it passes over, are measured here with
-their heads.
+Functions are measured with their heads; clang-tidy, see readability-function-size in .clang-tidy, measures bodies alone,
+and neither tests, which are macros to it, nor lambdas outside of functions.
 """
 
 import ast
@@ -14,10 +13,24 @@ LONGEST_SOURCE = 400  # [lines]
 LONGEST_FUNCTION = 60  # [lines]
 LONGEST_CMAKE = 200  # [lines]
 
-# What may begin a function outside of classes, as clang-format sets it: at the margin.
-CPP_HEAD = re.compile(r"(?!namespace\b|using\b|typedef\b|extern\b|struct\b|class\b|enum\b|union\b)[A-Za-z_[]")
-CPP_LAMBDA = re.compile(r"(\w+)\s*=\s*\[")
-CPP_NAME = re.compile(r"((?:TYPED_)?TEST(?:_[FP])?\([^)]*\)|[\w:~]+(?=\())")
+# What of C++ holds no code, or could be taken for its braces: strings, comments, lines of the preprocessor.
+CPP_TEXT = re.compile(
+    r"""R"([^\s()\\]{0,16})\(.*?\)\1"
+    |"(?:\\.|[^"\\\n])*"
+    |(?<![0-9A-Fa-f])'(?:\\.|[^'\\\n])+'
+    |//[^\n]*
+    |/\*.*?\*/
+    |^[ \t]*\#(?:\\\n|[^\n])*""",
+    re.MULTILINE | re.DOTALL | re.VERBOSE,
+)
+CPP_SIGN = re.compile(r"[(){};]")
+# What stands before the brace of a function and of a lambda.
+QUALIFIERS = r"(?:\s*(?:\b(?:const|noexcept|override|final|mutable|constexpr|try)\b|&&?|->[^;=()]+))*\s*"
+CPP_NAME = r"(?:[\w:~]+::)?operator\s*[^\s\w]+|operator[\w\s:<>*&]+|[\w:~]+"
+CPP_FUNCTION = re.compile(rf"({CPP_NAME})\s*\(.*\){QUALIFIERS}(?::[^:].*)?$", re.DOTALL)
+CPP_TEST = re.compile(r"(?:TYPED_)?TEST(?:_[FP])?\([^)]*\)")
+CPP_LAMBDA = re.compile(rf"(?:(\w+)\s*=\s*)?\[[^\[\]]*\]\s*(?:\([^;]*\))?{QUALIFIERS}$")
+CPP_ACCESS = re.compile(r"\s*(?:(?:public|private|protected)\s*:\s*)?")
 SHELL_FUNCTION = re.compile(r"^(?:function )?([\w-]+) ?(?:\(\))?\s*[{(]\n(?:(?![})]).*\n)*[})]", re.MULTILINE)
 
 
@@ -55,25 +68,47 @@ def long_functions(house):
                     yield f"{file}:{node.lineno}: {node.name} has {length} lines, more than {LONGEST_FUNCTION}."
 
 
+def without_text(code):
+    """The same C++, with blanks for what is none."""
+    return CPP_TEXT.sub(lambda found: re.sub(r"[^\n]", " ", found.group(0)), code)
+
+
+def head_of(statement, in_parentheses):
+    """What begins with the brace after this statement: name and place of its first character; None of no function."""
+    first = CPP_ACCESS.match(statement).end()
+    found = CPP_LAMBDA.search(statement)
+    if found is not None:
+        return (found.group(1), first) if found.group(1) else ("a lambda", found.start())
+    found = None if in_parentheses else CPP_TEST.search(statement, first) or CPP_FUNCTION.search(statement, first)
+    return (found.group(found.lastindex or 0), first) if found else None
+
+
 def cpp_functions(text):
-    """Functions at the margin, tests and lambdas among them: name, first line from 1, number of lines with the head."""
-    head, body = None, None
-    lines = text.splitlines()
-    for number, line in enumerate(lines, 1):
-        if head is None:
-            head = number if CPP_HEAD.match(line) else None
-        if head is None:
-            continue
-        if body is not None and line.startswith("}"):
-            text_of_head = " ".join(lines[head - 1 : body])
-            name = (CPP_NAME if line == "}" else CPP_LAMBDA).search(text_of_head)
-            if name is not None:
-                yield name.group(1), head, number - head + 1
-            head, body = None, None
-        elif body is None and line.endswith("{"):
-            body = number
-        elif body is None and line.endswith((";", "}")):
-            head = None
+    """Functions, tests and lambdas that are in no other one: name, first line from 1, number of lines with the head."""
+    code = without_text(text)
+    signs = [(found.group(0), found.start()) for found in CPP_SIGN.finditer(code)]
+    blocks, parentheses, begin = [], 0, 0  # open braces; open parentheses and first character of the statement
+    for sign, at in signs:
+        if sign in "()":
+            parentheses += 1 if sign == "(" else -1
+        elif sign == ";" and parentheses == 0:
+            begin = at + 1
+        elif sign == "{":
+            is_inside = bool(blocks) and (blocks[-1][3] or blocks[-1][2] is not None)
+            head = None if is_inside else head_of(code[begin:at], parentheses > 0)
+            blocks.append((begin, parentheses, head, is_inside, at))
+            parentheses, begin = 0, at + 1
+        elif sign == "}" and blocks:
+            begin, parentheses, head, _, brace = blocks.pop()
+            goes_on = parentheses > 0 or re.match(r"\s*(?:[,{=.)(-]|\[(?!\[)|catch\b)", code[at + 1 : at + 200])
+            if head is not None:
+                first = code.count("\n", 0, begin + head[1]) + 1
+                yield head[0], first, code.count("\n", 0, at) + 2 - first
+            if not goes_on:
+                begin = at + 1
+            else:
+                # As an expression it is no brace of what follows.
+                code = code[:brace] + re.sub(r"[^\n]", " ", code[brace : at + 1]) + code[at + 1 :]
 
 
 def long_cpp_functions(house):

@@ -290,6 +290,26 @@ class CheckRooms(unittest.TestCase):
                 length = 61 + head.count("\n")
                 self.assertEqual(found, [f"src/base/long.cpp:1: turn has {length} lines, more than 60."])
 
+    def test_names_a_long_function_however_it_is_written(self):
+        heads = (
+            ("turn", "void turn() {  // all the way\n", "}\n"),
+            ("turn", 'extern "C" void turn() {\n', "}\n"),
+            ("turn", "struct Turns turn(int a = {}) {\n", "}\n"),
+            ("turn", '[[nodiscard]] int none() { return \'}\'; }\n[[nodiscard]] auto turn() -> int {\n', "}\n"),
+            ("Turns::Turns", "Turns::Turns(int a) : a_{a}, b_(a), c_{a} {\n", "}\n"),
+            ("operator+", "Turns operator+(Turns a, Turns b) {\n", "}\n"),
+            ("turn", 'void turn() {\nprint(R"(\n}\n)");\n', "}\n"),
+            ("turn", "class Turns {\n public:\n  int a = {};\n  void turn() const {\n", "  }\n};\n"),
+            ("a lambda", "const Turn kTurn = std::function<void()>([] {\n", "});\n"),
+            ("a lambda", 'const Turn kTurns[] = {\n{"a", [] {}},\n{"b", [](int a) {\n', "}},\n};\n"),
+        )
+        for name, head, end in heads:
+            with self.subTest(head):
+                self.write("src/base/long.cpp", head + 60 * "  turn();\n" + end)
+                found = [one for one in self.complaints() if "base/long.cpp" in one and "base: holds" not in one]
+                self.assertEqual(len(found), 1, found)
+                self.assertIn(f": {name} has 6", found[0])
+
     def test_takes_no_class_or_table_for_a_function(self):
         struct = "struct Turns {\n" + 70 * "  int a;\n" + "};\n"
         table = "constexpr int kTurns[] = {\n" + 70 * "  1,\n" + "};\n"
