@@ -86,6 +86,19 @@ class CheckRooms(unittest.TestCase):
                 self.write(name, include("base/angle.hpp"))
                 self.expect_one(f"{name}: src/base/CMakeLists.txt does not list it")
                 (self.root / name).unlink()
+        listing = self.root / "src" / "base" / "CMakeLists.txt"
+        listing.write_text(listing.read_text().replace("    angle.cpp", "    # angle.cpp\n   "))
+        self.expect_one("src/base/angle.cpp: src/base/CMakeLists.txt does not list it")
+
+    def test_names_a_type_of_a_later_room_that_is_declared(self):
+        self.write(f"{INCLUDE}/planning/plan.hpp", "struct Plan {\n  int poses;\n};\nenum class Kind : int { kOne };\n")
+        for declaration, name in (("struct Plan;\n", "Plan"), ("enum class Kind : int;\n", "Kind")):
+            with self.subTest(name):
+                self.write("src/streams/rest.cpp", 10 * "int a();\n" + declaration)
+                self.expect_one(f"src/streams/rest.cpp: streams must not know {name}: planning comes after it")
+        # As a name of one's own, or of a class within another, it is no type of that room.
+        self.write("src/streams/rest.cpp", "struct Plan {\n  int a;\n};\nstruct Plan;\nclass A {\n  enum class Kind : int;\n};\n")
+        self.assertEqual(self.complaints(), [])
 
     def test_names_a_program_that_does_not_link_what_it_includes(self):
         self.write_libraries()
@@ -189,6 +202,10 @@ class CheckRooms(unittest.TestCase):
     def test_names_a_program_that_changes_where_modules_are_looked_for(self):
         self.write("scripts/turn", "#!/usr/bin/python3\nimport sys\nsys.path.insert(0, '..')\n")
         self.expect_one("scripts/turn: changes where modules are looked for")
+
+    def test_names_a_module_that_is_imported_by_a_text(self):
+        self.write("scripts/turn", "#!/usr/bin/python3\nimport importlib\nimportlib.import_module('angle')\n")
+        self.expect_one("scripts/turn: imports a module by its name as a text, which no rule sees: write import.")
 
     def test_names_what_is_for_tests_in_what_is_not(self):
         self.write("test/support/example.hpp", "int example();\n")
