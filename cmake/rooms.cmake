@@ -101,14 +101,24 @@ function(add_room room)
   endif()
 endfunction()
 
-# Links the objects of a room with those of the rooms before it in its library, and with nothing after it.
+# The first of several rooms is linked once there is a second one: alone, the library itself is the check.
 function(add_order_check room library)
   get_target_property(rooms ${library} ROOMS)
   list(LENGTH rooms count)
   if(count EQUAL 1)
-    return()  # the library itself is the check
+    return()
   endif()
-  list(JOIN rooms "|" alternatives)
+  if(count EQUAL 2)
+    list(GET rooms 0 first)
+    link_rooms(${first} ${library} ${first})
+  endif()
+  link_rooms(${room} ${library} ${rooms})
+endfunction()
+
+# Links the objects of a room with those of the rooms before it in its library, and with nothing after it:
+# link_rooms(<room> <library> <rooms up to it>...)
+function(link_rooms room library)
+  list(JOIN ARGN "|" alternatives)
   string(REPLACE "/" "_" name ${room}_order)
   add_library(${name} MODULE
     $<FILTER:$<TARGET_OBJECTS:${library}>,INCLUDE,/${library}\\.dir/\(${alternatives}\)/>)
