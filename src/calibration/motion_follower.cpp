@@ -57,6 +57,11 @@ std::optional<double> MotionFollower::timeLeft() const {
   return estimate().duration * std::max(0.0, worst * worst - 1.0);
 }
 
+bool MotionFollower::canBeJudged() const {
+  const std::size_t wanted = MotionOptions().least_windows_to_hold_out;
+  return estimate().windows - estimate().left_out >= wanted + wanted / 5;
+}
+
 std::vector<ParameterEstimate> MotionFollower::dynamics() const {
   const ParameterSpace& space = model_->space();
   const ParameterBelief& belief = estimate().belief;

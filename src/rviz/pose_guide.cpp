@@ -7,6 +7,7 @@
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
@@ -69,10 +70,9 @@ void PoseGuide::followOrientations() {
 }
 
 void PoseGuide::receive(const geometry_msgs::QuaternionStamped& message) {
-  constexpr double kUnitTolerance = 2e-3;  // of the square of the norm
   const geometry_msgs::Quaternion& q = message.quaternion;
-  const double square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  if (!has_joints_ && std::abs(square - 1.0) < kUnitTolerance) {
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!has_joints_ && std::abs(norm - 1.0) <= kUnitTolerance) {
     joints_ = turnsOf(q);
   }
 }

@@ -8,9 +8,10 @@ import rospy
 from geometry_msgs.msg import Quaternion, QuaternionStamped
 from sensor_msgs.msg import JointState
 
+from .unit_quaternion import normalised
+
 FRESH = 1.0  # [s]; longer than the pauses of a sensor on a busy computer
 TURNS = ("rotation_x", "rotation_y", "rotation_z")  # as the core names them
-UNIT_TOLERANCE = 1e-3  # of the norm of a quaternion
 
 
 def turns_of(x, y, z, w):
@@ -113,9 +114,9 @@ class OrientationReadings(_Readings):
     def keep(self, message):
         """What is no unit quaternion is not kept."""
         q = message.quaternion
-        norm = math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
-        if abs(norm - 1.0) <= UNIT_TOLERANCE:
-            self._take(turns_of(q.x / norm, q.y / norm, q.z / norm, q.w / norm))
+        unit, _ = normalised((q.x, q.y, q.z, q.w))
+        if unit is not None:
+            self._take(turns_of(*unit))
 
     def target(self, reading):
         """Message for the fixture, in the frame of the stator."""

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +15,9 @@ namespace sac {
 namespace {
 
 /// Lets a follower see a motion as it comes; its groups after every window.
-std::vector<std::vector<GroupUncertainty>> follow(const MotionStreams& streams,
-                                                  MotionFollower& follower) {
+std::vector<std::vector<GroupUncertainty>> follow(
+    const MotionStreams& streams, MotionFollower& follower, const std::function<void()>& look = [] {
+    }) {
   std::vector<std::vector<GroupUncertainty>> told;
   MotionSlicer slicer(static_cast<std::size_t>(streams.currents.cols()), MotionOptions());
   std::size_t orientation = 0;
@@ -32,6 +34,7 @@ std::vector<std::vector<GroupUncertainty>> follow(const MotionStreams& streams,
     while (auto slice = slicer.take()) {
       follower.add(std::move(*slice));
       told.push_back(follower.groups());
+      look();
     }
   }
   return told;
@@ -92,6 +95,23 @@ TEST(MotionFollower, TellsHowLongItTakes) {
   MotionFollower coarser(scenarios::paperNominal(), CalibrationConfig(), 2.0 * worst(once));
   follow(streams, coarser);
   EXPECT_EQ(coarser.timeLeft(), 0.0);
+}
+
+TEST(MotionFollower, TellsWhetherSomeWindowsCanJudge) {
+  scenarios::Generator generator(3);
+  MovingRotor moving;
+  moving.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
+  moving.duration = 30.0;
+  MotionFollower follower(scenarios::paperNominal(), CalibrationConfig(), 1e-4);
+  std::size_t first = 0;  // with which it can
+  follow(moving.record().spans.front(), follower, [&] {
+    const LiveEstimate& estimate = follower.estimate();
+    const bool suffices = estimate.windows - estimate.left_out >= 48;
+    EXPECT_EQ(follower.canBeJudged(), suffices) << estimate.windows;
+    first = first == 0 && suffices ? estimate.windows : first;
+  });
+  // More than a calibration of the same windows wants: the recording may have fewer.
+  EXPECT_GT(first, MotionOptions().least_windows_to_hold_out) << follower.estimate().windows;
 }
 
 TEST(MotionFollower, SuitsActuatorsWithJointsAndTorqueModel) {

@@ -40,6 +40,9 @@ class MotionFollower {
   /// Of such motion, until all is known as well as wanted, where variances fall with the inverse of
   /// the time [s]. Nothing before the first estimate.
   std::optional<double> timeLeft() const;
+  /// Whether so many windows serve that the calibration holds some of them out, which judge it; a
+  /// fifth more than it wants, since a recording begins and ends its windows elsewhere.
+  bool canBeJudged() const;
   /// Inertia, unbalance, friction and delays.
   std::vector<ParameterEstimate> dynamics() const;
 

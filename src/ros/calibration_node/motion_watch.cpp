@@ -74,6 +74,7 @@ void MotionWatch::publish() {
   }
   message.wanted_stddev = follower_->wantedStddev();
   message.time_left = follower_->timeLeft().value_or(kUnknown);
+  message.can_be_judged = follower_->canBeJudged() ? 1 : 0;
   for (const ParameterEstimate& one : follower_->dynamics()) {
     message.dynamics.push_back(estimateToRos(one));
   }

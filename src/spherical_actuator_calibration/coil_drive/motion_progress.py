@@ -8,7 +8,6 @@ from std_srvs.srv import Trigger
 
 PATIENCE = 2.0  # [s] for a calibration node that may not be there
 EVERY = 5.0  # [s] of motion between sentences about it
-LEAST_WINDOWS = 48  # of fewer the calibration holds hardly any out, and nothing judges it
 
 
 def time_left(progress, wanted):
@@ -19,9 +18,8 @@ def time_left(progress, wanted):
 
 def is_enough(progress, wanted):
     """Whether all is known as well as wanted [rad], and some windows can judge it."""
-    serving = progress.windows - progress.left_out
     worst = max((group.stddev for group in progress.groups), default=math.inf)
-    return bool(progress.told) and serving >= LEAST_WINDOWS and worst <= wanted
+    return bool(progress.told and progress.can_be_judged) and worst <= wanted
 
 
 def in_words(progress, wanted):

@@ -7,10 +7,10 @@ from geometry_msgs.msg import Quaternion, Vector3
 
 from spherical_actuator_calibration.msg import CalibrationSample
 
+from ..unit_quaternion import normalised
 from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE
 from .table import Table, named
 
-UNIT_TOLERANCE = 1e-3  # of the norm of a quaternion
 LATEST = (1 << 32) * 10**9 - 1  # [ns] that a stamp holds
 # Samples that were written down have no clock, and a recording needs one that grows.
 SPACING = 10**9  # [ns]
@@ -18,10 +18,10 @@ SPACING = 10**9  # [ns]
 
 def unit_quaternion(row, values, column):
     """Normalised x, y, z, w."""
-    norm = math.sqrt(sum(value * value for value in values))
-    if not abs(norm - 1.0) <= UNIT_TOLERANCE:
+    unit, norm = normalised(values)
+    if unit is None:
         row.fail(f"the quaternion has norm {norm:.4g} instead of 1.", column)
-    return [value / norm for value in values]
+    return unit
 
 
 class SampleTable:

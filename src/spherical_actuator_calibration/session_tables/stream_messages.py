@@ -9,6 +9,7 @@ from sensor_msgs.msg import JointState
 
 from spherical_actuator_calibration.msg import CoilCurrents
 
+from ..unit_quaternion import normalised
 from .columns import UNITS
 from .sample_messages import LATEST, unit_quaternion
 from .table import Table, TableError
@@ -125,10 +126,10 @@ class Stream:
         return [float(value) for value in values]
 
     def _rotation(self, values, key):
-        norm = sum(value * value for value in values) ** 0.5
-        if not abs(norm - 1.0) <= 1e-3:
+        unit, norm = normalised(values)
+        if unit is None:
             self._fail(key, f"the quaternion x, y, z, w has norm {norm:.4g} instead of 1.")
-        return [value / norm for value in values]
+        return unit
 
     def _stamp(self, row):
         text = row.text(self._time)
