@@ -26,6 +26,7 @@ PROGRAMS = (
     "session_engine",
     "track_orientation",
 )
+SHELL_PROGRAMS = [path for path in sorted((SOURCE / "scripts").iterdir()) if b"bash" in path.read_bytes().partition(b"\n")[0]]
 
 
 class CommandLines(unittest.TestCase):
@@ -85,17 +86,22 @@ class CommandLines(unittest.TestCase):
                     self.assertIn("; --help tells the options", result.stderr)
             self.assertEqual(os.listdir(folder), [])
 
-    def test_demonstrations_start_nothing_where_they_are_asked_for_help(self):
-        for name in ("motion_demo", "tracking_demo"):
-            for argument, status in (("--help", 0), ("-h", 0), ("--seed", 2)):
-                with self.subTest(name, argument=argument), tempfile.TemporaryDirectory() as folder:
-                    # What is built and shown stays here.
-                    places = {**os.environ, "BUILD_DIR": folder, "DEMO_DIR": os.path.join(folder, "demo")}
-                    command = [SOURCE / "scripts" / name, argument]
-                    result = subprocess.run(command, capture_output=True, text=True, check=False, env=places, timeout=20)
-                    self.assertEqual(result.returncode, status, result.stderr)
-                    self.assertIn(f"scripts/{name}", result.stdout + result.stderr)
-                    self.assertEqual(os.listdir(folder), [])
+    def test_programs_in_shell_start_nothing_where_they_are_asked_for_help(self):
+        asked = [(path.name, argument, 0) for path in SHELL_PROGRAMS for argument in ("--help", "-h")]
+        wrong = [("motion_demo", "--seed", 2), ("tracking_demo", "--seed", 2), ("record_session", "--hel", 1)]
+        self.assertGreater(len(asked), len(wrong))
+        for name, argument, status in asked + wrong:
+            with self.subTest(name, argument=argument), tempfile.TemporaryDirectory() as folder:
+                # What is built and shown stays here.
+                places = {**os.environ, "BUILD_DIR": folder, "DEMO_DIR": os.path.join(folder, "demo"), "ROS_HOME": folder}
+                command = [SOURCE / "scripts" / name, argument]
+                result = subprocess.run(
+                    command, capture_output=True, text=True, check=False, cwd=folder, env=places, timeout=20
+                )
+                self.assertEqual(result.returncode, status, result.stderr)
+                self.assertIn(name, result.stdout + result.stderr)
+                self.assertNotIn("set -euo", result.stdout)
+                self.assertEqual(os.listdir(folder), [])
 
     def test_demonstrations_take_a_description_of_the_callers_folder(self):
         with tempfile.TemporaryDirectory() as folder:
