@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -8,12 +9,14 @@
 
 #include "estimation/effect_laboratory.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
 #include "support/error_message.hpp"
 #include "support/numeric_jacobian.hpp"
+#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
@@ -332,6 +335,20 @@ TEST(LaboratoryEffects, AreNamedAndMeasuredInTheirUnits) {
 }
 
 // What was saved is calibrated again, month after month.
+TEST(LaboratoryEffects, AreToldOfInThePages) {
+  // Each in the tables of its equation and of what a diagnosis tries, and off in the configuration.
+  for (const char* page : {"doc/method.md", "doc/diagnosis.md"}) {
+    const std::string text = readInputFile(std::string(SOURCE_DIR "/") + page);
+    for (const std::string& name : effectNames()) {
+      EXPECT_TRUE(std::regex_search(text, std::regex("\n\\| [^|]*`" + name + "`"))) << page << name;
+    }
+  }
+  const std::string config = readInputFile(SOURCE_DIR "/config/calibration.yaml");
+  for (const std::string& name : effectNames()) {
+    EXPECT_NE(config.find("\n  " + name + ": false "), std::string::npos) << name;
+  }
+}
+
 TEST(LaboratoryEffects, AnUnbalanceThatTheDescriptionHasIsReplacedNotAddedTo) {
   Actuator saved = scenarios::paperNominal();
   const ParameterSpace unknown(saved, only({"rotor_unbalance"}));
