@@ -72,15 +72,6 @@ double valueOf(const std::vector<Sine>& sines, double time) {
   return value;
 }
 
-double rateOf(const std::vector<Sine>& sines, double time) {
-  double rate = 0.0;
-  for (const Sine& sine : sines) {
-    const double w = 2.0 * kPi * sine.frequency;
-    rate += sine.amplitude * w * std::cos(w * time + sine.phase);
-  }
-  return rate;
-}
-
 double largestValueOf(const std::vector<Sine>& sines) {
   double sum = 0.0;
   for (const Sine& sine : sines) {

@@ -127,18 +127,6 @@ std::string PlanProgress::nextStep() const {
   return text + ".";
 }
 
-std::string planStep(const std::vector<PlannedPose>& poses,
-                     const std::vector<Sample>& samples,
-                     double current_threshold,
-                     bool has_joints) {
-  PlanProgress progress(current_threshold, has_joints);
-  for (const PlannedPose& pose : poses) {
-    progress.addPose(pose.joint_position, pose.excitations());
-  }
-  progress.countAnew(samples);
-  return progress.nextStep();
-}
-
 std::string planSentence(const PosePlan& plan, double wanted_stddev) {
   if (plan.poses.empty()) {
     return format("No pose is needed: the samples held give a standard deviation of %.3g mrad.",

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/plan_step.hpp"
 #include "planning/planning_fixture.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "support/error_message.hpp"
 

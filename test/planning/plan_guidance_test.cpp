@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/plan_step.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/pose_plan.hpp"

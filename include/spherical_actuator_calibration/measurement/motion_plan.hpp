@@ -17,10 +17,9 @@ struct Sine {
   double phase = 0.0;      ///< [rad]
 };
 
-/// A sum of sines and its rate of change, at a time [s].
+/// A sum of sines at a time [s].
 double valueOf(const std::vector<Sine>& sines, double time);
-double rateOf(const std::vector<Sine>& sines, double time);
-/// What the absolute values of both never exceed.
+/// What the absolute values of it and of its rate of change never exceed.
 double largestValueOf(const std::vector<Sine>& sines);
 double largestRateOf(const std::vector<Sine>& sines);
 

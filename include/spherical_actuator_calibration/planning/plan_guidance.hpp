@@ -10,7 +10,6 @@
 
 namespace sac {
 
-struct PlannedPose;
 struct PosePlan;
 
 /// What of a plan is measured, by samples that come one after the other. A pose is measured when
@@ -48,12 +47,6 @@ class PlanProgress {
   double current_threshold_;
   bool has_joints_;
 };
-
-/// The next step by all samples at once.
-std::string planStep(const std::vector<PlannedPose>& poses,
-                     const std::vector<Sample>& samples,
-                     double current_threshold,
-                     bool has_joints = true);
 
 /// What a plan of poses gives, for an operator. `wanted_stddev` [rad]: 0 where none was wanted.
 std::string planSentence(const PosePlan& plan, double wanted_stddev);
