@@ -10,7 +10,6 @@ from .columns import UNITS
 
 LARGEST = 1 << 30  # [bytes] of a file
 LONGEST_TEXT = 1 << 16  # [characters] of a cell
-BAD_BYTE = "\ufffd"
 
 
 class TableError(ValueError):
