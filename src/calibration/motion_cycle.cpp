@@ -187,9 +187,37 @@ std::string failure(const MotionProblem& problem,
   return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;
 }
 
+/// What hands do comes now and then. What a model lacks, as the strength of a coil, comes back all
+/// the time, and without the windows where it is largest the others may fit.
+std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
+  constexpr double kMany = 0.05;
+  constexpr std::size_t kOften = 4;
+  std::size_t count = 0;
+  std::size_t times = 0;
+  bool was_rejected = false;
+  for (const ObservationResidual& window : windows) {
+    count += window.rejected ? 1 : 0;
+    times += window.rejected && !was_rejected ? 1 : 0;
+    was_rejected = window.rejected;
+  }
+  if (times < kOften || static_cast<double>(count) < kMany * static_cast<double>(windows.size())) {
+    return {};
+  }
+  return format(
+      "%zu of %zu windows, at %zu times, contradict the others: something touched the rotor again "
+      "and again, or the model lacks something, as coil_gains, and that may bias the parameters.",
+      count,
+      windows.size(),
+      times);
+}
+
 std::vector<std::string> doubts(const MotionEstimate& found) {
   constexpr double kLarge = 2.25;
   std::vector<std::string> words;
+  const std::string disturbed = oftenDisturbed(found.estimate.residuals);
+  if (!disturbed.empty()) {
+    words.push_back(disturbed);
+  }
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
     words.push_back(
         format("Residuals are %.1f times their noise: something is not modelled, and may bias the "

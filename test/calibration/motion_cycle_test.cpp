@@ -99,6 +99,20 @@ TEST_F(MotionCycleTest, RefusesAnInertiaOrAStrengthBelowZero) {
   EXPECT_NE(other.message.find("coil_5/gain"), std::string::npos) << other.message;
 }
 
+// Windows in which a coil that is too strong counts most look as if a hand had touched the rotor.
+TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
+  moving_.duration = 12.0;
+  MotionRecording recording = noisy(moving_.record());
+  for (MotionStreams& streams : recording.spans) {
+    streams.currents.col(4) *= 1.01F;
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  ASSERT_EQ(report.doubts.size(), 1U) << report.message;
+  EXPECT_NE(report.doubts[0].find("windows, at "), std::string::npos) << report.doubts[0];
+}
+
 TEST_F(MotionCycleTest, SaysWhyTooFewWindowsServe) {
   MotionRecording recording = moving_.record();
   for (MotionStreams& streams : recording.spans) {
