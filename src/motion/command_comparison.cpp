@@ -28,6 +28,11 @@ SampleRange CommandComparison::before() const {
   return {0, sampleAt(command_times_.front() - kRunIn)};
 }
 
+SampleRange CommandComparison::after() const {
+  const std::size_t begin = sampleAt(command_times_.back() + kRunIn);
+  return {begin, times_.size()};
+}
+
 double CommandComparison::lockstep() const {
   std::complex<double> sum = 0.0;
   double count = 0.0;

@@ -42,6 +42,8 @@ class CommandComparison {
   SampleRange commanded() const;
   /// Those before the first command.
   SampleRange before() const;
+  /// Those after what the last command does.
+  SampleRange after() const;
 
   /// Whether currents are sampled at one place between two commands each time: 1; at all places: 0.
   double lockstep() const;

@@ -31,17 +31,24 @@ class Agreement {
             add(change, expected);
           });
     }
+    const double usual = left_.sum() / count_;
+    comparison.visit(delay,
+                     lag,
+                     comparison.after(),
+                     [this, usual](const Eigen::ArrayXd& change, const Eigen::ArrayXd& /*none*/) {
+                       addAfter(change.square().sum() > kForeign * usual);
+                     });
   }
 
   /// Whether all coils follow: one that does not would act at another time than the others.
   bool isGood() const {
     constexpr double kTolerance = 0.2;
     constexpr double kSure = 3.0;      // standard deviations
-    constexpr double kForeign = 3.0;   // times what is left of the others
     constexpr double kSilent = 1e-12;  // [A²] in all
     constexpr double kMostMisfit = 0.15;
     const double usual = medianOf(std::vector<double>(left_.data(), left_.data() + left_.size()));
-    if (!(followed_.sum() > kSilent) || misfit() > kMostMisfit) {
+    const bool ends_early = after_ > 0.0 && changes_after_ > kTolerance * after_;
+    if (!(followed_.sum() > kSilent) || misfit() > kMostMisfit || ends_early) {
       return false;
     }
     for (Eigen::Index coil = 0; coil < left_.size(); ++coil) {
@@ -83,6 +90,16 @@ class Agreement {
     left_before_ = left;
   }
 
+  /// Of what came after the last command.
+  void addAfter(bool has_changed) {
+    after_ += 1.0;
+    changes_after_ += has_changed ? 1.0 : 0.0;
+  }
+
+  static constexpr double kForeign = 3.0;  ///< times what is left of the others
+
+  double after_ = 0.0;          ///< samples after the last command
+  double changes_after_ = 0.0;  ///< those at which currents still change
   // Sums over all changes, coil by coil.
   Eigen::ArrayXd followed_;  ///< squares of what is expected
   Eigen::ArrayXd common_;    ///< products with what was measured

@@ -144,6 +144,11 @@ TEST(CommandResponse, IsNoneWhereCurrentsDoSomethingElse) {
     commands.stamps[n] += 3'000'000'000;  // those of three seconds are missing
   }
   EXPECT_FALSE(is_told(commands));
+  commands = commanded();
+  const std::size_t half = commands.stamps.size() / 2;  // recorded until then
+  commands.stamps.resize(half);
+  commands.currents.conservativeResize(static_cast<Eigen::Index>(half), Eigen::NoChange);
+  EXPECT_FALSE(is_told(commands));
   EXPECT_FALSE(is_told({}));
 }
 
