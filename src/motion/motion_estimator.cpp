@@ -115,17 +115,19 @@ bool Estimator::fits() const {
 }
 
 /// Without the windows over which something small held the rotor for long, where the others then
-/// fit: where they do not, the model lacks something, and that must show.
+/// fit: where they do not, the model lacks something, and that must show. So it must where most
+/// windows would be left out: they may be the ones that nothing held.
 bool Estimator::leavePushed() {
   constexpr int kMostRuns = 4;
-  constexpr std::size_t kLeastShare = 3;  // of so many windows one must be left
-  const std::size_t all = activeWindows();
   std::vector<WindowTerm>& windows = terms_.windows();
+  const auto all = std::count_if(
+      windows.begin(), windows.end(), [](const WindowTerm& term) { return !term.held_out; });
+  const std::size_t half = static_cast<std::size_t>(all) / 2;
   bool any = false;
   bool solved = true;
   for (int n = 0; n < kMostRuns && solved; ++n) {
     const std::optional<WindowRun> run = steadilyPushed(terms_);
-    if (!run || activeWindows() < all / kLeastShare + run->count) {
+    if (!run) {
       break;
     }
     for (std::size_t k = run->first; k < run->first + run->count; ++k) {
@@ -134,7 +136,7 @@ bool Estimator::leavePushed() {
     any = true;
     solved = solveFinely();
   }
-  if (!any || (solved && fits())) {
+  if (!any || (solved && fits() && activeWindows() > half)) {
     return true;
   }
   for (WindowTerm& term : windows) {

@@ -128,6 +128,19 @@ TEST(MotionEstimator, LeavesOutWindowsInWhichAHandLeansOnTheRotor) {
   EXPECT_LT((apart / stddevs).head(space.effect()).square().mean(), 2.0);
 }
 
+// Those that nothing held would be left out as well: what most windows say decides.
+TEST(MotionEstimator, LeavesNothingOutWhereAHandLeansMostOfTheTime) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 14.0;
+  moving.push = 3e-4;
+  moving.push_begin = 3.0;
+  moving.push_end = 12.5;
+  const MotionEstimate found = estimated(motionModel(), noisy(moving.record()));
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_EQ(leftOutFor(found.summary, "steadily"), 0U);
+  EXPECT_LT(found.summary.held_out.probability, 0.01);
+}
+
 TEST(MotionEstimator, LeavesThemOutOfALongRecordingToo) {
   MovingRotor moving = madeRotor();
   moving.duration = 14.0;
