@@ -26,7 +26,7 @@ CURRENT = 2.0  # [A] that the panel has by itself
 DURATION = 10.0  # [s] likewise
 PATIENCE = 20.0  # [s] in which the engine does what a key asks for; pressed again, it would stop that
 DOUBLE_CLICK = 0.6  # [s] after which a second press is one of its own
-CLOSE = (507, 73)  # button of the dock that the panel is in
+CLOSE = (500, 71)  # button of the dock that the panel is in, with Qt 5 and with Qt 6
 
 
 class PanelActions(ViewedLabCase):
