@@ -18,20 +18,21 @@ std::size_t shapeCount(const TorqueCurveDescription& curve) {
 
 /// Numbers of the polynomials that make a change. Beside a scale there is no constant one, or the
 /// curve times a number would be a change; but one whose uncertainty is stated is known.
-std::vector<std::size_t> shapeNumbers(const Actuator& nominal, const EffectSelection& selection) {
+std::vector<Eigen::Index> shapeNumbers(const Actuator& nominal, const EffectSelection& selection) {
   const bool is_relative =
       hasStrengthScale(selection) && relativeTableStddev(nominal.torque_curve->table) == 0.0;
-  std::vector<std::size_t> numbers;
-  for (std::size_t n = is_relative ? 1 : 0; n < shapeCount(*nominal.torque_curve); ++n) {
+  const auto count = static_cast<Eigen::Index>(shapeCount(*nominal.torque_curve));
+  std::vector<Eigen::Index> numbers;
+  for (Eigen::Index n = is_relative ? 1 : 0; n < count; ++n) {
     numbers.push_back(n);
   }
   return numbers;
 }
 
-std::vector<std::string> shapeNames(const std::vector<std::size_t>& numbers) {
+std::vector<std::string> shapeNames(const std::vector<Eigen::Index>& numbers) {
   std::vector<std::string> names;
   names.reserve(numbers.size());
-  for (const std::size_t n : numbers) {
+  for (const Eigen::Index n : numbers) {
     names.push_back("torque_curve/t" + std::to_string(n));
   }
   return names;
