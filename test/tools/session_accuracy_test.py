@@ -44,9 +44,16 @@ class Rehearsal(Session):
         self.poses = 0
         account = SimpleNamespace(say=self.said.append, set=lambda **fields: None)
         actuator = {"workspace": {"tilt_limit": 0.3}}
-        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account)
+        no_plan = SimpleNamespace(poses=lambda: [], keep=lambda poses: None)
+        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account, no_plan)
 
     # What it asks its calibration node.
+    def measured(self):
+        return []
+
+    def pose_tolerance(self):
+        return 0.01
+
     def plan(self, poses, wanted_stddev, **_excitation):
         expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses
         return [AT_ZERO] * min(poses, expected), "as planned"
