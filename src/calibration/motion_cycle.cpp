@@ -204,8 +204,8 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
     return {};
   }
   return format(
-      "%zu of %zu windows, at %zu times, contradict the others: something touched the rotor again "
-      "and again, or the model lacks something, as coil_gains, and that may bias the parameters.",
+      "%zu of %zu windows, at %zu times, contradict the others, and that may bias the parameters: "
+      "keep hands and cables off the rotor, or model what is missing, as coil_gains.",
       count,
       windows.size(),
       times);
