@@ -26,6 +26,16 @@ MotionEstimate estimated(const CalibrationModel& model,
   return estimateMotion(problem, estimation, options);
 }
 
+/// By short windows, of so many of which derivatives are kept.
+MotionEstimate estimatedKeeping(std::size_t windows,
+                                const CalibrationModel& model,
+                                const MotionRecording& recording) {
+  MotionOptions options;
+  options.window = 0.1;
+  options.most_kept_windows = windows;
+  return estimated(model, recording, options);
+}
+
 CalibrationModel motionModel() {
   return CalibrationModel(ParameterSpace(scenarios::paperNominal(), withMotionEffects({})));
 }
@@ -149,12 +159,8 @@ TEST(MotionEstimator, LeavesThemOutOfALongRecordingToo) {
   moving.push_end = 10.0;
   const MotionRecording recording = noisy(moving.record());
   const CalibrationModel model = motionModel();
-  MotionOptions options;
-  options.window = 0.1;
-  options.most_kept_windows = 1000;
-  const MotionEstimate all = estimated(model, recording, options);
-  options.most_kept_windows = 100;
-  const MotionEstimate few = estimated(model, recording, options);
+  const MotionEstimate all = estimatedKeeping(1000, model, recording);
+  const MotionEstimate few = estimatedKeeping(100, model, recording);
   EXPECT_GT(leftOutFor(all.summary, "steadily"), 0U);
   EXPECT_EQ(leftOutFor(few.summary, "steadily"), leftOutFor(all.summary, "steadily"));
   EXPECT_EQ(few.summary.used, all.summary.used);
@@ -167,12 +173,8 @@ TEST(MotionEstimator, TellsTheSameWithFewDerivativesKept) {
   moving.push = 5e-3;
   const MotionRecording recording = noisy(moving.record());
   const CalibrationModel model = motionModel();
-  MotionOptions options;
-  options.window = 0.1;
-  options.most_kept_windows = 1000;
-  const MotionEstimate all = estimated(model, recording, options);
-  options.most_kept_windows = 100;
-  const MotionEstimate few = estimated(model, recording, options);
+  const MotionEstimate all = estimatedKeeping(1000, model, recording);
+  const MotionEstimate few = estimatedKeeping(100, model, recording);
   ASSERT_EQ(few.estimate.termination, Termination::kConverged);
   EXPECT_GT(all.summary.windows, 130U);
   const Eigen::ArrayXd stddevs = all.estimate.belief.covariance.diagonal().array().sqrt();
