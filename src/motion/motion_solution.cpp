@@ -120,6 +120,17 @@ void MotionDescent::judgeOpen() {
   }
 }
 
+/// Judges what is open, and linearises anew where that leads away: what was free for a while and is
+/// held again goes back to the prior. That is no step of the descent, which would undo it.
+void MotionDescent::holdOpen(const TermOrder& order) {
+  constexpr double kFar = 1.0;
+  const Eigen::VectorXd before = x_;
+  judgeOpen();
+  if (lengthOf(x_ - before) > kFar) {
+    linearizeAt(x_, order);
+  }
+}
+
 /// Levenberg–Marquardt, P entries: no further from where the terms are linearised than damping
 /// allows, measured by the prior.
 Eigen::VectorXd MotionDescent::step(double damping_of_all) {
@@ -202,8 +213,9 @@ double MotionDescent::advance(const Eigen::VectorXd& start, const TermOrder& ord
 /// allow.
 void MotionDescent::adaptDamping(int halvings) {
   constexpr double kFirst = 1e-3;
+  constexpr double kMost = 1e6;  // nothing moves
   if (halvings > 0) {
-    damping_ = std::max(damping_, kFirst) * std::pow(4.0, halvings);
+    damping_ = std::min(kMost, std::max(damping_, kFirst) * std::pow(4.0, halvings));
     return;
   }
   damping_ = damping_ > kFirst ? 0.1 * damping_ : 0.0;
@@ -261,8 +273,8 @@ void MotionDescent::solveCoarsely() {
   noteError();
   // Where coarse steps find no end, fine ones may.
   for (int n = 0; n < kMostSteps; ++n) {
+    holdOpen(order);
     const Eigen::VectorXd start = x_;
-    judgeOpen();
     x_ += step(damping_);
     if (!x_.allFinite()) {
       x_ = start;
@@ -288,6 +300,7 @@ bool MotionDescent::solveFinely(const std::function<bool()>& weigh_anew) {
   order.balance.covariance = false;
   is_fine_ = true;
   for (int iteration = 0; iteration < estimation_.max_iterations; ++iteration) {
+    holdOpen(order);
     const Eigen::VectorXd start = x_;
     bool settled = settle(kSettled);
     // Far from the solution everything is an outlier.

@@ -64,6 +64,7 @@ class MotionDescent {
   Eigen::VectorXd step(double damping_of_all);
   Eigen::VectorXd pull() const;
   void judgeOpen();
+  void holdOpen(const TermOrder& order);
   Eigen::Index countOpen() const {
     return open_.directions.cols() + static_cast<Eigen::Index>(open_.coordinates.size());
   }
