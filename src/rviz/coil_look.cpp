@@ -7,15 +7,13 @@
 #include <cmath>
 #include <string>
 
+#include "excitation_limits.hpp"
 #include "named_button.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kLargestCurrent = 100.0;    // [A]; the coil driver has its own limits
-constexpr double kShortestExcitation = 0.5;  // [s]
-constexpr double kLongestExcitation = 60.0;  // [s] that the engine allows
-constexpr double kExcitation = 10.0;         // [s]
+constexpr double kExcitation = 10.0;  // [s]
 
 QDoubleSpinBox* spinBox(double least, double most, double value, const QString& unit) {
   auto* box = new QDoubleSpinBox;

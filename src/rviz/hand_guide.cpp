@@ -10,6 +10,7 @@
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include "excitation_limits.hpp"
 #include "named_button.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
@@ -19,7 +20,6 @@ namespace sac {
 namespace {
 
 constexpr int kMostPoses = 100;
-constexpr double kLargestCurrent = 100.0;  // [A]; the coil driver has its own limits
 
 /// Names of the joints in the description that the nodes read; `otherwise` where there is none.
 std::array<std::string, 3> jointNames(const ros::NodeHandle& node,

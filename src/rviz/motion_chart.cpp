@@ -12,7 +12,6 @@
 namespace sac {
 namespace {
 
-constexpr double kMilli = 1e3;
 constexpr const char* kColours[] = {"#1565c0", "#8e24aa", "#ef6c00"};
 
 void paint(QLineSeries& line, const char* colour, Qt::PenStyle dashes) {

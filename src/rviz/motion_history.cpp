@@ -9,8 +9,6 @@
 namespace sac {
 namespace {
 
-constexpr double kMilli = 1e3;
-
 template <typename... Values>
 std::string formatted(const char* format, Values... values) {
   char text[160];

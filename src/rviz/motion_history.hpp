@@ -8,6 +8,8 @@
 
 namespace sac {
 
+inline constexpr double kMilli = 1e3;  ///< mrad in a rad
+
 /// How the uncertainty of one group of parameters has fallen while the rotor moved.
 struct UncertaintyCurve {
   std::string group;            ///< joints, poles, coils

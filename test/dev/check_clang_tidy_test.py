@@ -133,6 +133,19 @@ class CheckClangTidy(unittest.TestCase):
             self.assertEqual(found, status, said)
         self.assertIn("[readability-function-size", said)
 
+    def test_reads_each_source_of_a_batch(self):
+        for name in ("one", "two"):
+            self.write(f"src/base/{name}.cpp", DEFECT.format(name=name))
+        batch = self.root / "build" / "Unity" / "unity_base_0_cxx.cxx"
+        batch.parent.mkdir()
+        batch.write_text("".join(f'#include "{source}"\n' for source in self.sources), encoding="utf-8")
+        self.sources = [batch]
+        status, said = self.check()
+        self.assertEqual(status, 1)
+        for name in ("one", "two"):
+            self.assertIn(f"{self.root}/src/base/{name}.cpp:2:7: error: {FINDING}", said)
+        self.assertEqual(self.check("src/base/angle.cpp")[0], 0)
+
     def test_says_when_there_is_nothing_to_check(self):
         self.sources = []
         status, said = self.check()

@@ -18,7 +18,7 @@ namespace {
 
 /// Messages that may wait while the receiving thread is held up: seconds at the highest rates. What
 /// is too long for its stream is refused faster than it can come, so that it does not pile up.
-constexpr std::uint32_t kQueueLength = 10000;
+constexpr std::uint32_t kIntakeQueueLength = 10000;
 
 /// A stream that is absent, such as a tracker which is switched off, is told but is no error of the
 /// calibration; what is too old or too slow for a dwell is.
@@ -74,8 +74,12 @@ void MeasurementIntake::subscribe(StreamMonitor& monitor) {
       monitor.refuse(reader_.refusal());
     }
   };
-  subscribers_.push_back(subscribeChecked<Message>(
-      node_, monitor.getName(), kQueueLength, receive, refuse, ros::TransportHints().tcpNoDelay()));
+  subscribers_.push_back(subscribeChecked<Message>(node_,
+                                                   monitor.getName(),
+                                                   kIntakeQueueLength,
+                                                   receive,
+                                                   refuse,
+                                                   ros::TransportHints().tcpNoDelay()));
 }
 
 // They tell what currents do between samples, and are not waited for.
@@ -86,8 +90,12 @@ void MeasurementIntake::subscribeCommands() {
     const std::lock_guard<std::mutex> lock(mutex_);
     motion_.add(command);
   };
-  subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(
-      node_, topic, kQueueLength, receive, tellRefusal(topic), ros::TransportHints().tcpNoDelay()));
+  subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(node_,
+                                                             topic,
+                                                             kIntakeQueueLength,
+                                                             receive,
+                                                             tellRefusal(topic),
+                                                             ros::TransportHints().tcpNoDelay()));
 }
 
 std::vector<Sample> MeasurementIntake::takeSamples() {

@@ -13,7 +13,6 @@
 namespace sac {
 namespace {
 
-constexpr bool kLatched = true;
 constexpr double kUnknown = -1.0;
 
 msg::GroupUncertainty toRos(const GroupUncertainty& group) {
@@ -34,8 +33,10 @@ MotionWatch::MotionWatch(ros::NodeHandle node,
                          double wanted_stddev)
     : nominal_(nominal), config_(config), wanted_stddev_(wanted_stddev) {
   if (MotionFollower::suits(nominal)) {
-    constexpr std::uint32_t kQueueLength = 100;
-    publisher_ = node.advertise<msg::MotionProgress>("motion_progress", kQueueLength, kLatched);
+    constexpr std::uint32_t kProgressQueueLength = 100;
+    constexpr bool kIsLatched = true;
+    publisher_ =
+        node.advertise<msg::MotionProgress>("motion_progress", kProgressQueueLength, kIsLatched);
     forget();
   }
 }

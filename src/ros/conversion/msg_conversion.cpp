@@ -14,7 +14,6 @@ namespace sac {
 namespace {
 
 /// Standard deviation of what is not identified.
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::uint32_t id) {
   const Eigen::Quaterniond q = quaternionFromRos(message);
@@ -50,7 +49,7 @@ msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
   message.nominal = estimate.nominal;
   message.initial = estimate.initial;
   message.value = estimate.value;
-  message.stddev = kUnknown;
+  message.stddev = std::numeric_limits<double>::infinity();
   if (estimate.observable) {
     message.stddev = estimate.stddev;
   }

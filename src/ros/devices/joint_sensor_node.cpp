@@ -14,7 +14,7 @@
 namespace sac {
 namespace {
 
-constexpr double kWarningPeriod = 5.0;  // [s]
+constexpr double kSensorWarningPeriod = 5.0;  // [s]
 
 }  // namespace
 
@@ -64,12 +64,12 @@ void JointSensorNode::poll() {
   } catch (const TransportError& error) {
     timing_.interrupt();
     link_.failure(begin, error.what());
-    ROS_ERROR_STREAM_THROTTLE(kWarningPeriod, error.what());
+    ROS_ERROR_STREAM_THROTTLE(kSensorWarningPeriod, error.what());
   } catch (const Error& error) {
     // The device answers; what it says is of no use.
     link_.success();
     stream_.refuse(error.what());
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, error.what());
+    ROS_WARN_STREAM_THROTTLE(kSensorWarningPeriod, error.what());
   }
   link_diagnostics_.update(link_);
   if (was_up != link_.isUp()) {

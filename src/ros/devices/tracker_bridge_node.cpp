@@ -18,8 +18,8 @@ namespace sac {
 namespace {
 
 /// Messages that may wait while the computer is busy: seconds at the highest rates.
-constexpr std::uint32_t kQueueLength = 20000;
-constexpr double kWarningPeriod = 5.0;  // [s]
+constexpr std::uint32_t kTrackerQueueLength = 20000;
+constexpr double kTrackerWarningPeriod = 5.0;  // [s]
 
 /// The frame to look up: as configured, or the message's own.
 std::string frameOf(const std::string& frame_id, const std::string& configured) {
@@ -68,10 +68,10 @@ TrackerBridgeNode::TrackerBridgeNode(const ros::NodeHandle& node,
       diagnostics_(node, private_node, actuator),
       node_(node),
       receiver_(1, &queue_) {
-  orientation_publisher_ =
-      node_.advertise<geometry_msgs::QuaternionStamped>("measured_orientation", kQueueLength);
+  orientation_publisher_ = node_.advertise<geometry_msgs::QuaternionStamped>("measured_orientation",
+                                                                             kTrackerQueueLength);
   torque_publisher_ =
-      node_.advertise<geometry_msgs::Vector3Stamped>("measured_torque", kQueueLength);
+      node_.advertise<geometry_msgs::Vector3Stamped>("measured_torque", kTrackerQueueLength);
   addDiagnostics();
   subscribe();
   receiver_.start();
@@ -87,14 +87,14 @@ void TrackerBridgeNode::subscribe() {
   subscribers_.push_back(subscribeChecked<geometry_msgs::PoseStamped>(
       node_,
       "tracker/pose",
-      kQueueLength,
+      kTrackerQueueLength,
       [this](const geometry_msgs::PoseStamped::ConstPtr& message) { receive(message); },
       [this](const std::string& reason) { poses_.refuse(reason); },
       hints));
   subscribers_.push_back(subscribeChecked<geometry_msgs::WrenchStamped>(
       node_,
       "ft_sensor/wrench",
-      kQueueLength,
+      kTrackerQueueLength,
       [this](const geometry_msgs::WrenchStamped::ConstPtr& message) { receive(message); },
       [this](const std::string& reason) { refuseWrench(reason); },
       hints));
@@ -115,7 +115,7 @@ void TrackerBridgeNode::receive(const geometry_msgs::PoseStamped::ConstPtr& mess
     poses_.accept(message->header.stamp);
   } catch (const Error& error) {
     poses_.refuse(error.what());
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod,
+    ROS_WARN_STREAM_THROTTLE(kTrackerWarningPeriod,
                              "A tracker pose is refused: " << printable(error.what()) << ".");
   }
   publishTorques();
@@ -177,7 +177,8 @@ void TrackerBridgeNode::publishTorques() {
 
 void TrackerBridgeNode::refuseWrench(const std::string& reason) {
   wrenches_.refuse(reason);
-  ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "A wrench is refused: " << printable(reason) << ".");
+  ROS_WARN_STREAM_THROTTLE(kTrackerWarningPeriod,
+                           "A wrench is refused: " << printable(reason) << ".");
 }
 
 void TrackerBridgeNode::tellClockResets() {

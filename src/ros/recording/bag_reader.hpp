@@ -15,6 +15,9 @@
 
 namespace sac {
 
+/// Messages between two calls of the progress function.
+inline constexpr std::uint64_t kProgressStep = 4096;
+
 /// One message as it was recorded.
 struct BagMessage {
   const BagConnection* connection = nullptr;

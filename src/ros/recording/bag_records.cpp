@@ -3,8 +3,6 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kLengthSize = sizeof(std::uint32_t);
-
 /// The bytes that a length at `offset` says, after it. Advances the offset.
 std::string_view counted(std::string_view bytes, std::size_t& offset) {
   if (offset > bytes.size() || bytes.size() - offset < kLengthSize) {

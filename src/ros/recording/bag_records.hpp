@@ -30,6 +30,9 @@ enum class BagOp : std::uint8_t {
   kConnection = 7
 };
 
+/// Bytes of the length that precedes each header and each body.
+inline constexpr std::size_t kLengthSize = sizeof(std::uint32_t);
+
 /// Number at an offset, lowest byte first. Precondition: it is there.
 template <typename Number>
 Number numberAt(std::string_view bytes, std::size_t offset) {

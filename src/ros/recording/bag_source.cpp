@@ -13,8 +13,6 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kLengthSize = sizeof(std::uint32_t);
-
 std::size_t lengthAt(const FileBytes& file, std::uint64_t position, std::size_t largest) {
   const std::string bytes = file.at(position, kLengthSize);
   const std::size_t length = numberAt<std::uint32_t>(bytes, 0);

@@ -24,9 +24,6 @@
 namespace sac {
 namespace {
 
-/// Messages between two calls of the progress function.
-constexpr std::uint64_t kProgressStep = 4096;
-
 /// Reads all groups of bags, one after the other, into one list of samples.
 class Reader {
  public:

@@ -15,8 +15,6 @@
 namespace sac {
 namespace {
 
-constexpr std::uint64_t kProgressStep = 4096;  // messages
-
 /// Throws DataError unless the bag has the topic, or has it with another type.
 template <typename Message>
 void requireTopic(const BagGroup& bags, const std::string& name) {
