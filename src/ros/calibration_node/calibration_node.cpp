@@ -190,10 +190,13 @@ bool CalibrationNode::refine(msg::Calibrate::Request& /*request*/,
   return true;
 }
 
-void CalibrationNode::run(const CycleRequest& request, msg::Calibrate::Response& response) {
+void CalibrationNode::run(const CycleRequest& request,
+                          msg::Calibrate::Response& response,
+                          std::shared_ptr<const MotionRecording> motion) {
   answer(response, [&] {
     storeWaitingSamples();
     refuseMistakes(request, response);
+    session_.setMotion(std::move(motion));
     const CycleReport report = session_.run(request, utcDate());
     response.report = topics_.stamped(reportToRos(report, session_.grade()));
     if (!report.success) {

@@ -16,12 +16,7 @@ namespace sac {
 
 bool CalibrationNode::calibrateMotion(msg::Calibrate::Request& /*request*/,
                                       msg::Calibrate::Response& response) {
-  const auto motion = std::make_shared<const MotionRecording>(intake_.motion());
-  {
-    const std::lock_guard<std::mutex> lock(session_mutex_);
-    session_.setMotion(motion);
-  }
-  run({Cycle::kMotion}, response);
+  run({Cycle::kMotion}, response, std::make_shared<const MotionRecording>(intake_.motion()));
   const std::lock_guard<std::mutex> lock(session_mutex_);
   session_.setMotion(nullptr);
   return true;

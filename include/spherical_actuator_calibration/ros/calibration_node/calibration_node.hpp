@@ -73,7 +73,9 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
-  void run(const CycleRequest& request, msg::Calibrate::Response& response);
+  void run(const CycleRequest& request,
+           msg::Calibrate::Response& response,
+           std::shared_ptr<const MotionRecording> motion = nullptr);
 
   // Motion (calibration_node_motion.cpp).
   bool calibrateMotion(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
