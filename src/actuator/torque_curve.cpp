@@ -246,14 +246,21 @@ TorqueCurve::TorqueCurve(const TorqueCurveDescription& description) : descriptio
 
 TorqueCurve::Point TorqueCurve::described(double psi) const {
   Point point = knots_.empty() ? Point{} : spline(psi);
-  double value = 0.0;
-  double slope = 0.0;
-  for (auto c = coefficients_.rbegin(); c != coefficients_.rend(); ++c) {
-    slope = slope * psi + value;
-    value = value * psi + *c;
+  // Even and odd powers by themselves, whose sums do not wait for each other.
+  const double square = psi * psi;
+  std::size_t n = coefficients_.size();
+  double even = n % 2 == 1 ? coefficients_[--n] : 0.0;
+  double odd = 0.0;
+  double d_even = 0.0;
+  double d_odd = 0.0;
+  for (; n > 0; n -= 2) {
+    d_even = d_even * square + even;
+    d_odd = d_odd * square + odd;
+    even = even * square + coefficients_[n - 2];
+    odd = odd * square + coefficients_[n - 1];
   }
-  point.value += value;
-  point.slope += slope;
+  point.value += even + psi * odd;
+  point.slope += odd + 2.0 * psi * (d_even + psi * d_odd);
   return point;
 }
 

@@ -236,7 +236,8 @@ void LiveMotionWork::linearizeAnew(bool with_noise) {
 bool LiveMotionWork::misleads() {
   const LiveWindow& window = kept_[next_probe_ % kept_.size()];
   next_probe_ += 7;
-  window.evaluate(MotionPoint(*model_, places_, x_), {}, evaluators_, probe_);
+  window.evaluate(
+      MotionPoint(*model_, places_, x_), {}, evaluators_, [] {}, probe_);
   const double wrong = window.whitened(probe_.residual - window.balanceAt(x_)).squaredNorm();
   return wrong * static_cast<double>(kept_.size()) > live_.tolerance * live_.tolerance;
 }
@@ -264,9 +265,12 @@ void LiveMotionWork::take(LiveWindow& window) {
   const MotionPoint point(*model_, places_, x_);
   BalanceOrder order;
   order.covariance = true;
-  window.linearize(point, order, evaluators_);
+  window.linearize(point, order, evaluators_, [&] {
+    window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
+    steps_.add(window.streams());
+    freezeOldest();
+  });
   window.whiten(factors_.joints, factors_.currents * noise_.current * noise_.current);
-  window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
   const Eigen::VectorXd residual = residualOf(window);
   window.term.square = residual.squaredNorm() / static_cast<double>(residual.size());
   window.term.active = !contradicts(window);
@@ -274,7 +278,11 @@ void LiveMotionWork::take(LiveWindow& window) {
   addTo(balance_, orientation_, window);
 }
 
+/// Where more than the last ones are kept.
 void LiveMotionWork::freezeOldest() {
+  if (kept_.size() <= live_.kept_windows) {
+    return;
+  }
   const LiveWindow& oldest = kept_.front();
   if (estimate_.is_told) {
     std::swap(anchor_, frozen_at_);
@@ -292,12 +300,10 @@ void LiveMotionWork::add(MotionSlice slice) {
   // So many that contradict an estimate put it into doubt.
   constexpr std::size_t kManyLeftOut = 8;
   ++estimate_.windows;
-  steps_.add(slice.streams);
   kept_.emplace_back(std::move(slice));
-  if (kept_.size() > live_.kept_windows) {
-    freezeOldest();
-  }
   if (!estimate_.is_told) {
+    steps_.add(kept_.back().streams());
+    freezeOldest();
     if (estimate_.windows >= next_begin_) {
       begin();
     }

@@ -26,20 +26,26 @@ void LiveWindow::linearize(const MotionPoint& point,
 
 void LiveWindow::linearize(const MotionPoint& point,
                            const BalanceOrder& order,
-                           std::vector<BalanceEvaluator>& evaluators) {
-  evaluate(point, order, evaluators, term.balance);
+                           std::vector<BalanceEvaluator>& evaluators,
+                           const std::function<void()>& beside) {
+  evaluate(point, order, evaluators, beside, term.balance);
   linearized_at_ = point.x();
 }
 
 void LiveWindow::evaluate(const MotionPoint& point,
                           const BalanceOrder& order,
                           std::vector<BalanceEvaluator>& evaluators,
+                          const std::function<void()>& beside,
                           WindowBalance& out) const {
   // More would rather wait for each other.
   constexpr std::size_t kMostParts = 4;
   const std::size_t parts = std::min(evaluators.size(), kMostParts);
-  parallelFor(parts, static_cast<unsigned>(parts), [&](unsigned, std::size_t n) {
-    evaluators[n].sumUp(span_, term.window, point, order, {n, parts});
+  parallelFor(parts + 1, static_cast<unsigned>(parts), [&](unsigned, std::size_t n) {
+    if (n < parts) {
+      evaluators[n].sumUp(span_, term.window, point, order, {n, parts});
+    } else {
+      beside();
+    }
   });
   for (std::size_t n = 1; n < parts; ++n) {
     evaluators.front().add(evaluators[n]);

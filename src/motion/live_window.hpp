@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,14 +24,17 @@ class LiveWindow {
 
   /// Linearises its balance at a point; its whitening as well where the order says so.
   void linearize(const MotionPoint& point, const BalanceOrder& order, BalanceEvaluator& evaluator);
-  /// The same by several, each in a thread of its own: in less time.
+  /// The same by several, each in a thread of its own: in less time. `beside` is done by the thread
+  /// that ends first.
   void linearize(const MotionPoint& point,
                  const BalanceOrder& order,
-                 std::vector<BalanceEvaluator>& evaluators);
+                 std::vector<BalanceEvaluator>& evaluators,
+                 const std::function<void()>& beside);
   /// Its balance at a point, by several.
   void evaluate(const MotionPoint& point,
                 const BalanceOrder& order,
                 std::vector<BalanceEvaluator>& evaluators,
+                const std::function<void()>& beside,
                 WindowBalance& out) const;
   /// Linearises its orientations at x, and sums them up in the coordinates that they tell of.
   /// `stddev`: of the tracker, per component [rad].

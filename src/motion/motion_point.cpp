@@ -195,25 +195,45 @@ void MotionPoint::addEffects(std::size_t pole,
   }
 }
 
-/// With all coils, pair by pair as linearizePairTorque(). A coil meets one pole or two at a time,
-/// so its axis is turned into coordinates with each pair; that of the pole once for all pairs.
-void MotionPoint::addPole(std::size_t pole,
-                          const Eigen::Matrix3d& R,
-                          const Eigen::VectorXd& current,
-                          StatorTorque& out) const {
-  const auto i = static_cast<Eigen::Index>(pole);
-  const Eigen::Vector3d r = R * poles_.col(i);
-  out.cosines.noalias() = coils_by_row_ * r;
+/// Of some two hundred pairs a dozen are near. The processor works at several of them at a time, as
+/// long as nothing between them has to be guessed.
+void MotionPoint::findPairs(const Eigen::Matrix3d& R, StatorTorque& out) const {
+  out.poles.noalias() = R * poles_;
+  out.cosines.noalias() = coils_by_row_ * out.poles;
+  out.pairs.resize(static_cast<std::size_t>(out.cosines.size()));
+  out.near = 0;
+  for (Eigen::Index i = 0; i < poles_.cols(); ++i) {
+    for (Eigen::Index j = 0; j < coils_.cols(); ++j) {
+      out.pairs[out.near].pole = i;
+      out.pairs[out.near].coil = j;
+      out.near += out.cosines(j, i) > curve_->cosSupportEnd() ? 1 : 0;
+    }
+  }
+  for (std::size_t n = 0; n < out.near; ++n) {
+    NearPair& pair = out.pairs[n];
+    pair.cross = out.poles.col(pair.pole).cross(coils_.col(pair.coil));
+    pair.curve = curve_->safe(out.cosines(pair.coil, pair.pole), pair.cross.norm());
+  }
+}
+
+/// The pole of the pair `first`, with all coils near it, as linearizePairTorque(); returns the
+/// first pair of the next pole. A coil meets one pole or two at a time, so its axis is turned into
+/// coordinates with each pair; that of the pole once for all pairs.
+std::size_t MotionPoint::addPole(std::size_t first,
+                                 const Eigen::Matrix3d& R,
+                                 const Eigen::VectorXd& current,
+                                 StatorTorque& out) const {
+  const Eigen::Index i = out.pairs[first].pole;
+  const auto pole = static_cast<std::size_t>(i);
+  const Eigen::Vector3d r = out.poles.col(i);
   Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
-  for (Eigen::Index j = 0; j < coils_.cols(); ++j) {
-    const double cosine = out.cosines[j];
-    if (cosine <= curve_->cosSupportEnd()) {
-      continue;
-    }
+  std::size_t n = first;
+  for (; n < out.near && out.pairs[n].pole == i; ++n) {
+    const Eigen::Index j = out.pairs[n].coil;
+    const Eigen::Vector3d& cross = out.pairs[n].cross;
+    const TorqueCurve::Safe& safe = out.pairs[n].curve;
     const Eigen::Vector3d s = coils_.col(j);
-    const Eigen::Vector3d cross = r.cross(s);
-    const TorqueCurve::Safe safe = curve_->safe(cosine, cross.norm());
     const Eigen::Vector3d torque = safe.h * cross;
     out.d_coil.col(j) += weight_(i, j) * torque;
     const double weight = current[j] * weight_(i, j);
@@ -233,6 +253,7 @@ void MotionPoint::addPole(std::size_t pole,
   // Only the pole turns with the rotor: r → r + ξ × r.
   out.d_turn -= d_pole * skew(r);
   out.d_x.middleCols<2>(space_->pole(pole)) = d_pole * (R * d_pole_[pole]);
+  return n;
 }
 
 void MotionPoint::addLoads(const Eigen::Matrix3d& R, StatorTorque& out) const {
@@ -255,8 +276,9 @@ void MotionPoint::torque(const Eigen::Matrix3d& R_stator_rotor,
   out.d_turn.setZero();
   out.d_x.setZero(3, space_->size());
   out.d_coil.setZero(3, coils_.cols());
-  for (std::size_t i = 0; i < space_->poles(); ++i) {
-    addPole(i, R_stator_rotor, current, out);
+  findPairs(R_stator_rotor, out);
+  for (std::size_t n = 0; n < out.near;) {
+    n = addPole(n, R_stator_rotor, current, out);
   }
   out.torque = out.d_coil * current;
   addLoads(R_stator_rotor, out);

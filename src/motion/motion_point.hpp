@@ -31,13 +31,25 @@ struct TurnedRotor {
   Eigen::Matrix3Xd d_x;       ///< ∂ξ/∂x of MotionPoint::turning()
 };
 
+/// A pole and a coil that act on each other.
+struct NearPair {
+  Eigen::Index pole;
+  Eigen::Index coil;
+  Eigen::Vector3d cross;  ///< r × s of their axes, stator frame
+  TorqueCurve::Safe curve;
+};
+
 /// Torque on the rotor, stator frame, and its derivatives.
 struct StatorTorque {
   Eigen::Vector3d torque;   ///< R T [N·m]
   Eigen::Matrix3d d_turn;   ///< ∂(RT)/∂ξ
   Eigen::Matrix3Xd d_x;     ///< 3×P, without what turns the rotor
   Eigen::Matrix3Xd d_coil;  ///< per ampere of each coil
-  Eigen::VectorXd cosines;  ///< of a pole with all coils, while it is summed up
+  // While it is summed up.
+  Eigen::Matrix3Xd poles;       ///< axes, stator frame
+  Eigen::MatrixXd cosines;      ///< coils × poles
+  std::vector<NearPair> pairs;  ///< pole by pole, those that are near first
+  std::size_t near = 0;         ///< so many of them
 };
 
 /// All that a model of motion needs at coordinates x.
@@ -87,10 +99,11 @@ class MotionPoint {
   void setTurning();
   void setInertia();
   double valueAt(Eigen::Index place) const;
-  void addPole(std::size_t pole,
-               const Eigen::Matrix3d& R,
-               const Eigen::VectorXd& current,
-               StatorTorque& out) const;
+  void findPairs(const Eigen::Matrix3d& R, StatorTorque& out) const;
+  std::size_t addPole(std::size_t first,
+                      const Eigen::Matrix3d& R,
+                      const Eigen::VectorXd& current,
+                      StatorTorque& out) const;
   void addEffects(std::size_t pole,
                   std::size_t coil,
                   double weight,
