@@ -87,7 +87,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
       diagnostics_(node, private_node, actuator),
       receiver_(1, &queue_) {
   ros::NodeHandle handle = node;
-  constexpr std::uint32_t kQueueLength = 1000;
+  constexpr std::uint32_t kQueueLength = 10000;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_currents", kQueueLength);
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add("output", [this](DiagnosticStatus& status) { diagnoseOutput(status); });

@@ -42,7 +42,7 @@ JointSensorNode::JointSensorNode(const ros::NodeHandle& node,
   }
   message_.position.resize(kJoints);
   ros::NodeHandle handle = node;
-  constexpr std::uint32_t kQueueLength = 1000;
+  constexpr std::uint32_t kQueueLength = 10000;
   publisher_ = handle.advertise<sensor_msgs::JointState>("joint_states", kQueueLength);
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add(stream_);

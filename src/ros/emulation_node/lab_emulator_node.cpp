@@ -17,7 +17,8 @@
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kQueueLength = 100;
+/// Who listens and has to wait for the processor misses nothing for seconds, as with the drivers.
+constexpr std::uint32_t kQueueLength = 10000;
 /// A computer that was busy must not make the fixture jump [s].
 constexpr double kLongestBeat = 0.05;
 constexpr double kWarningPeriod = 2.0;  // [s]
