@@ -109,8 +109,26 @@ TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
   session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
   const CycleReport report = session_.run({Cycle::kMotion});
   ASSERT_TRUE(report.success) << report.message;
-  ASSERT_EQ(report.doubts.size(), 1U) << report.message;
+  ASSERT_FALSE(report.doubts.empty()) << report.message;
   EXPECT_NE(report.doubts[0].find("windows, at "), std::string::npos) << report.doubts[0];
+}
+
+// No window tells it, and there are too few without it.
+TEST_F(MotionCycleTest, DoubtsAMotionInWhichAHandLeansMostOfTheTime) {
+  moving_.duration = 20.0;
+  moving_.push_begin = 3.0;
+  moving_.push_end = 15.0;
+  for (const double push : {0.0, 2e-4}) {
+    moving_.push = push;
+    session_.setMotion(std::make_shared<const MotionRecording>(noisy(moving_.record())));
+    const CycleReport report = session_.run({Cycle::kMotion});
+    ASSERT_TRUE(report.success) << report.message;
+    const bool is_doubted =
+        std::any_of(report.doubts.begin(), report.doubts.end(), [](const std::string& doubt) {
+          return doubt.rfind("Residuals are ", 0) == 0;
+        });
+    EXPECT_EQ(is_doubted, push > 0.0) << report.motion->window_chi_square;
+  }
 }
 
 TEST_F(MotionCycleTest, SaysWhyTooFewWindowsServe) {
