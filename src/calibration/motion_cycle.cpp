@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "spherical_actuator_calibration/motion/silent_coils.hpp"
 
 namespace sac {
 namespace {
@@ -213,7 +216,7 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
 
 std::vector<std::string> doubts(const MotionEstimate& found) {
   // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
-  constexpr double kLarge = 1.2;
+  constexpr double kLarge = 1.1;
   std::vector<std::string> words;
   const std::string disturbed = oftenDisturbed(found.estimate.residuals);
   if (!disturbed.empty()) {
@@ -240,6 +243,19 @@ void fillReport(const MotionEstimate& found, CycleReport& report) {
     report.residuals.push_back(reportedResidual(from, id));
     report.samples_rejected += from.rejected ? 1U : 0U;
   }
+}
+
+/// "", or a sentence.
+std::string silentInWords(const std::vector<std::size_t>& coils) {
+  if (coils.empty()) {
+    return {};
+  }
+  std::string numbers;
+  for (const std::size_t coil : coils) {
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(numberOf(coil));
+  }
+  return " No current beyond the noise of its reading flowed in coil " + numbers +
+         ": what it would tell stays at the prior. Check amplifier and wiring.";
 }
 
 std::string successInWords(const MotionSummary& summary, std::size_t unobservable) {
@@ -281,7 +297,12 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   problem.model = &model;
   problem.recording = &recording;
   problem.prior = state.belief;
-  problem.free = motionCoordinates(model.space(), orientationsIn(recording));
+  const std::vector<Eigen::Index> asked =
+      motionCoordinates(model.space(), orientationsIn(recording));
+  const std::vector<std::size_t> silent = silentCoils(recording);
+  const std::vector<Eigen::Index> untold = coordinatesOfCoils(model.space(), silent);
+  std::set_difference(
+      asked.begin(), asked.end(), untold.begin(), untold.end(), std::back_inserter(problem.free));
   const MotionEstimate found = estimateMotion(problem, config.estimation, MotionOptions());
   const std::string words = failure(problem, found, config.estimation);
   report.motion = found.summary;
@@ -293,10 +314,15 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   fillReport(found, report);
   report.doubts = doubts(found);
   CycleCoordinates coordinates;
-  coordinates.requested = problem.free;
-  coordinates.unobservable = found.estimate.unobservable;
+  coordinates.requested = asked;
+  std::set_union(found.estimate.unobservable.begin(),
+                 found.estimate.unobservable.end(),
+                 untold.begin(),
+                 untold.end(),
+                 std::back_inserter(coordinates.unobservable));
   conclude(model, found.estimate, coordinates, ExpectedErrors::kReported, outcome.state, report);
-  report.message = successInWords(found.summary, coordinates.unobservable.size());
+  report.message =
+      successInWords(found.summary, coordinates.unobservable.size()) + silentInWords(silent);
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;
   }

@@ -113,6 +113,24 @@ TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
   EXPECT_NE(report.doubts[0].find("windows, at "), std::string::npos) << report.doubts[0];
 }
 
+// The amplifier is off, and what is read is the noise of its sensor.
+TEST_F(MotionCycleTest, HoldsACoilThroughWhichNothingFlowed) {
+  constexpr std::size_t kDead = 4;
+  moving_.duration = 12.0;
+  moving_.truth.coils[kDead].gain = 0.0;
+  MotionRecording recording = moving_.record();
+  for (MotionStreams& streams : recording.spans) {
+    streams.currents.col(kDead).setZero();
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(noisy(std::move(recording))));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_FALSE(isTold(report, "coil_5/polar"));
+  EXPECT_FALSE(isTold(report, "coil_5/azimuth"));
+  EXPECT_TRUE(isTold(report, "coil_6/azimuth"));
+  EXPECT_NE(report.message.find("flowed in coil 5:"), std::string::npos) << report.message;
+}
+
 // No window tells it, and there are too few without it.
 TEST_F(MotionCycleTest, DoubtsAMotionInWhichAHandLeansMostOfTheTime) {
   moving_.duration = 20.0;
