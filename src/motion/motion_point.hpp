@@ -33,8 +33,8 @@ struct TurnedRotor {
 
 /// A pole and a coil that act on each other.
 struct NearPair {
-  Eigen::Index pole;
-  Eigen::Index coil;
+  Eigen::Index pole = 0;
+  Eigen::Index coil = 0;
   Eigen::Vector3d cross;  ///< r × s of their axes, stator frame
   TorqueCurve::Safe curve;
 };
