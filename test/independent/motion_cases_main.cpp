@@ -128,10 +128,10 @@ void printParameters(const ParameterSpace& space, const Estimate& estimate) {
   }
   const Eigen::MatrixXd jacobian = reportedJacobian(space, estimate.belief.x);
   const Eigen::MatrixXd covariance = jacobian * estimate.belief.covariance * jacobian.transpose();
-  for (const auto& row : covariance.rowwise()) {
+  for (Eigen::Index row = 0; row < covariance.rows(); ++row) {
     std::printf("covariance");
-    for (const double value : row) {
-      std::printf(" %.17g", value);
+    for (Eigen::Index column = 0; column < covariance.cols(); ++column) {
+      std::printf(" %.17g", covariance(row, column));
     }
     std::printf("\n");
   }
