@@ -1,7 +1,6 @@
 #include "spherical_actuator_calibration/calibration/motion_follower.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <string>
 #include <utility>
@@ -52,13 +51,15 @@ TEST(MotionFollower, TellsEachGroupBetterAndBetter) {
   const auto told = follow(moving.record().spans.front(), follower);
   ASSERT_TRUE(follower.estimate().is_told);
   ASSERT_EQ(told.front().size(), 3U);
+  const std::vector<std::string> groups = {"joints", "poles", "coils"};
+  const std::vector<std::size_t> parameters = {9, 16, 48};
   for (std::size_t n = 0; n < 3; ++n) {
-    EXPECT_EQ(told.front()[n].group, (std::array{"joints", "poles", "coils"})[n]);
+    EXPECT_EQ(told.front()[n].group, groups[n]);
     // As uncertain as it was made.
     EXPECT_GT(told.front()[n].stddev, 5e-3);
     EXPECT_LT(told.back()[n].stddev, 1e-3);
     EXPECT_EQ(told.front()[n].left, told.front()[n].parameters);
-    EXPECT_EQ(told.back()[n].parameters, (std::array{9U, 16U, 48U})[n]);
+    EXPECT_EQ(told.back()[n].parameters, parameters[n]);
     EXPECT_EQ(told.back()[n].left == 0, told.back()[n].stddev <= kWanted);
   }
   EXPECT_EQ(told.back()[2].least_known.rfind("coil_", 0), 0U) << told.back()[2].least_known;
