@@ -13,6 +13,7 @@ namespace sac {
 /// Coils that carried no current, by their index, ascending: what was read of them is hardly more
 /// than the noise of the reading. Such readings would tell of an axis though nothing flowed: noise
 /// that counts as current turns the axis to where it makes no torque. Empty where all are alike.
+/// (doc/motion.md, Silent coils)
 std::vector<std::size_t> silentCoils(const MotionRecording& recording);
 
 /// Coordinates that only these coils tell of: their axes, and their strengths where they are

@@ -13,8 +13,6 @@
 namespace sac {
 namespace {
 
-/// Standard deviation of what is not identified.
-
 Eigen::Matrix3d rotationFromRos(const geometry_msgs::Quaternion& message, std::uint32_t id) {
   const Eigen::Quaterniond q = quaternionFromRos(message);
   if (!isUnit(q)) {
@@ -49,6 +47,7 @@ msg::ParameterEstimate estimateToRos(const ParameterEstimate& estimate) {
   message.nominal = estimate.nominal;
   message.initial = estimate.initial;
   message.value = estimate.value;
+  // Of what is not identified.
   message.stddev = std::numeric_limits<double>::infinity();
   if (estimate.observable) {
     message.stddev = estimate.stddev;
