@@ -118,7 +118,8 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
   if (motion.response) {
     YamlLine line;
     line.add("delay", yamlNumber(motion.response->delay))
-        .add("time_constant", yamlNumber(motion.response->lag));
+        .add("time_constant", yamlNumber(motion.response->lag))
+        .add("stddev", yamlNumber(motion.response->delay_stddev));
     writer.entry(4, "commands", line.text());
   }
   const HeldOutMotion& held_out = motion.held_out;

@@ -9,6 +9,7 @@
 
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
+#include "motion_doubts.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -190,47 +191,6 @@ std::string failure(const MotionProblem& problem,
   return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;
 }
 
-/// What hands do comes now and then. What a model lacks, as the strength of a coil, comes back all
-/// the time, and without the windows where it is largest the others may fit.
-std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
-  constexpr double kMany = 0.05;
-  constexpr std::size_t kOften = 4;
-  std::size_t count = 0;
-  std::size_t times = 0;
-  bool was_rejected = false;
-  for (const ObservationResidual& window : windows) {
-    count += window.rejected ? 1 : 0;
-    times += window.rejected && !was_rejected ? 1 : 0;
-    was_rejected = window.rejected;
-  }
-  if (times < kOften || static_cast<double>(count) < kMany * static_cast<double>(windows.size())) {
-    return {};
-  }
-  return format(
-      "%zu of %zu windows, at %zu times, contradict the others, and that may bias the parameters: "
-      "keep hands and cables off the rotor, or model what is missing, as coil_gains.",
-      count,
-      windows.size(),
-      times);
-}
-
-std::vector<std::string> doubts(const MotionEstimate& found) {
-  // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
-  constexpr double kLarge = 1.1;
-  std::vector<std::string> words;
-  const std::string disturbed = oftenDisturbed(found.estimate.residuals);
-  if (!disturbed.empty()) {
-    words.push_back(disturbed);
-  }
-  if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
-    words.push_back(
-        format("Residuals are %.2f times their noise: something acts that is not modelled, as a "
-               "hand or a cable, and may bias the parameters.",
-               std::sqrt(found.summary.window_chi_square)));
-  }
-  return words;
-}
-
 void fillReport(const MotionEstimate& found, CycleReport& report) {
   const Estimate& estimate = found.estimate;
   report.motion = found.summary;
@@ -312,7 +272,7 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
     return outcome;
   }
   fillReport(found, report);
-  report.doubts = doubts(found);
+  report.doubts = motionDoubts(found);
   CycleCoordinates coordinates;
   coordinates.requested = asked;
   std::set_union(found.estimate.unobservable.begin(),

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "command_comparison.hpp"
+#include "current_steps.hpp"
 #include "joint_track.hpp"
 #include "response_search.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
@@ -60,6 +61,11 @@ class Agreement {
       }
     }
     return std::abs(common_.sum() / followed_.sum() - 1.0) < kTolerance;
+  }
+
+  /// Of a current, if nothing else makes changes other than expected [A].
+  double noise() const {
+    return std::sqrt(0.5 * left_.sum() / (count_ * static_cast<double>(left_.size())));
   }
 
   /// What of changes is not as expected, relative to them: what is left grows with the changes
@@ -174,14 +180,21 @@ double modelStddev(const CommandComparison& comparison, const Agreement& agreeme
   return std::max({kPerMisfit * agreement.misfit() * lag, by_lockstep, kLeast});
 }
 
+/// Of the delay of currents that count as they were sampled.
+double stddevAsSampled(const MotionStreams& streams, double noise) {
+  CurrentSteps steps;
+  steps.add(streams);
+  return steps.delayStddev(noise);
+}
+
 }  // namespace
 
 std::optional<CommandResponse> takeMeans(const CommandStream& commands, MotionStreams& streams) {
   constexpr std::size_t kLeast = 100;
   constexpr double kLargestDelay = 0.08;  // [s]
   constexpr double kLargestLag = 0.05;    // [s]
-  // Without a lag nothing tells when between two samples a current has changed.
-  constexpr double kLeastLag = 0.05;  // intervals
+  // What commands tell is measured, what samples tell without them supposed.
+  constexpr double kMuchLess = 2.0;
   if (streams.current_stamps.size() < kLeast || commands.stamps.size() < kLeast) {
     return std::nullopt;
   }
@@ -191,9 +204,8 @@ std::optional<CommandResponse> takeMeans(const CommandStream& commands, MotionSt
   }
   ResponseSearch search(comparison);
   search.run();
-  const bool is_found = std::isfinite(search.delayStddev()) &&
-                        std::abs(search.delay()) < kLargestDelay && search.lag() < kLargestLag &&
-                        search.lag() > kLeastLag * usualStep(comparison.times());
+  const bool is_found = std::isfinite(search.latenessStddev()) &&
+                        std::abs(search.delay()) < kLargestDelay && search.lag() < kLargestLag;
   if (!is_found) {
     return std::nullopt;
   }
@@ -205,7 +217,10 @@ std::optional<CommandResponse> takeMeans(const CommandStream& commands, MotionSt
   response.delay = search.delay();
   response.lag = search.lag();
   response.delay_stddev =
-      std::hypot(search.delayStddev(), modelStddev(comparison, agreement, search.lag()));
+      std::hypot(search.latenessStddev(), modelStddev(comparison, agreement, search.lag()));
+  if (!(response.delay_stddev < kMuchLess * stddevAsSampled(streams, agreement.noise()))) {
+    return std::nullopt;
+  }
   MeanTaker(comparison).run(comparison.follow(search.delay(), search.lag()), streams);
   return response;
 }

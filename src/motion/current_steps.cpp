@@ -10,6 +10,39 @@
 #include "motion_point.hpp"
 
 namespace sac {
+namespace {
+
+/// Whether samples in a row follow single steps: they bend there, and between two steps some hardly
+/// change. What steps once an interval is smooth or, where a sample now and then has one step more
+/// or fewer than others, rough in nearly all of them.
+class Stretch {
+ public:
+  /// `change`: from a sample to the next. `before`: the one before that.
+  void add(const Eigen::RowVectorXd& change, const Eigen::RowVectorXd& before) {
+    const double square = change.squaredNorm();
+    changes_ += square;
+    fourth_ += square * square;
+    bends_ += (change - before).squaredNorm();
+    ++samples_;
+  }
+  bool isFull() const { return samples_ == kSamples; }
+  bool showsSteps() const {
+    constexpr double kLeastBend = 0.25;
+    constexpr double kMostLarge = 0.65;  // of the samples
+    return bends_ > kLeastBend * changes_ && changes_ * changes_ < kMostLarge * kSamples * fourth_;
+  }
+
+ private:
+  static constexpr int kSamples = 20;  ///< in which currents change much alike
+
+  int samples_ = 0;
+  // Sums over them.
+  double changes_ = 0.0;  ///< squared
+  double fourth_ = 0.0;
+  double bends_ = 0.0;
+};
+
+}  // namespace
 
 void CurrentSteps::add(const MotionStreams& streams) {
   constexpr double kGap = 2.0;  // usual intervals
@@ -22,20 +55,37 @@ void CurrentSteps::add(const MotionStreams& streams) {
     told_samples_ += samples;
     return;
   }
-  const auto at = [&](Eigen::Index n) { return streams.currents.row(n).cast<double>(); };
   const std::vector<Stamp>& stamps = streams.current_stamps;
   const auto interval = [&](std::size_t n) { return secondsBetween(stamps[n - 1], stamps[n]); };
   const double longest = kGap * usualStep(StampTimes(stamps.front(), stamps));
-  for (std::size_t n = 2; n < stamps.size(); ++n) {
-    if (std::max(interval(n), interval(n - 1)) > longest) {
+  Stretch stretch;
+  Eigen::RowVectorXd change;
+  Eigen::RowVectorXd before;
+  Eigen::RowVectorXd before_that;
+  for (std::size_t n = 1; n < stamps.size(); ++n) {
+    if (interval(n) > longest) {
+      before.resize(0);
+      before_that.resize(0);
       continue;
     }
     const auto row = static_cast<Eigen::Index>(n);
-    changes_ += (at(row) - at(row - 1)).squaredNorm();
-    bends_ += (at(row) - 2.0 * at(row - 1) + at(row - 2)).squaredNorm();
-    values_ += static_cast<double>(streams.currents.cols());
-    duration_ += interval(n);
-    intervals_ += 1.0;
+    change = (streams.currents.row(row) - streams.currents.row(row - 1)).cast<double>();
+    if (before_that.size() > 0) {
+      stretch.add(change, before);
+      changes_ += change.squaredNorm();
+      next_ += change.dot(before);
+      second_ += change.dot(before_that);
+      values_ += static_cast<double>(change.size());
+      duration_ += interval(n);
+      intervals_ += 1.0;
+    }
+    if (stretch.isFull()) {
+      stretches_ += 1.0;
+      stepping_ += stretch.showsSteps() ? 1.0 : 0.0;
+      stretch = {};
+    }
+    before_that.swap(before);
+    before.swap(change);
   }
 }
 
@@ -46,20 +96,23 @@ double CurrentSteps::delayStddev(double noise) const {
 }
 
 double CurrentSteps::sampledStddev(double noise) const {
-  // Samples of less show no steps: the currents are smooth, or they step once an interval.
-  constexpr double kLeastBend = 0.1;
   if (!(intervals_ > 0.0)) {
     return 0.0;
   }
   const double interval = duration_ / intervals_;
-  const double variance = noise * noise * values_;
-  const double changes = changes_ - 2.0 * variance;
-  const double bends = bends_ - 6.0 * variance;
-  if (!(bends > kLeastBend * changes)) {
+  if (!(stepping_ > 0.5 * stretches_)) {
     return interval / std::sqrt(12.0);
   }
-  // What is left of a step one interval later, if all changes are such steps.
-  const double left = changes > 0.0 ? std::max(0.0, 1.0 - 0.5 * bends / changes) : 0.0;
+  // Noise is in two changes in a row with either sign.
+  const double variance = noise * noise * values_;
+  const double changes = changes_ - 2.0 * variance;
+  const double next = next_ + variance;
+  // What is left of a step one interval later, if all changes are such steps: the first of them is
+  // cut by the sample before the step, later ones are not.
+  constexpr double kMostLeft = 0.95;
+  const bool is_told = changes > 0.0 && next > 0.0;
+  const double most = is_told ? std::min(next / changes, kMostLeft) : 0.0;
+  const double left = is_told ? std::clamp(second_ / next, 0.0, most) : 0.0;
   const double decay = left > 0.0 ? -1.0 / std::log(left) : 0.0;
   // Largest where the steps are at the very instants of samples.
   return interval * (1.0 / (1.0 - left) - 0.5 - decay);

@@ -25,11 +25,14 @@ class CurrentSteps {
   double told_ = 0.0;          ///< sum of variances, sample by sample, where commands tell steps
   double told_samples_ = 0.0;  ///< in it
   // Of the others.
-  double changes_ = 0.0;  ///< sum of squared differences
-  double bends_ = 0.0;    ///< of those of differences
+  double changes_ = 0.0;  ///< sum of squared differences from one sample to the next
+  double next_ = 0.0;     ///< of their products with the ones before
+  double second_ = 0.0;   ///< with those before that
   double duration_ = 0.0;
   double intervals_ = 0.0;
-  double values_ = 0.0;  ///< in either sum
+  double values_ = 0.0;  ///< in each sum
+  double stretches_ = 0.0;  ///< of some samples each
+  double stepping_ = 0.0;   ///< those that show steps
 };
 
 }  // namespace sac

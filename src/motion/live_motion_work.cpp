@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -36,7 +37,7 @@ LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
                                const LiveMotionOptions& live)
     : model_(&model),
       prior_(std::move(prior)),
-      free_(uncertain(std::move(free), prior_)),
+      asked_(uncertain(std::move(free), prior_)),
       estimation_(estimation),
       options_(options),
       live_(live),
@@ -53,14 +54,25 @@ LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
       x_(prior_.x) {
   // What judges would be missed here.
   options_.hold_out_every = 0;
+  chooseFree();
+  estimate_.belief = prior_;
+}
+
+/// All that is asked for, but what silent coils would tell of: that stays at the prior.
+void LiveMotionWork::chooseFree() {
+  const std::vector<Eigen::Index> untold = coordinatesOfCoils(model_->space(), silent_);
+  x_(untold) = prior_.x(untold);
+  free_.clear();
+  std::set_difference(
+      asked_.begin(), asked_.end(), untold.begin(), untold.end(), std::back_inserter(free_));
   const auto count = static_cast<Eigen::Index>(free_.size());
   const Eigen::MatrixXd known = prior_.covariance(free_, free_);
   const Eigen::MatrixXd inverse = known.llt().solve(Eigen::MatrixXd::Identity(count, count));
+  prior_information_.setZero();
   prior_information_(free_, free_) = inverse;
   Eigen::VectorXd held = prior_.covariance.diagonal();
   held(free_).setZero();
   holds_uncertain_ = !held.isZero(0.0);
-  estimate_.belief = prior_;
 }
 
 /// The first estimate, where the windows are enough for one.
@@ -268,6 +280,7 @@ void LiveMotionWork::take(LiveWindow& window) {
   window.linearize(point, order, evaluators_, [&] {
     window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
     steps_.add(window.streams());
+    silent_coils_.add(window.streams());
     freezeOldest();
   });
   window.whiten(factors_.joints, factors_.currents * noise_.current * noise_.current);
@@ -303,17 +316,27 @@ void LiveMotionWork::add(MotionSlice slice) {
   kept_.emplace_back(std::move(slice));
   if (!estimate_.is_told) {
     steps_.add(kept_.back().streams());
+    silent_coils_.add(kept_.back().streams());
     freezeOldest();
     if (estimate_.windows >= next_begin_) {
+      silent_ = silent_coils_.found();
+      chooseFree();
       begin();
     }
     return;
   }
   take(kept_.back());
-  solve();
+  std::vector<std::size_t> silent = silent_coils_.found();
+  const bool changes = silent != silent_;
+  if (changes) {
+    silent_ = std::move(silent);
+    chooseFree();
+  } else {
+    solve();
+  }
   if (estimate_.windows >= next_noise_) {
     linearizeAnew(true);
-  } else if (lately_left_out_ >= kManyLeftOut ||
+  } else if (changes || lately_left_out_ >= kManyLeftOut ||
              (estimate_.windows % kProbeEvery == 0 && misleads())) {
     linearizeAnew(false);
   }

@@ -10,6 +10,7 @@
 #include "live_window.hpp"
 #include "noise_factors.hpp"
 #include "spherical_actuator_calibration/motion/live_estimate.hpp"
+#include "spherical_actuator_calibration/motion/silent_coils.hpp"
 
 namespace sac {
 
@@ -27,6 +28,7 @@ class LiveMotionWork {
   const LiveEstimate& estimate() const { return estimate_; }
 
  private:
+  void chooseFree();
   void begin();
   void take(LiveWindow& window);
   void freezeOldest();
@@ -53,7 +55,8 @@ class LiveMotionWork {
 
   const CalibrationModel* model_;
   ParameterBelief prior_;
-  std::vector<Eigen::Index> free_;
+  std::vector<Eigen::Index> asked_;
+  std::vector<Eigen::Index> free_;  ///< of those, what coils tell of that are not silent
   EstimationOptions estimation_;
   MotionOptions options_;
   LiveMotionOptions live_;
@@ -64,6 +67,8 @@ class LiveMotionWork {
 
   StreamNoise noise_;
   NoiseFactors factors_;
+  SilentCoils silent_coils_;                  ///< of all windows
+  std::vector<std::size_t> silent_;           ///< of them, for which `free_` was chosen
   CurrentSteps steps_;                        ///< of all windows
   double by_steps_ = 0.0;                     ///< variance of the current's delay by them
   std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread

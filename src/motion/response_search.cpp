@@ -7,18 +7,92 @@
 #include <Eigen/LU>
 
 namespace sac {
+namespace {
+
+// Samples.
+constexpr std::size_t kQuick = 2400;
+constexpr std::size_t kThorough = 12000;
+
+constexpr double kLeastLag = 1e-5;  // [s]
+
+}  // namespace
 
 void ResponseSearch::run() {
-  constexpr std::size_t kQuick = 2400;
-  constexpr std::size_t kThorough = 12000;
   Descent best;
+  std::vector<Descent> ends;
   for (const Place& start : starts()) {
-    const Descent end = descend(start, shareOf(kQuick));
-    if (end.square < best.square) {
-      best = end;
+    ends.push_back(descend(start, shareOf(kQuick), Moves::kBoth));
+    if (ends.back().square < best.square) {
+      best = ends.back();
     }
   }
-  best_ = descend(best.place, shareOf(kThorough));
+  best_ = descend(best.place, shareOf(kThorough), Moves::kBoth);
+  findSpread(ends);
+}
+
+/// How far delay and lag together may be beside what was found, with a misfit as likely as that of
+/// √3 standard deviations: of noise alone it gives its standard deviation, of a stretch over which
+/// nothing tells that of what is anywhere in it. There the middle is taken.
+void ResponseSearch::findSpread(const std::vector<Descent>& ends) {
+  const Share share = shareOf(kQuick);
+  const Share thorough = shareOf(kThorough);
+  const Descent here = descend(best_.place, share, Moves::kBoth);
+  const double variance = here.square / static_cast<double>(here.left.size());
+  const double limit = here.square + 3.0 * variance * static_cast<double>(share.samples) /
+                                         static_cast<double>(thorough.samples);
+  constexpr double kLeastStep = 1e-6;  // [s]
+  constexpr double kMostStep = 1e-4;   // [s]
+  const double local = best_.lateness_stddev;
+  const double step = std::isfinite(local) ? std::clamp(local, kLeastStep, kMostStep) : kMostStep;
+  Place low = farthest(here, limit, -step);
+  const Place high = farthest(here, limit, step);
+  // Where a lag is too short to be seen it may as well be none.
+  const Place at_once{low.delay, kLeastLag};
+  if (leftAt(at_once, share).square().sum() <= limit) {
+    low = at_once;
+  }
+  double most = 0.5 * std::abs(high.lateness() - low.lateness());
+  const auto include = [&](const Place& place) {
+    most = std::max(most, std::abs(place.lateness() - best_.place.lateness()));
+  };
+  if (!(most < 3.0 * local)) {
+    const Place middle{0.5 * (low.delay + high.delay), here.place.lag};
+    best_.place = descend(middle, share, Moves::kLag).place;
+    include(low);
+    include(high);
+  }
+  for (const Descent& end : ends) {
+    if (end.square <= limit) {
+      include(end.place);
+    }
+  }
+  lateness_stddev_ = most / std::sqrt(3.0);
+}
+
+/// With later or earlier delays, and the lag that suits each, the last one below a misfit.
+ResponseSearch::Place ResponseSearch::farthest(const Descent& from,
+                                               double limit,
+                                               double step) const {
+  constexpr int kBisections = 5;
+  constexpr double kEnd = 0.1;  // [s]
+  Place reached = from.place;
+  const auto goes = [&] {
+    const Place start{reached.delay + step, reached.lag};
+    const Descent next = descend(start, shareOf(kQuick), Moves::kLag);
+    if (!(next.square <= limit) || std::abs(next.place.delay) > kEnd) {
+      return false;
+    }
+    reached = next.place;
+    return true;
+  };
+  while (goes()) {
+    step *= 2.0;
+  }
+  for (int n = 0; n < kBisections; ++n) {
+    step *= 0.5;
+    goes();
+  }
+  return reached;
 }
 
 ResponseSearch::Share ResponseSearch::shareOf(std::size_t samples) const {
@@ -103,36 +177,42 @@ Eigen::ArrayXd ResponseSearch::leftAt(const Place& place, const Share& share) co
 }
 
 /// Levenberg–Marquardt.
-ResponseSearch::Descent ResponseSearch::descend(const Place& start, const Share& share) const {
+ResponseSearch::Descent ResponseSearch::descend(const Place& start,
+                                                const Share& share,
+                                                Moves moves) const {
   constexpr int kMostSteps = 25;
   Descent here;
   here.place = start;
   here.left = leftAt(start, share);
   here.square = here.left.square().sum();
   double damping = 1e-2;
-  for (int n = 0; n < kMostSteps && advance(share, damping, here); ++n) {
+  for (int n = 0; n < kMostSteps && advance(share, moves, damping, here); ++n) {
   }
   return here;
 }
 
 /// One step; false where none leads on.
-bool ResponseSearch::advance(const Share& share, double& damping, Descent& here) const {
+bool ResponseSearch::advance(const Share& share,
+                             Moves moves,
+                             double& damping,
+                             Descent& here) const {
   constexpr double kDifference = 1e-6;  // [s]
   constexpr double kSmall = 1e-7;       // [s]
   constexpr double kMostDamping = 1e6;
-  constexpr double kLeastLag = 1e-5;  // [s]
   const auto by = [&](double delay, double lag) -> Eigen::ArrayXd {
     const Place aside{here.place.delay + delay, here.place.lag + lag};
     return (leftAt(aside, share) - here.left) / kDifference;
   };
-  const Eigen::ArrayXd by_delay = by(kDifference, 0.0);
+  const bool moves_delay = moves == Moves::kBoth;
+  const Eigen::ArrayXd by_delay =
+      moves_delay ? by(kDifference, 0.0) : Eigen::ArrayXd::Zero(here.left.size());
   const Eigen::ArrayXd by_lag = by(0.0, kDifference);
   Eigen::Matrix2d information;
-  information << by_delay.square().sum(), (by_delay * by_lag).sum(),  //
+  information << (moves_delay ? by_delay.square().sum() : 1.0), (by_delay * by_lag).sum(),  //
       (by_delay * by_lag).sum(), by_lag.square().sum();
   const Eigen::Vector2d gradient((by_delay * here.left).sum(), (by_lag * here.left).sum());
   const double variance = here.square / static_cast<double>(here.left.size());
-  here.delay_stddev = std::sqrt(variance * information.inverse()(0, 0));
+  here.lateness_stddev = std::sqrt(variance * information.inverse().sum());
   while (damping < kMostDamping) {
     Eigen::Matrix2d damped = information;
     damped.diagonal() *= 1.0 + damping;

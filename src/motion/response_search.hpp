@@ -20,18 +20,22 @@ class ResponseSearch {
   void run();
   double delay() const { return best_.place.delay; }
   double lag() const { return best_.place.lag; }
-  /// By the noise of the currents alone.
-  double delayStddev() const { return best_.delay_stddev; }
+  /// Of delay and lag together, which is by how much the currents come late, by their noise and by
+  /// all that fits as well: where none is sampled soon after a step nobody knows when it came.
+  double latenessStddev() const { return lateness_stddev_; }
 
  private:
   struct Place {
     double delay = 0.0;
     double lag = 0.0;
+
+    double lateness() const { return delay + lag; }
   };
+  enum class Moves { kBoth, kLag };
   struct Descent {
     Place place;
     double square = std::numeric_limits<double>::infinity();
-    double delay_stddev = std::numeric_limits<double>::infinity();
+    double lateness_stddev = std::numeric_limits<double>::infinity();
     Eigen::ArrayXd left;  ///< of the changes
   };
   /// Samples that count: so many in each of some stretches.
@@ -44,11 +48,14 @@ class ResponseSearch {
   std::vector<Place> starts() const;
   Place bestBeside(const Place& place, double reach, const Share& share) const;
   Eigen::ArrayXd leftAt(const Place& place, const Share& share) const;
-  Descent descend(const Place& start, const Share& share) const;
-  bool advance(const Share& share, double& damping, Descent& here) const;
+  Descent descend(const Place& start, const Share& share, Moves moves) const;
+  bool advance(const Share& share, Moves moves, double& damping, Descent& here) const;
+  void findSpread(const std::vector<Descent>& ends);
+  Place farthest(const Descent& from, double limit, double step) const;
 
   const CommandComparison& comparison_;
   Descent best_;
+  double lateness_stddev_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace sac

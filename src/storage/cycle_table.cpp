@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "motion_summary_table.hpp"
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/actuator/cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -175,6 +176,9 @@ std::int64_t insert(const SQLite::Database& database,
   if (report.cycle != Cycle::kMotion) {
     insertResiduals(database, id, report);
   }
+  if (report.motion) {
+    motion_summary_table::insert(database, id, *report.motion);
+  }
   return id;
 }
 
@@ -217,6 +221,7 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   readEstimates(database, id, report);
   readResiduals(database, id, report);
   readDoubts(database, id, report);
+  report.motion = motion_summary_table::find(database, id);
   return report;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 6;
+constexpr std::int64_t kSchemaVersion = 7;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -60,6 +60,49 @@ CREATE TABLE motion_windows (
   currents BLOB NOT NULL,
   orientations BLOB NOT NULL
 ) STRICT;
+)sql";
+
+constexpr char kMotionSummaries[] = R"sql(
+CREATE TABLE cycle_motions (
+  cycle INTEGER PRIMARY KEY REFERENCES cycles (id),
+  duration ANY,
+  windows INTEGER NOT NULL,
+  used INTEGER NOT NULL,
+  window_values INTEGER NOT NULL,
+  orientations INTEGER NOT NULL,
+  orientations_rejected INTEGER NOT NULL,
+  joint_1_stddev ANY, joint_2_stddev ANY, joint_3_stddev ANY,
+  current_stddev ANY,
+  orientation_stddev ANY,
+  response_delay ANY, response_lag ANY, response_delay_stddev ANY,
+  held_out_windows INTEGER NOT NULL,
+  held_out_rejected INTEGER NOT NULL,
+  held_out_orientations INTEGER NOT NULL,
+  held_out_orientation_rms ANY,
+  held_out_torque_rms ANY,
+  held_out_reduced_chi_square ANY,
+  held_out_probability ANY,
+  window_chi_square ANY,
+  orientation_chi_square ANY
+) STRICT;
+
+CREATE TABLE cycle_windows_left_out (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  windows INTEGER NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE cycle_windows_held_out (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  window INTEGER NOT NULL,
+  torque_x ANY, torque_y ANY, torque_z ANY,
+  standardized ANY,
+  rejected INTEGER NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
 )sql";
 
 constexpr char kTables[] = R"sql(
@@ -223,7 +266,7 @@ void upgradeSessionSchema(SQLite::Database& database) {
     database.exec(
         "INSERT INTO cycles SELECT *, 0, 0, NULL FROM earlier_cycles; DROP TABLE earlier_cycles;"
         "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
-  } else {
+  } else if (version < 6) {
     database.exec(
         "ALTER TABLE cycles ADD COLUMN contradicted INTEGER NOT NULL DEFAULT 0;"
         "ALTER TABLE cycles ADD COLUMN degrees_of_freedom INTEGER NOT NULL DEFAULT 0;"
@@ -232,7 +275,10 @@ void upgradeSessionSchema(SQLite::Database& database) {
   if (version < 5) {
     database.exec(kMotionWindows);
   }
-  database.exec(kDoubts);
+  if (version < 6) {
+    database.exec(kDoubts);
+  }
+  database.exec(kMotionSummaries);
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
@@ -241,6 +287,7 @@ void createSessionSchema(SQLite::Database& database) {
   database.exec(kTables);
   database.exec(kMotionWindows);
   database.exec(kDoubts);
+  database.exec(kMotionSummaries);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }

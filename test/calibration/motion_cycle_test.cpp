@@ -113,6 +113,44 @@ TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
   EXPECT_NE(report.doubts[0].find("windows, at "), std::string::npos) << report.doubts[0];
 }
 
+bool isDoubted(const CycleReport& report, const std::string& begin) {
+  return std::any_of(
+      report.doubts.begin(), report.doubts.end(), [&](const std::string& doubt) {
+        return doubt.rfind(begin, 0) == 0;
+      });
+}
+
+// Either part fits as well without the other one.
+TEST_F(MotionCycleTest, DoubtsCurrentsWhoseClockJumps) {
+  moving_.duration = 15.0;
+  MotionRecording recording = noisy(moving_.record());
+  std::vector<Stamp>& stamps = recording.spans.front().current_stamps;
+  for (std::size_t n = 0; n < stamps.size(); ++n) {
+    stamps[n] += n < stamps.size() * 3 / 5 ? 0 : 3'000'000;
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  ASSERT_FALSE(report.doubts.empty()) << report.message;
+  EXPECT_NE(report.doubts[0].find("check the clock"), std::string::npos) << report.doubts[0];
+}
+
+TEST_F(MotionCycleTest, DoubtsATrackerWhoseClockJumps) {
+  moving_.duration = 15.0;
+  for (const Stamp jump : {0, 200'000}) {
+    MotionRecording recording = noisy(moving_.record());
+    std::vector<Stamp>& stamps = recording.spans.front().orientation_stamps;
+    for (std::size_t n = stamps.size() / 2; n < stamps.size(); ++n) {
+      stamps[n] += jump;
+    }
+    session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+    const CycleReport report = session_.run({Cycle::kMotion});
+    ASSERT_TRUE(report.success) << report.message;
+    EXPECT_EQ(isDoubted(report, "Orientations, in the mean"), jump > 0)
+        << report.motion->orientation_chi_square;
+  }
+}
+
 // The amplifier is off, and what is read is the noise of its sensor.
 TEST_F(MotionCycleTest, HoldsACoilThroughWhichNothingFlowed) {
   constexpr std::size_t kDead = 4;
@@ -141,11 +179,7 @@ TEST_F(MotionCycleTest, DoubtsAMotionInWhichAHandLeansMostOfTheTime) {
     session_.setMotion(std::make_shared<const MotionRecording>(noisy(moving_.record())));
     const CycleReport report = session_.run({Cycle::kMotion});
     ASSERT_TRUE(report.success) << report.message;
-    const bool is_doubted =
-        std::any_of(report.doubts.begin(), report.doubts.end(), [](const std::string& doubt) {
-          return doubt.rfind("Residuals are ", 0) == 0;
-        });
-    EXPECT_EQ(is_doubted, push > 0.0) << report.motion->window_chi_square;
+    EXPECT_EQ(isDoubted(report, "Residuals are "), push > 0.0) << report.motion->window_chi_square;
   }
 }
 

@@ -154,6 +154,39 @@ TEST_F(LiveMotionTest, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
   }
 }
 
+TEST_F(LiveMotionTest, HoldsACoilUntilCurrentFlowsInIt) {
+  constexpr std::size_t kCoil = 4;
+  moving_.coil_that_is_off = kCoil;
+  moving_.off_until = 8.0;
+  const MotionRecording recording = noisy(moving_.record());
+  const MotionStreams& streams = recording.spans.front();
+  const Stamp begin = streams.current_stamps.front();
+  const ParameterSpace& space = model_.space();
+  const std::vector<Eigen::Index> of_coil{space.coil(kCoil), space.coil(kCoil) + 1};
+  const ParameterBelief prior = nominalState(space, {}).belief;
+  LiveMotion live = this->live();
+  MotionSlicer slicer(24, MotionOptions());
+  std::size_t held = 0;
+  play(streams, [&](const auto& measurement) {
+    slicer.add(measurement);
+    while (auto slice = slicer.take()) {
+      const double until = secondsBetween(begin, slice->streams.current_stamps.back());
+      live.add(std::move(*slice));
+      const ParameterBelief& belief = live.estimate().belief;
+      if (live.estimate().is_told && until < moving_.off_until) {
+        ++held;
+        EXPECT_EQ(belief.x(of_coil), prior.x(of_coil));
+        EXPECT_EQ(Eigen::MatrixXd(belief.covariance(of_coil, of_coil)),
+                  Eigen::MatrixXd(prior.covariance(of_coil, of_coil)));
+      }
+    }
+  });
+  EXPECT_GT(held, 3U);
+  const ParameterBelief& belief = live.estimate().belief;
+  EXPECT_LT(belief.covariance(of_coil[0], of_coil[0]),
+            0.01 * prior.covariance(of_coil[0], of_coil[0]));
+}
+
 TEST_F(LiveMotionTest, TellsThePriorUntilThereIsEnough) {
   LiveMotion live = this->live();
   moving_.duration = 3.0;

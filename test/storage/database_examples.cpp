@@ -1,6 +1,8 @@
 #include "storage/database_examples.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -233,6 +235,86 @@ bool isSame(const CycleReport& a, const CycleReport& b) {
          isSame(a.estimates, b.estimates) && isSame(a.residuals, b.residuals) &&
          isSame(a.orientation_uncertainty, b.orientation_uncertainty) &&
          isSame(a.torque_uncertainty, b.torque_uncertainty);
+}
+
+MotionSummary summary() {
+  Numbers numbers(9);
+  MotionSummary summary;
+  summary.duration = numbers.next();
+  summary.windows = 80;
+  summary.used = 71;
+  summary.values = 18;
+  summary.left_out = {{"the rotor rests", 4}, {"it contradicts \"the others\"", 5}};
+  summary.orientations = 4801;
+  summary.orientations_rejected = 2;
+  summary.joint_stddev = Eigen::Vector3d(numbers.next(), numbers.next(), numbers.next());
+  summary.current_stddev = numbers.next();
+  summary.orientation_stddev = numbers.next();
+  summary.response = CommandResponse{numbers.next(), numbers.next(), numbers.next()};
+  summary.held_out.windows = 8;
+  summary.held_out.rejected = 1;
+  summary.held_out.orientations = 480;
+  summary.held_out.orientation_rms = numbers.next();
+  summary.held_out.torque_rms = numbers.next();
+  summary.held_out.reduced_chi_square = numbers.next();
+  summary.held_out.probability = numbers.next();
+  for (const std::size_t window : {9U, 19U}) {
+    ObservationResidual residual;
+    residual.observation = {window, Quantity::kTorque};
+    residual.residual = Eigen::Vector3d(numbers.next(), numbers.next(), numbers.next());
+    residual.standardized = numbers.next();
+    residual.rejected = window > 10;
+    summary.held_out.residuals.push_back(residual);
+  }
+  summary.window_chi_square = numbers.next();
+  summary.orientation_chi_square = kInfinity;
+  return summary;
+}
+
+bool isSame(const MotionSummary& a, const MotionSummary& b) {
+  const auto response = [](const MotionSummary& of) {
+    const CommandResponse one = of.response.value_or(CommandResponse());
+    return Eigen::MatrixXd(Eigen::Vector3d(one.delay, one.lag, one.delay_stddev));
+  };
+  const auto numbers = [](const MotionSummary& of) {
+    Eigen::MatrixXd all(8, 1);
+    all << of.duration, of.current_stddev, of.orientation_stddev, of.held_out.orientation_rms,
+        of.held_out.torque_rms, of.held_out.reduced_chi_square, of.held_out.probability,
+        of.window_chi_square;
+    return all;
+  };
+  const auto counts = [](const MotionSummary& of) {
+    return std::array<std::size_t, 8>{of.windows,
+                                      of.used,
+                                      of.values,
+                                      of.orientations,
+                                      of.orientations_rejected,
+                                      of.held_out.windows,
+                                      of.held_out.rejected,
+                                      of.held_out.orientations};
+  };
+  const bool same_held_out = std::equal(
+      a.held_out.residuals.begin(),
+      a.held_out.residuals.end(),
+      b.held_out.residuals.begin(),
+      b.held_out.residuals.end(),
+      [](const ObservationResidual& one, const ObservationResidual& other) {
+        return one.observation.sample == other.observation.sample &&
+               one.observation.quantity == other.observation.quantity &&
+               isSame(Eigen::MatrixXd(one.residual), Eigen::MatrixXd(other.residual)) &&
+               isSame(one.standardized, other.standardized) && one.rejected == other.rejected;
+      });
+  return same_held_out && counts(a) == counts(b) && isSame(numbers(a), numbers(b)) &&
+         isSame(a.orientation_chi_square, b.orientation_chi_square) &&
+         isSame(Eigen::MatrixXd(a.joint_stddev), Eigen::MatrixXd(b.joint_stddev)) &&
+         a.response.has_value() == b.response.has_value() && isSame(response(a), response(b)) &&
+         std::equal(a.left_out.begin(),
+                    a.left_out.end(),
+                    b.left_out.begin(),
+                    b.left_out.end(),
+                    [](const WindowsLeftOut& one, const WindowsLeftOut& other) {
+                      return one.reason == other.reason && one.count == other.count;
+                    });
 }
 
 std::string query(const std::string& path, const std::string& sql) {

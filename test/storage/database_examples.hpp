@@ -30,11 +30,15 @@ CalibrationState state(unsigned seed, Eigen::Index parameters);
 /// samples 1 to `samples`, its estimates of as many parameters.
 CycleReport report(unsigned seed, std::uint32_t samples, Eigen::Index parameters);
 
+/// What a motion told.
+MotionSummary summary();
+
 /// Equal in every bit of every number.
 bool isSame(const Sample& a, const Sample& b);
 bool isSame(const MotionSlice& a, const MotionSlice& b);
 bool isSame(const CalibrationState& a, const CalibrationState& b);
 bool isSame(const CycleReport& a, const CycleReport& b);
+bool isSame(const MotionSummary& a, const MotionSummary& b);
 
 /// Answer of SQLite to one query, as a program of its own would see it: first column, a line per
 /// row.

@@ -225,6 +225,25 @@ TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
   EXPECT_FALSE(session.calibration().motionEvidence());
 }
 
+// A node that is started again says of a motion what it said before.
+TEST_F(LiveSessionTest, JudgesAMotionAfterARestartAsBefore) {
+  MovingRotor moving;
+  moving.truth = scenarios::paperTruth();
+  moving.duration = 12.0;
+  GradedCalibration before;
+  {
+    LiveSession session = open();
+    session.setMotion(std::make_shared<const MotionRecording>(noisy(moving.record())));
+    const CycleReport report = session.run({Cycle::kMotion}, kDate);
+    ASSERT_TRUE(report.success) << report.message;
+    before = session.grade();
+    ASSERT_NE(before.reason.find("held-out samples agree"), std::string::npos) << before.reason;
+  }
+  const LiveSession session = open();
+  EXPECT_EQ(session.grade().grade, before.grade);
+  EXPECT_EQ(session.grade().reason, before.reason);
+}
+
 // A retry after an answer that was lost: another dwell of the same pose differs in its stamp.
 TEST_F(LiveSessionTest, StoresTheSameCaptureOnce) {
   LiveSession session = open();

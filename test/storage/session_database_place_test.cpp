@@ -194,6 +194,9 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
 
 /// Cycles as formats before 6 had them.
 constexpr char kWithoutDoubts[] =
+    "DROP TABLE cycle_motions;"
+    "DROP TABLE cycle_windows_left_out;"
+    "DROP TABLE cycle_windows_held_out;"
     "DROP TABLE cycle_doubts;"
     "ALTER TABLE cycles DROP COLUMN contradicted;"
     "ALTER TABLE cycles DROP COLUMN degrees_of_freedom;"
@@ -242,7 +245,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "6");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "7");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -317,6 +320,22 @@ TEST_F(PlaceTest, ADatabaseOfTheFifthFormatKeepsDoubts) {
   database.addCycle(report, kDate);
   ASSERT_EQ(database.cyclesOfRevision(0).size(), 1U) << "nobody knows when the first one was run";
   EXPECT_TRUE(database_examples::isSame(database.cyclesOfRevision(0)[0], report));
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
+  CycleReport report = database_examples::report(1, 0, 73);
+  SessionDatabase(path(), identity()).addCycle(report, kDate);
+  database_examples::change(
+      path(),
+      "DROP TABLE cycle_motions; DROP TABLE cycle_windows_left_out;"
+      "DROP TABLE cycle_windows_held_out; PRAGMA user_version = 6");
+  SessionDatabase database(path(), identity());
+  EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
+  EXPECT_FALSE(database.lastCycle()->motion);
+  report.cycle = Cycle::kMotion;
+  report.motion = database_examples::summary();
+  database.addCycle(report, kDate);
+  EXPECT_TRUE(database_examples::isSame(*database.lastCycle()->motion, *report.motion));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 
@@ -30,6 +31,8 @@ struct MovingRotor {
   double current_delay = 0.0;  ///< [s]
   double tracker_delay = 0.0;  ///< [s]
   bool has_tracker = true;
+  std::size_t coil_that_is_off = 0;  ///< has no current
+  double off_until = 0.0;            ///< [s]
 
   static Eigen::Matrix3d reference(double t) {
     const Eigen::Vector3d q(0.25 * std::sin(1.9 * t) + 0.1 * std::sin(3.1 * t),
@@ -70,8 +73,11 @@ struct MovingRotor {
                   100.0 * (R.transpose() * rotationLog(reference(t) * R.transpose())));
       const Eigen::Matrix3Xd Q = torquePerAmpere(curve, drawn, R);
       const Eigen::VectorXd wish = excitation(t, coils);
-      const Eigen::VectorXd current =
+      Eigen::VectorXd current =
           wish + Q.completeOrthogonalDecomposition().solve(torque - Q * wish);
+      if (t < off_until) {
+        current[static_cast<Eigen::Index>(coil_that_is_off)] = 0.0;
+      }
       angles = jointAngles(jointGeometry(truth.joints), R, angles).value();
       recorder.add(JointMeasurement{stamp(t), angles});
       recorder.add(CurrentMeasurement{stamp(t + current_delay), current});

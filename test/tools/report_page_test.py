@@ -291,7 +291,7 @@ class ReportPage(unittest.TestCase):
         motion = {"duration": 2.5, "windows": 12, "windows_used": 10, "orientations": 600, "orientations_rejected": 3}
         motion["windows_left_out"] = [{"count": 2, "reason": "something else moved the rotor"}]
         motion.update(joint_stddev=[2e-5, 3e-5, 4e-5], current_stddev=1e-3, orientation_stddev=5e-4)
-        motion.update(commands={"delay": 1.5e-3, "time_constant": 2e-3})
+        motion.update(commands={"delay": 1.5e-3, "time_constant": 2e-3, "stddev": 12e-6})
         motion.update(window_chi_square=1.02, orientation_chi_square=0.97)
         cycle = dict(next(one for one in self.figures["cycles"] if one["success"]), cycle="motion", title="Motion", motion=motion)
         estimate = {"initial": 0.0, "observable": True}
@@ -303,7 +303,7 @@ class ReportPage(unittest.TestCase):
         residual = {"quantity": "torque", "unit": "N·m", "standardized": 1.0}
         cycle["residuals"] = [dict(residual, id=n, residual=1e-4 * n, rejected=n > 10, reason="") for n in range(1, 13)]
         page = self.render(dict(self.figures, cycles=[*self.figures["cycles"], cycle]), "motion")
-        for part in ("10 of 12", "something else moved the rotor", "600 (3 rejected)", "0.02 mrad, 0.03 mrad, 0.04 mrad", "1.02", "1.5 ms later"):
+        for part in ("10 of 12", "something else moved the rotor", "600 (3 rejected)", "0.02 mrad, 0.03 mrad, 0.04 mrad", "1.02", "3.500 ± 0.012 ms later", "some 2 ms"):
             self.assertIn(part, page.text)
         self.assertEqual(page.row("rotor_inertia/zz")[1:], ["0.0014300 ± 0.0000010 kg·m²", "0.0013", "+10.00 %"])
         self.assertIn("0.000420 ± 0.000025 N·m", page.row("coulomb_friction"))

@@ -14,7 +14,8 @@ namespace sac {
 struct CommandResponse {
   double delay = 0.0;         ///< of what was commanded, by the stamps of both [s]
   double lag = 0.0;           ///< time constant [s]
-  double delay_stddev = 0.0;  ///< of what the steps between samples do to a delay [s]
+  /// Of both together, and so of what the steps between samples do to a delay [s].
+  double delay_stddev = 0.0;
 };
 
 /// Streams of one span of time, each with stamps that increase strictly.

@@ -10,10 +10,25 @@
 
 namespace sac {
 
-/// Coils that carried no current, by their index, ascending: what was read of them is hardly more
-/// than the noise of the reading. Such readings would tell of an axis though nothing flowed: noise
-/// that counts as current turns the axis to where it makes no torque. Empty where all are alike.
-/// (doc/motion.md, Silent coils)
+/// Coils that carried no current: what was read of them is hardly more than the noise of the
+/// reading. Such readings would tell of an axis though nothing flowed: noise that counts as current
+/// turns the axis to where it makes no torque. (doc/motion.md, Silent coils)
+class SilentCoils {
+ public:
+  /// More currents, of the same coils.
+  void add(const MotionStreams& streams);
+  /// By their index, ascending. None where all are alike.
+  std::vector<std::size_t> found() const;
+
+ private:
+  // Sums over the readings of each coil [A²].
+  Eigen::ArrayXd squares_;
+  Eigen::ArrayXd third_;  ///< of third differences
+  double readings_ = 0.0;
+  double differences_ = 0.0;
+};
+
+/// Those of a recording.
 std::vector<std::size_t> silentCoils(const MotionRecording& recording);
 
 /// Coordinates that only these coils tell of: their axes, and their strengths where they are

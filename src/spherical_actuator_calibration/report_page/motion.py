@@ -45,8 +45,10 @@ def _noise(motion):
         ("Tracker", with_unit(motion["orientation_stddev"], "rad", 2)),
     ]
     if "commands" in motion:
-        delay, lag = (significant(1e3 * motion["commands"][key], 3) for key in ("delay", "time_constant"))
-        rows.append(("Currents follow commands", f"{delay} ms later, with a time constant of {lag} ms"))
+        told = {key: 1e3 * value for key, value in motion["commands"].items()}
+        late = plus_minus(told["delay"] + told["time_constant"], told["stddev"])
+        lag = significant(told["time_constant"], 2)
+        rows.append(("Currents follow commands", f"{late} ms later in the mean, with a time constant of some {lag} ms"))
     return rows
 
 

@@ -1,0 +1,74 @@
+#include "motion_doubts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+
+namespace sac {
+namespace {
+
+/// What hands do comes now and then. What a model lacks, as the strength of a coil, comes back all
+/// the time, and without the windows where it is largest the others may fit; a clock that jumps
+/// leaves a part that fits as well as the other.
+std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
+  constexpr double kMany = 0.06;
+  constexpr std::size_t kOften = 4;
+  constexpr double kMost = 0.25;
+  std::size_t count = 0;
+  std::size_t times = 0;
+  bool was_rejected = false;
+  for (const ObservationResidual& window : windows) {
+    count += window.rejected ? 1 : 0;
+    times += window.rejected && !was_rejected ? 1 : 0;
+    was_rejected = window.rejected;
+  }
+  const double share = static_cast<double>(count) / static_cast<double>(windows.size());
+  if (!(share > kMost || (times >= kOften && share >= kMany))) {
+    return {};
+  }
+  return format(
+      "%zu of %zu windows, at %zu times, contradict the others, and that may bias the parameters: "
+      "keep hands and cables off the rotor, check the clock that stamps the currents, or model what "
+      "is missing, as coil_gains.",
+      count,
+      windows.size(),
+      times);
+}
+
+/// What the tracker says does not fit, over windows: it drifts, or its clock does.
+std::string driftInWords(const MotionSummary& summary) {
+  constexpr double kLarge = 2.25;  // as that of rests
+  constexpr double kSignificance = 1e-3;
+  const double freedom = 3.0 * static_cast<double>(summary.used);
+  const double chi_square = summary.orientation_chi_square;
+  if (!(chi_square > kLarge) || chi_square * freedom <= chiSquareLimit(freedom, kSignificance)) {
+    return {};
+  }
+  return format(
+      "Orientations, in the mean of a window, are %.1f times their noise off: the tracker or its "
+      "clock drifts or jumps, or a joint sensor is not as modelled, and that may bias the "
+      "parameters.",
+      std::sqrt(chi_square));
+}
+
+}  // namespace
+
+std::vector<std::string> motionDoubts(const MotionEstimate& found) {
+  // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
+  constexpr double kLarge = 1.1;
+  std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
+                                 driftInWords(found.summary)};
+  if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
+    words.push_back(
+        format("Residuals are %.2f times their noise: something acts that is not modelled, as a "
+               "hand or a cable, and may bias the parameters.",
+               std::sqrt(found.summary.window_chi_square)));
+  }
+  words.erase(std::remove(words.begin(), words.end(), std::string()), words.end());
+  return words;
+}
+
+}  // namespace sac

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+
+namespace sac {
+
+/// What may have biased an estimate from motion, in sentences: such a calibration is usable at most.
+/// Empty: nothing. (doc/motion.md, How)
+std::vector<std::string> motionDoubts(const MotionEstimate& found);
+
+}  // namespace sac
