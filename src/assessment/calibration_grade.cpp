@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -123,9 +124,12 @@ class CalibrationGrader::Examiner {
   }
 
   /// A sentence as a part of another one.
-  static std::string clause(const std::string& sentence) {
-    const std::size_t end = sentence.find_last_not_of('.');
-    return sentence.substr(0, end == std::string::npos ? 0 : end + 1);
+  static std::string clause(std::string sentence) {
+    sentence.erase(sentence.find_last_not_of('.') + 1);
+    if (!sentence.empty()) {
+      sentence.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(sentence.front())));
+    }
+    return sentence;
   }
 
   /// Whether poles and coils were calibrated one after the other only: each cycle has few samples

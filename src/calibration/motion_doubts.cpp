@@ -29,13 +29,14 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
   if (!(share > kMost || (times >= kOften && share >= kMany))) {
     return {};
   }
+  const std::string when = times == 1 ? "in a row" : format("at %zu times", times);
   return format(
-      "%zu of %zu windows, at %zu times, contradict the others, and that may bias the parameters: "
+      "%zu of %zu windows, %s, contradict the others, and that may bias the parameters: "
       "keep hands and cables off the rotor, check the clock that stamps the currents, or model what "
       "is missing, as coil_gains.",
       count,
       windows.size(),
-      times);
+      when.c_str());
 }
 
 /// What the tracker says does not fit, over windows: it drifts, or its clock does.

@@ -116,6 +116,12 @@ std::string refusalOf(const MotionSpan& span,
       return "joint readings are missing";
     }
   }
+  // Sums of fewer are no integrals of currents that change from one to the next.
+  constexpr double kLeastCurrents = 10.0;
+  const double duration = span.track.time(window.last) - span.track.time(window.first);
+  if (duration < kLeastCurrents * span.current_step) {
+    return "fewer than ten currents are in it";
+  }
   const double begin = span.track.time(window.first) - options.largest_delay;
   const double end = span.track.time(window.last) + options.largest_delay;
   if (!hasCurrents(span, begin, end)) {

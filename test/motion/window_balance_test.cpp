@@ -175,6 +175,26 @@ TEST_F(WindowBalanceTest, WindowsWithoutCurrentsAreCounted) {
   EXPECT_EQ(left_out[0].count, 2U);
 }
 
+TEST_F(WindowBalanceTest, WindowsOfFewCurrentsAreCounted) {
+  const MotionStreams& all = recording_.spans.front();
+  for (const std::size_t every : {20U, 30U}) {  // 50 and 33 Hz
+    MotionStreams some = all;
+    some.current_stamps.clear();
+    for (std::size_t n = 0; n < all.current_stamps.size(); n += every) {
+      some.currents.row(static_cast<Eigen::Index>(some.current_stamps.size())) =
+          all.currents.row(static_cast<Eigen::Index>(n));
+      some.current_stamps.push_back(all.current_stamps[n]);
+    }
+    some.currents.conservativeResize(static_cast<Eigen::Index>(some.current_stamps.size()),
+                                     Eigen::NoChange);
+    std::vector<WindowsLeftOut> left_out;
+    const std::vector<MotionWindow> windows = cutWindows({MotionSpan(some)}, options_, left_out);
+    const bool is_refused = !left_out.empty() && left_out[0].reason.rfind("fewer than ten", 0) == 0;
+    EXPECT_EQ(is_refused, every == 30U);
+    EXPECT_EQ(windows.empty(), every == 30U);
+  }
+}
+
 /// A rotor at a tilt whose joints 1 and 3 turn steadily, without currents.
 MotionRecording steadyMotion(const Eigen::Vector3d& begin, const Eigen::Vector3d& rates) {
   MotionRecorder recorder(scenarios::paperNominal().coils.size());
