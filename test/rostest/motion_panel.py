@@ -61,7 +61,7 @@ class MotionPanel(ViewedCase):
         cls.node = CalibrationNode(os.path.join(folder.name, "calibration"))
         cls.addClassCleanup(cls.node.stop)
         cls.client.start(cls.node)
-        view = Launch(launch_file("view.launch"), environment=cls.make_screen())
+        view = Launch(launch_file("view.launch"), environment=cls.make_screen(), view=cls.view)
         cls.addClassCleanup(view.stop)
         cls.wait_for_panel()
 

@@ -1,7 +1,9 @@
 """The emulated laboratory with rviz on a screen that nobody sees."""
 
 import os
+import re
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -87,10 +89,27 @@ class ViewedCase(unittest.TestCase):
 
     @classmethod
     def make_screen(cls):
-        """The environment of what is shown on it."""
+        """The environment of what is shown on it, by `view`."""
         cls.screen = Screen()
         cls.addClassCleanup(cls.screen.stop)
+        cls.view = cls.slow_view()
         return {"DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"}
+
+    @classmethod
+    def slow_view(cls):
+        """The view with few pictures a second: nobody sees them, and without a graphics card half a processor draws
+        them."""
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        config = os.path.join(os.path.dirname(launch_file("view.launch")), "..", "config")
+        with open(os.path.join(config, "view.rviz"), encoding="utf-8") as file:
+            text, count = re.subn(r"Frame Rate: \d+", "Frame Rate: 4", file.read())
+        if count != 1:
+            raise AssertionError("the view has no rate of its pictures")
+        path = os.path.join(folder.name, "view.rviz")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
 
     @classmethod
     def wait_for_panel(cls):
@@ -111,9 +130,8 @@ class ViewedCase(unittest.TestCase):
     def start_rviz(cls):
         """As view.launch does."""
         print("rviz ended before it had a panel; it is started once more.")
-        view = os.path.join(os.path.dirname(launch_file("view.launch")), "..", "config", "view.rviz")
         rviz = subprocess.Popen(
-            ["rosrun", "rviz", "rviz", "-d", view, "-f", "stator", f"__ns:={NAMESPACE}", "__name:=rviz"],
+            ["rosrun", "rviz", "rviz", "-d", cls.view, "-f", "stator", f"__ns:={NAMESPACE}", "__name:=rviz"],
             env={**os.environ, "DISPLAY": cls.screen.display, "LIBGL_ALWAYS_SOFTWARE": "1"},
         )
         cls.addClassCleanup(rviz.wait)
@@ -152,4 +170,4 @@ class ViewedLabCase(ViewedCase, LabCase):
 
     @classmethod
     def make_lab(cls, **arguments):
-        super().make_lab(environment=cls.make_screen(), rviz=True, **arguments)
+        super().make_lab(environment=cls.make_screen(), rviz=True, view=cls.view, **arguments)
