@@ -127,7 +127,8 @@ class CalibrationGrader::Examiner {
   static std::string clause(std::string sentence) {
     sentence.erase(sentence.find_last_not_of('.') + 1);
     if (!sentence.empty()) {
-      sentence.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(sentence.front())));
+      sentence.front() =
+          static_cast<char>(std::tolower(static_cast<unsigned char>(sentence.front())));
     }
     return sentence;
   }

@@ -32,7 +32,8 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
   const std::string when = times == 1 ? "in a row" : format("at %zu times", times);
   return format(
       "%zu of %zu windows, %s, contradict the others, and that may bias the parameters: "
-      "keep hands and cables off the rotor, check the clock that stamps the currents, or model what "
+      "keep hands and cables off the rotor, check the clock that stamps the currents, or model "
+      "what "
       "is missing, as coil_gains.",
       count,
       windows.size(),

@@ -7,8 +7,8 @@
 
 namespace sac {
 
-/// What may have biased an estimate from motion, in sentences: such a calibration is usable at most.
-/// Empty: nothing. (doc/motion.md, How)
+/// What may have biased an estimate from motion, in sentences: such a calibration is usable at
+/// most. Empty: nothing. (doc/motion.md, How)
 std::vector<std::string> motionDoubts(const MotionEstimate& found);
 
 }  // namespace sac

@@ -2,7 +2,7 @@
 
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
-#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "spherical_actuator_calibration/motion/motion_streams.hpp"
 
 namespace sac {
 
@@ -30,7 +30,7 @@ class CurrentSteps {
   double second_ = 0.0;   ///< with those before that
   double duration_ = 0.0;
   double intervals_ = 0.0;
-  double values_ = 0.0;  ///< in each sum
+  double values_ = 0.0;     ///< in each sum
   double stretches_ = 0.0;  ///< of some samples each
   double stepping_ = 0.0;   ///< those that show steps
 };

@@ -133,6 +133,25 @@ std::vector<MotionSlice> LiveSession::motionWindows() const {
   return windows;
 }
 
+StoredPlan LiveSession::plan() const {
+  StoredPlan plan = database_.plan();
+  const std::size_t coils = modelledCoils(session_.model().space().nominal());
+  for (const StoredPose& pose : plan) {
+    for (const CoilPattern& pattern : pose.patterns) {
+      const bool has_all = std::all_of(
+          pattern.begin(), pattern.end(), [&](const SignedCoil& one) { return one.coil < coils; });
+      if (!has_all) {
+        throw DataError(database_.path() + ": the plan has the coils " + patternText(pattern) +
+                        " of " + std::to_string(coils) + ".");
+      }
+    }
+    if (!pose.joint_position.allFinite()) {
+      throw DataError(database_.path() + ": the plan has a pose without angles.");
+    }
+  }
+  return plan;
+}
+
 CycleReport LiveSession::run(const CycleRequest& request, const std::string& date) {
   // What cannot be stored must not be in force.
   CalibrationState before = session_.state();

@@ -38,8 +38,8 @@ void insertHeldOut(const SQLite::Database& database,
                    std::int64_t cycle,
                    const std::vector<ObservationResidual>& residuals) {
   RowWriter row(database,
-                "INSERT INTO cycle_windows_held_out (cycle, position, window, torque_x, torque_y, "
-                "torque_z, standardized, rejected) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+                "INSERT INTO cycle_windows_held_out (cycle, position, window, error_x, error_y, "
+                "error_z, standardized, rejected) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t n = 0; n < residuals.size(); ++n) {
     row.put(cycle).put(n).put(residuals[n].observation.sample);
     for (const double torque : residuals[n].residual) {
@@ -53,7 +53,7 @@ void readHeldOut(const SQLite::Database& database,
                  std::int64_t cycle,
                  std::vector<ObservationResidual>& residuals) {
   RowReader row(database,
-                "SELECT window, torque_x, torque_y, torque_z, standardized, rejected "
+                "SELECT window, error_x, error_y, error_z, standardized, rejected "
                 "FROM cycle_windows_held_out WHERE cycle = ? ORDER BY position",
                 cycle);
   while (row.next()) {
@@ -71,22 +71,22 @@ void readHeldOut(const SQLite::Database& database,
 }  // namespace
 
 void insert(const SQLite::Database& database, std::int64_t cycle, const MotionSummary& summary) {
-  RowWriter row(database,
-                "INSERT INTO cycle_motions (cycle, duration, windows, used, window_values, "
-                "orientations, orientations_rejected, joint_1_stddev, joint_2_stddev, "
-                "joint_3_stddev, current_stddev, orientation_stddev, response_delay, response_lag, "
-                "response_delay_stddev, held_out_windows, held_out_rejected, held_out_orientations, "
-                "held_out_orientation_rms, held_out_torque_rms, held_out_reduced_chi_square, "
-                "held_out_probability, window_chi_square, orientation_chi_square) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  RowWriter row(
+      database,
+      "INSERT INTO cycle_motions (cycle, duration, windows, used, window_values, "
+      "orientations, orientations_rejected, joint_1_stddev, joint_2_stddev, "
+      "joint_3_stddev, current_stddev, orientation_stddev, response_delay, response_lag, "
+      "response_delay_stddev, held_out_windows, held_out_rejected, held_out_orientations, "
+      "held_out_orientation_rms, held_out_torque_rms, held_out_reduced_chi_square, "
+      "held_out_probability, window_chi_square, orientation_chi_square) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.put(cycle).put(summary.duration).put(summary.windows).put(summary.used).put(summary.values);
   row.put(summary.orientations).put(summary.orientations_rejected);
   for (const double stddev : summary.joint_stddev) {
     row.put(stddev);
   }
   row.put(summary.current_stddev).put(summary.orientation_stddev);
-  const CommandResponse response =
-      summary.response.value_or(CommandResponse{kNone, kNone, kNone});
+  const CommandResponse response = summary.response.value_or(CommandResponse{kNone, kNone, kNone});
   row.put(response.delay).put(response.lag).put(response.delay_stddev);
   const HeldOutMotion& held_out = summary.held_out;
   row.put(held_out.windows).put(held_out.rejected).put(held_out.orientations);

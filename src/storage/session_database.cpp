@@ -4,6 +4,7 @@
 
 #include "cycle_table.hpp"
 #include "motion_table.hpp"
+#include "plan_table.hpp"
 #include "revision_table.hpp"
 #include "row_access.hpp"
 #include "sample_table.hpp"
@@ -102,6 +103,7 @@ std::size_t SessionDatabase::clearSamples(const std::string& date) {
   std::size_t count = 0;
   tables_->connection.write("the samples were not cleared", [&](SQLite::Database& database) {
     count = sample_table::clear(database, date);
+    plan_table::replace(database, {});
   });
   return count;
 }
@@ -126,6 +128,17 @@ std::vector<MotionSlice> SessionDatabase::motion() const {
 
 void SessionDatabase::forgetMotion() {
   tables_->connection.write("the motion was not forgotten", motion_table::clear);
+}
+
+void SessionDatabase::setPlan(const StoredPlan& plan) {
+  tables_->connection.write(notStored("the plan"), [&](SQLite::Database& database) {
+    plan_table::replace(database, plan);
+  });
+}
+
+StoredPlan SessionDatabase::plan() const {
+  return tables_->connection.read(kNotRead,
+                                  [this] { return plan_table::find(tables_->database()); });
 }
 
 void SessionDatabase::addCycle(const CycleReport& report, const std::string& date) {
@@ -154,6 +167,9 @@ Revision SessionDatabase::addCycle(const CycleReport& report,
         const std::int64_t cycle =
             cycle_table::insert(database, report, before, tables_->software, date);
         revision_table::insert(database, revision, {before, cycle});
+        if (refined) {
+          plan_table::replace(database, {});
+        }
       });
   return revision;
 }

@@ -98,10 +98,24 @@ CREATE TABLE cycle_windows_held_out (
   cycle INTEGER NOT NULL REFERENCES cycles (id),
   position INTEGER NOT NULL,
   window INTEGER NOT NULL,
-  torque_x ANY, torque_y ANY, torque_z ANY,
+  error_x ANY, error_y ANY, error_z ANY,
   standardized ANY,
   rejected INTEGER NOT NULL,
   PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+constexpr char kPlan[] = R"sql(
+CREATE TABLE planned_poses (
+  position INTEGER PRIMARY KEY,
+  joint_1 ANY NOT NULL, joint_2 ANY NOT NULL, joint_3 ANY NOT NULL
+) STRICT;
+
+CREATE TABLE planned_patterns (
+  pose INTEGER NOT NULL REFERENCES planned_poses (position),
+  position INTEGER NOT NULL,
+  coils TEXT NOT NULL,
+  PRIMARY KEY (pose, position)
 ) STRICT, WITHOUT ROWID;
 )sql";
 
@@ -279,6 +293,7 @@ void upgradeSessionSchema(SQLite::Database& database) {
     database.exec(kDoubts);
   }
   database.exec(kMotionSummaries);
+  database.exec(kPlan);
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
@@ -288,6 +303,7 @@ void createSessionSchema(SQLite::Database& database) {
   database.exec(kMotionWindows);
   database.exec(kDoubts);
   database.exec(kMotionSummaries);
+  database.exec(kPlan);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }

@@ -114,10 +114,9 @@ TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
 }
 
 bool isDoubted(const CycleReport& report, const std::string& begin) {
-  return std::any_of(
-      report.doubts.begin(), report.doubts.end(), [&](const std::string& doubt) {
-        return doubt.rfind(begin, 0) == 0;
-      });
+  return std::any_of(report.doubts.begin(), report.doubts.end(), [&](const std::string& doubt) {
+    return doubt.rfind(begin, 0) == 0;
+  });
 }
 
 // Either part fits as well without the other one.

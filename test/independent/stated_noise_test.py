@@ -26,7 +26,7 @@ class StatedNoise(unittest.TestCase):
         self.assertLessEqual(result.good(), 1, result.reasons)
 
     def test_orientations_with_a_third_of_their_noise(self):
-        count, result = self.told("orientation_noise_third", "The orientations scatter by only 0.3")
+        count, result = self.told("orientation_noise_third", "the orientations scatter by only 0.3")
         self.assertGreaterEqual(count, 2, result.reasons)
         self.assertEqual(result.good(), 0, result.reasons)
 

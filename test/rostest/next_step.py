@@ -70,7 +70,7 @@ class NextStep(unittest.TestCase):
         self.says("3 of 10 are held")
         self.assertNotIn("Call calibrate_joint", self.client.latest("status").next_step)
 
-    def test_a_plan_is_followed(self):
+    def test_a_plan_is_followed_also_after_the_node_was_killed(self):
         rospy.wait_for_service(NODE + "/plan_poses")
         plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)(cycle="joint", max_poses=4)
         self.assertTrue(plan.success, plan.message)
@@ -78,6 +78,9 @@ class NextStep(unittest.TestCase):
             self.says(f"Go on with the plan, {number} of {len(plan.poses)} poses are measured")
             self.says(f"joints {pose.joint_position[0]:.2f},")
             self.capture(pose.joint_position)
+            if number == 1:
+                self.node.kill()
+                self.client.start(self.node)
         wait_for(lambda: "plan" not in self.client.latest("status").next_step, "the end of the plan")
 
     def test_forgotten_samples(self):

@@ -13,7 +13,6 @@
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
-#include "support/moving_rotor.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -203,45 +202,6 @@ TEST_F(LiveSessionTest, TellsOfARefusedCycleAndOfDoubtsWhenItGoesOn) {
   });
   ASSERT_EQ(refused.find("Do not use this calibration"), 0U) << refused;
   EXPECT_EQ(toldOf(open()), refused);
-}
-
-TEST_F(LiveSessionTest, RemembersWhatAMotionTold) {
-  {
-    LiveSession session = open();
-    addAll(session);
-    MovingRotor moving;
-    moving.truth = scenarios::paperTruth();
-    session.setMotion(std::make_shared<const MotionRecording>(moving.record()));
-    ASSERT_TRUE(session.run({Cycle::kMotion}, kDate).success);
-    ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
-  }
-  LiveSession session = open();
-  const CycleReport report = session.run({Cycle::kRefine}, kDate);
-  ASSERT_TRUE(report.success) << report.message;
-  EXPECT_NE(report.message.find("both agree"), std::string::npos) << report.message;
-  session.restore(2, kDate);
-  EXPECT_TRUE(session.calibration().motionEvidence());
-  session.restore(0, kDate);
-  EXPECT_FALSE(session.calibration().motionEvidence());
-}
-
-// A node that is started again says of a motion what it said before.
-TEST_F(LiveSessionTest, JudgesAMotionAfterARestartAsBefore) {
-  MovingRotor moving;
-  moving.truth = scenarios::paperTruth();
-  moving.duration = 12.0;
-  GradedCalibration before;
-  {
-    LiveSession session = open();
-    session.setMotion(std::make_shared<const MotionRecording>(noisy(moving.record())));
-    const CycleReport report = session.run({Cycle::kMotion}, kDate);
-    ASSERT_TRUE(report.success) << report.message;
-    before = session.grade();
-    ASSERT_NE(before.reason.find("held-out samples agree"), std::string::npos) << before.reason;
-  }
-  const LiveSession session = open();
-  EXPECT_EQ(session.grade().grade, before.grade);
-  EXPECT_EQ(session.grade().reason, before.reason);
 }
 
 // A retry after an answer that was lost: another dwell of the same pose differs in its stamp.

@@ -197,6 +197,8 @@ constexpr char kWithoutDoubts[] =
     "DROP TABLE cycle_motions;"
     "DROP TABLE cycle_windows_left_out;"
     "DROP TABLE cycle_windows_held_out;"
+    "DROP TABLE planned_patterns;"
+    "DROP TABLE planned_poses;"
     "DROP TABLE cycle_doubts;"
     "ALTER TABLE cycles DROP COLUMN contradicted;"
     "ALTER TABLE cycles DROP COLUMN degrees_of_freedom;"
@@ -328,7 +330,8 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
   database_examples::change(
       path(),
       "DROP TABLE cycle_motions; DROP TABLE cycle_windows_left_out;"
-      "DROP TABLE cycle_windows_held_out; PRAGMA user_version = 6");
+      "DROP TABLE cycle_windows_held_out; DROP TABLE planned_patterns; DROP TABLE planned_poses;"
+      "PRAGMA user_version = 6");
   SessionDatabase database(path(), identity());
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
   EXPECT_FALSE(database.lastCycle()->motion);

@@ -90,6 +90,32 @@ TEST_F(SessionDatabaseTest, KeepsEveryBitOfAMotion) {
   EXPECT_TRUE(open().motion().empty());
 }
 
+TEST_F(SessionDatabaseTest, KeepsAPlanUntilItIsDone) {
+  const StoredPlan plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}, {{2, -1}, {23, 1}}}},
+                        {Eigen::Vector3d(0.4, 0.5, -0.0), {}}};
+  open().setPlan({{Eigen::Vector3d::Zero(), {{{7, 1}}}}});
+  open().setPlan(plan);
+  EXPECT_EQ(open().plan(), plan);
+  CycleReport report = database_examples::report(1, 0, kParameters);
+  const CalibrationState state = database_examples::state(1, kParameters);
+  open().addCycle(report, state, false, kDate);
+  EXPECT_EQ(open().plan(), plan);
+  open().addCycle(report, state, true, kDate);
+  EXPECT_TRUE(open().plan().empty());
+  open().setPlan(plan);
+  open().clearSamples(kDate);
+  EXPECT_TRUE(open().plan().empty());
+}
+
+TEST_F(SessionDatabaseTest, TellsOfAPlanThatIsNone) {
+  open().setPlan({{Eigen::Vector3d::Zero(), {{{7, 1}}}}});
+  for (const char* coils : {"", "8", "+0", "+8 coils", "+99999999999999999999"}) {
+    database_examples::change(path(),
+                              std::string("UPDATE planned_patterns SET coils = '") + coils + "'");
+    EXPECT_THROW(open().plan(), DataError) << coils;
+  }
+}
+
 TEST_F(SessionDatabaseTest, KeepsTheNewestWindowsInAFileThatDoesNotGrow) {
   constexpr unsigned kWindows = 600;
   constexpr std::uintmax_t kMost = 22'000'000;

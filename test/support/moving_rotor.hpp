@@ -73,8 +73,7 @@ struct MovingRotor {
                   100.0 * (R.transpose() * rotationLog(reference(t) * R.transpose())));
       const Eigen::Matrix3Xd Q = torquePerAmpere(curve, drawn, R);
       const Eigen::VectorXd wish = excitation(t, coils);
-      Eigen::VectorXd current =
-          wish + Q.completeOrthogonalDecomposition().solve(torque - Q * wish);
+      Eigen::VectorXd current = wish + Q.completeOrthogonalDecomposition().solve(torque - Q * wish);
       if (t < off_until) {
         current[static_cast<Eigen::Index>(coil_that_is_off)] = 0.0;
       }

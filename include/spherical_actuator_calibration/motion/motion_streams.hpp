@@ -12,8 +12,8 @@ namespace sac {
 
 /// How measured currents follow what was commanded: by a lag of first order.
 struct CommandResponse {
-  double delay = 0.0;         ///< of what was commanded, by the stamps of both [s]
-  double lag = 0.0;           ///< time constant [s]
+  double delay = 0.0;  ///< of what was commanded, by the stamps of both [s]
+  double lag = 0.0;    ///< time constant [s]
   /// Of both together, and so of what the steps between samples do to a delay [s].
   double delay_stddev = 0.0;
 };

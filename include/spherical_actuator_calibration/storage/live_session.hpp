@@ -60,6 +60,11 @@ class LiveSession {
   std::vector<MotionSlice> motionWindows() const;
   void forgetMotion() { database_.forgetMotion(); }
 
+  /// Remembers which poses are to be measured, until all samples are refined together or cleared.
+  void setPlan(const StoredPlan& plan) { database_.setPlan(plan); }
+  /// Throws DataError.
+  StoredPlan plan() const;
+
   /// What the cycle motion is run on; null: nothing. It is not stored.
   void setMotion(std::shared_ptr<const MotionRecording> motion) {
     session_.setMotion(std::move(motion));

@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/motion/motion_slice.hpp"
 #include "spherical_actuator_calibration/storage/revision.hpp"
+#include "spherical_actuator_calibration/storage/stored_plan.hpp"
 
 namespace sac {
 
@@ -53,7 +54,7 @@ class SessionDatabase {
   std::vector<Sample> samplesInUse() const;
   /// Marks a sample as removed; false when none in use has this id.
   bool removeSample(std::uint32_t id, const std::string& date);
-  /// Marks all samples in use as cleared; returns how many there were.
+  /// Marks all samples in use as cleared, and forgets the plan; returns how many there were.
   std::size_t clearSamples(const std::string& date);
   /// Larger than any id ever stored; 1 at first.
   std::uint32_t nextSampleId() const;
@@ -63,6 +64,11 @@ class SessionDatabase {
   /// That are kept, oldest first.
   std::vector<MotionSlice> motion() const;
   void forgetMotion();
+
+  /// Stores which poses are to be measured, in the place of an earlier plan.
+  void setPlan(const StoredPlan& plan);
+  /// Empty: none, or all samples were refined together or cleared since.
+  StoredPlan plan() const;
 
   /// Stores the report of a cycle that changed nothing. Its residuals name stored samples.
   void addCycle(const CycleReport& report, const std::string& date);

@@ -102,6 +102,21 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
   return true;
 }
 
+/// What of a plan is left to be measured; the caller holds the session, or is alone with it.
+void CalibrationNode::followPlan(const StoredPlan& poses) {
+  const CalibrationSession& calibration = session_.calibration();
+  plan_ = nullptr;
+  if (poses.empty()) {
+    return;
+  }
+  plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
+                                         calibration.model().space().joints() > 0);
+  for (const StoredPose& pose : poses) {
+    plan_->addPose(pose.joint_position, pose.patterns);
+  }
+  plan_->countAnew(calibration.samples());
+}
+
 // Planning takes seconds: it works on a copy, so that nothing waits for it.
 bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
                                 msg::PlanPoses::Response& response) {
@@ -127,13 +142,12 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    const CalibrationSession& calibration = session_.calibration();
-    plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
-                                           calibration.model().space().joints() > 0);
+    StoredPlan poses;
     for (const PlannedPose& pose : plan.poses) {
-      plan_->addPose(pose.joint_position, pose.excitations());
+      poses.push_back({pose.joint_position, pose.excitations()});
     }
-    plan_->countAnew(calibration.samples());
+    session_.setPlan(poses);
+    followPlan(poses);
     publishStatus();
   } catch (const std::exception& error) {
     response.success = 0;

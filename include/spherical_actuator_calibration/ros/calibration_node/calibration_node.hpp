@@ -73,6 +73,7 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  void followPlan(const StoredPlan& poses);
   void run(const CycleRequest& request,
            msg::Calibrate::Response& response,
            std::shared_ptr<const MotionRecording> motion = nullptr);
@@ -127,8 +128,8 @@ class CalibrationNode {
   LiveSession session_;
   std::deque<Sample> waiting_;  ///< captured by itself, not stored yet: the disk did not take it
   std::string last_error_;
-  /// That was asked for last, until it is done or out of use; nothing without one. Behind a
-  /// pointer, so that not all who use the node compile the planner.
+  /// That was asked for last, also before a restart, until it is done or out of use; nothing
+  /// without one. Behind a pointer, so that not all who use the node compile the planner.
   std::shared_ptr<PlanProgress> plan_;
   CalibrationTopics topics_;
   MotionWatch motion_;
