@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "current_steps.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {
 namespace {
