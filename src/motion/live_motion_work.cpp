@@ -61,7 +61,9 @@ LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
 /// All that is asked for, but what silent coils would tell of: that stays at the prior.
 void LiveMotionWork::chooseFree() {
   const std::vector<Eigen::Index> untold = coordinatesOfCoils(model_->space(), silent_);
-  x_(untold) = prior_.x(untold);
+  for (const Eigen::Index p : untold) {
+    x_[p] = prior_.x[p];
+  }
   free_.clear();
   std::set_difference(
       asked_.begin(), asked_.end(), untold.begin(), untold.end(), std::back_inserter(free_));

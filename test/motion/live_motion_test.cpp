@@ -175,9 +175,10 @@ TEST_F(LiveMotionTest, HoldsACoilUntilCurrentFlowsInIt) {
       const ParameterBelief& belief = live.estimate().belief;
       if (live.estimate().is_told && until < moving_.off_until) {
         ++held;
-        EXPECT_EQ(belief.x(of_coil), prior.x(of_coil));
-        EXPECT_EQ(Eigen::MatrixXd(belief.covariance(of_coil, of_coil)),
-                  Eigen::MatrixXd(prior.covariance(of_coil, of_coil)));
+        for (const Eigen::Index p : of_coil) {
+          EXPECT_EQ(belief.x[p], prior.x[p]);
+          EXPECT_EQ(belief.covariance(p, p), prior.covariance(p, p));
+        }
       }
     }
   });
