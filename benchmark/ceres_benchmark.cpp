@@ -130,9 +130,13 @@ void ceresRefine(benchmark::State& state, ceres::LinearSolverType type) {
     const ObservationEvaluator evaluator(problem, options);
     SharedPoint shared(evaluator, x);
     ceres::Problem::Options problem_options;
-    problem_options.evaluation_callback = &shared;
-    ceres::Problem solved(problem_options);
     ceres::Solver::Options solver = solverOptions(type);
+#if CERES_VERSION_MAJOR >= 2
+    problem_options.evaluation_callback = &shared;
+#else
+    solver.evaluation_callback = &shared;
+#endif
+    ceres::Problem solved(problem_options);
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (std::size_t n = 0; n < problem.observations.size(); ++n) {
       std::vector<double*> places;
