@@ -58,8 +58,11 @@ CalibratedDescription mappedStart(const CalibrationSession& session) {
   return start;
 }
 
-RefinedFit refined(const CalibrationSession& session, const EffectSelection& effects) {
+RefinedFit refined(const CalibrationSession& session,
+                   const EffectSelection& effects,
+                   int max_iterations) {
   CalibrationConfig config = session.config();
+  config.estimation.max_iterations = max_iterations;
   config.effects = effects;
   // A model that lacks an effect must neither be refused for its misfit, nor be spared the samples
   // that show it: only what is twenty standard deviations off is an outlier here.
@@ -107,6 +110,8 @@ std::vector<ParameterEstimate> valuesOf(const std::string& effect,
 /// Single effects that explain a misfit of the motion, the best first.
 std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& session,
                                                 const RefinedFit& unchanged) {
+  // What explains is found soon; what does not goes on for minutes.
+  constexpr int kMostIterations = 12;
   std::vector<std::pair<double, Diagnosis>> found;
   for (const std::string& effect : effectNames()) {
     if (session.config().effects.has(effect) || !canHaveEffect(session.start().actuator, effect) ||
@@ -115,7 +120,7 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
     }
     EffectSelection effects = session.config().effects;
     effects[effect] = true;
-    const RefinedFit fit = refined(session, effects);
+    const RefinedFit fit = refined(session, effects, kMostIterations);
     const ParameterSpace space(session.start().actuator, effects);
     const std::vector<ParameterEstimate> values = valuesOf(effect, space, fit.estimates);
     if (!fit.converged || !explains(fit.reduced_chi_square, unchanged.reduced_chi_square) ||
@@ -155,7 +160,8 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session) {
   if (!diagnoses.empty()) {
     return diagnoses;
   }
-  const RefinedFit unchanged = refined(session, session.config().effects);
+  const RefinedFit unchanged =
+      refined(session, session.config().effects, session.config().estimation.max_iterations);
   if (session.motion() != nullptr) {
     return unchanged.isBeyondChance() ? effectsThatExplainMotion(session, unchanged) : diagnoses;
   }

@@ -119,6 +119,11 @@ bool Estimator::fits() const {
 /// windows would be left out: they may be the ones that nothing held.
 bool Estimator::leavePushed() {
   constexpr int kMostRuns = 4;
+  // What fits so badly no run of windows explains: a push that large makes outliers of them.
+  constexpr double kHopeless = 9.0;
+  if (windowSquares() > kHopeless * windowFreedom()) {
+    return true;
+  }
   std::vector<WindowTerm>& windows = terms_.windows();
   const auto all = std::count_if(
       windows.begin(), windows.end(), [](const WindowTerm& term) { return !term.held_out; });
