@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <utility>
 
 #include "joint_track.hpp"
+#include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
 
@@ -33,8 +34,11 @@ SampleRange CommandComparison::after() const {
   return {begin, times_.size()};
 }
 
-double CommandComparison::lockstep() const {
-  std::complex<double> sum = 0.0;
+double CommandComparison::unseen() const {
+  constexpr std::size_t kPlaces = 200;
+  constexpr double kSeldom = 0.2;  // of what each had if all had alike
+  const double step = usualStep(command_times_);
+  std::vector<double> places(kPlaces, 0.0);
   double count = 0.0;
   std::size_t next = 0;
   for (const double time : times_) {
@@ -42,12 +46,28 @@ double CommandComparison::lockstep() const {
       ++next;
     }
     if (next > 0 && next < command_times_.size()) {
-      const double before = command_times_[next - 1];
-      sum += std::polar(1.0, 2.0 * M_PI * (time - before) / (command_times_[next] - before));
+      const double share = (time - command_times_[next - 1]) / step;
+      places[static_cast<std::size_t>(share * kPlaces) % kPlaces] += 1.0;
       count += 1.0;
     }
   }
-  return count > 0.0 ? std::abs(sum) / count : 0.0;
+  std::size_t longest = 0;
+  std::size_t empty = 0;
+  for (std::size_t n = 0; n < 2 * kPlaces; ++n) {
+    empty = places[n % kPlaces] < kSeldom * count / kPlaces ? empty + 1 : 0;
+    longest = std::max(longest, std::min(empty, kPlaces));
+  }
+  return step * static_cast<double>(longest) / kPlaces;
+}
+
+double CommandComparison::jitter() const {
+  constexpr double kMedianOfNormal = 0.6745;
+  const double step = usualStep(command_times_);
+  std::vector<double> apart;
+  for (std::size_t n = 1; n < command_times_.size(); ++n) {
+    apart.push_back(std::abs(command_times_[n] - command_times_[n - 1] - step));
+  }
+  return apart.empty() ? 0.0 : medianOf(std::move(apart)) / kMedianOfNormal / std::sqrt(2.0);
 }
 
 }  // namespace sac

@@ -45,8 +45,11 @@ class CommandComparison {
   /// Those after what the last command does.
   SampleRange after() const;
 
-  /// Whether currents are sampled at one place between two commands each time: 1; at all places: 0.
-  double lockstep() const;
+  /// The longest time between two commands at which currents are hardly ever sampled: where they
+  /// are always sampled at the same places that between two of these [s].
+  double unseen() const;
+  /// By how much commands come sooner or later than at even steps, as a standard deviation [s].
+  double jitter() const;
 
   /// Tells a visitor the changes from sample to sample, as measured and as expected, from one
   /// of a range to the next.

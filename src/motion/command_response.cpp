@@ -170,14 +170,31 @@ class MeanTaker {
   double longest_;  ///< interval without a hole [s]
 };
 
+/// From 0 where a lag is as long as the time between samples to 1 where it is half of that.
+double isOver(double between, double lag) {
+  return std::clamp(between / lag - 1.0, 0.0, 1.0);
+}
+
 /// Of a delay, by what is not as modelled: commands that come now sooner, now later, lags of higher
-/// order. Currents that are sampled at one place between two commands hide it.
+/// order. Where currents are always sampled at the same places between two commands, and a lag is
+/// over between two of these, nothing shows it; of commands that come at uneven times the step
+/// itself is then anywhere there, and the lag seems longer than it is.
 double modelStddev(const CommandComparison& comparison, const Agreement& agreement, double lag) {
   constexpr double kPerMisfit = 0.25;
-  constexpr double kPerInterval = 0.09;
+  constexpr double kHidden = 0.09;
+  constexpr double kAnywhere = 0.29;  // 1 / √12
+  constexpr double kUneven = 0.01;    // of what is unseen
+  constexpr double kLonger = 2.0;
   constexpr double kLeast = 3e-6;  // [s]
-  const double by_lockstep = kPerInterval * comparison.lockstep() * usualStep(comparison.times());
-  return std::max({kPerMisfit * agreement.misfit() * lag, by_lockstep, kLeast});
+  const double unseen = comparison.unseen();
+  const double jitter = comparison.jitter();
+  const double by_misfit = std::max(kLeast, kPerMisfit * agreement.misfit() * lag);
+  if (jitter < kUneven * unseen) {
+    return std::max(by_misfit, kHidden * unseen * isOver(unseen, lag));
+  }
+  return std::max({by_misfit,
+                   kAnywhere * unseen * isOver(kLonger * unseen, lag),
+                   jitter * isOver(usualStep(comparison.times()), lag)});
 }
 
 /// Of the delay of currents that count as they were sampled.
