@@ -76,10 +76,20 @@ void insertEstimates(const SQLite::Database& database, std::int64_t id, const Cy
   }
 }
 
+/// Windows of motion are no samples.
+const char* residualTable(Cycle cycle) {
+  return cycle == Cycle::kMotion ? "cycle_window_residuals" : "cycle_residuals";
+}
+const char* residualColumn(Cycle cycle) {
+  return cycle == Cycle::kMotion ? "window" : "sample";
+}
+
 void insertResiduals(const SQLite::Database& database, std::int64_t id, const CycleReport& report) {
-  RowWriter row(database,
-                "INSERT INTO cycle_residuals (cycle, position, sample, quantity, residual, "
-                "standardized, rejected, reason) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  const std::string sql = std::string("INSERT INTO ") + residualTable(report.cycle) +
+                          " (cycle, position, " + residualColumn(report.cycle) +
+                          ", quantity, residual, standardized, rejected, reason) "
+                          "VALUES (?, ?, ?, ?, ?, ?, ?, ?)";
+  RowWriter row(database, sql.c_str());
   for (std::size_t n = 0; n < report.residuals.size(); ++n) {
     const SampleResidual& residual = report.residuals[n];
     row.put(id).put(n).put(residual.id).put(wordOf(kQuantities, residual.quantity));
@@ -121,10 +131,10 @@ void readEstimates(const SQLite::Database& database, std::int64_t id, CycleRepor
 }
 
 void readResiduals(const SQLite::Database& database, std::int64_t id, CycleReport& report) {
-  RowReader row(database,
-                "SELECT sample, quantity, residual, standardized, rejected, reason "
-                "FROM cycle_residuals WHERE cycle = ? ORDER BY position",
-                id);
+  const std::string sql = std::string("SELECT ") + residualColumn(report.cycle) +
+                          ", quantity, residual, standardized, rejected, reason FROM " +
+                          residualTable(report.cycle) + " WHERE cycle = ? ORDER BY position";
+  RowReader row(database, sql.c_str(), id);
   while (row.next()) {
     SampleResidual residual;
     residual.id = row.count();
@@ -172,10 +182,7 @@ std::int64_t insert(const SQLite::Database& database,
   insertErrors(database, id, report);
   insertEstimates(database, id, report);
   insertDoubts(database, id, report);
-  // Windows of motion are no samples.
-  if (report.cycle != Cycle::kMotion) {
-    insertResiduals(database, id, report);
-  }
+  insertResiduals(database, id, report);
   if (report.motion) {
     motion_summary_table::insert(database, id, *report.motion);
   }

@@ -94,6 +94,18 @@ CREATE TABLE cycle_windows_left_out (
   PRIMARY KEY (cycle, position)
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE cycle_window_residuals (
+  cycle INTEGER NOT NULL REFERENCES cycles (id),
+  position INTEGER NOT NULL,
+  window INTEGER NOT NULL,
+  quantity TEXT NOT NULL,
+  residual ANY,
+  standardized ANY,
+  rejected INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  PRIMARY KEY (cycle, position)
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE cycle_windows_held_out (
   cycle INTEGER NOT NULL REFERENCES cycles (id),
   position INTEGER NOT NULL,

@@ -58,15 +58,19 @@ TEST_F(LiveSessionMotionTest, JudgesAMotionAfterARestartAsBefore) {
   moving.truth = scenarios::paperTruth();
   moving.duration = 12.0;
   GradedCalibration before;
+  std::size_t windows = 0;
   {
     LiveSession session = open();
     session.setMotion(std::make_shared<const MotionRecording>(noisy(moving.record())));
     const CycleReport report = session.run({Cycle::kMotion}, kDate);
     ASSERT_TRUE(report.success) << report.message;
     before = session.grade();
+    windows = report.residuals.size();
     ASSERT_NE(before.reason.find("held-out samples agree"), std::string::npos) << before.reason;
   }
   const LiveSession session = open();
+  EXPECT_EQ(session.lastReport()->residuals.size(), windows);
+  EXPECT_GT(windows, 40U);
   EXPECT_EQ(session.grade().grade, before.grade);
   EXPECT_EQ(session.grade().reason, before.reason);
 }

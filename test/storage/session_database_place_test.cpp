@@ -197,6 +197,7 @@ constexpr char kWithoutDoubts[] =
     "DROP TABLE cycle_motions;"
     "DROP TABLE cycle_windows_left_out;"
     "DROP TABLE cycle_windows_held_out;"
+    "DROP TABLE cycle_window_residuals;"
     "DROP TABLE planned_patterns;"
     "DROP TABLE planned_poses;"
     "DROP TABLE cycle_doubts;"
@@ -327,11 +328,11 @@ TEST_F(PlaceTest, ADatabaseOfTheFifthFormatKeepsDoubts) {
 TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
   CycleReport report = database_examples::report(1, 0, 73);
   SessionDatabase(path(), identity()).addCycle(report, kDate);
-  database_examples::change(
-      path(),
-      "DROP TABLE cycle_motions; DROP TABLE cycle_windows_left_out;"
-      "DROP TABLE cycle_windows_held_out; DROP TABLE planned_patterns; DROP TABLE planned_poses;"
-      "PRAGMA user_version = 6");
+  database_examples::change(path(),
+                            "DROP TABLE cycle_motions; DROP TABLE cycle_windows_left_out;"
+                            "DROP TABLE cycle_windows_held_out; DROP TABLE cycle_window_residuals; "
+                            "DROP TABLE planned_patterns; DROP TABLE planned_poses;"
+                            "PRAGMA user_version = 6");
   SessionDatabase database(path(), identity());
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
   EXPECT_FALSE(database.lastCycle()->motion);

@@ -73,6 +73,9 @@ void CalibrationNode::followMotion() {
       motion_.add(std::move(window));
     }
     noteMotion(count);
+    if (!stored.empty()) {
+      publishStatus();
+    }
   } catch (const std::exception& error) {
     last_error_ = printable(error.what());
     constexpr double kSilence = 10.0;  // [s]
@@ -106,9 +109,14 @@ std::string CalibrationNode::motionStep(const SessionProgress& progress) const {
   if (motion_.windows() < kEnough || progress.samples > 0 || progress.isAllIdentified()) {
     return {};
   }
-  return progress.refused
-             ? "The motion was refused, and would be again: its report says what contradicts. Mend "
-               "it, call forget_motion and move the rotor anew."
+  if (progress.refused) {
+    return "The motion was refused, and would be again: its report says what contradicts. Mend "
+           "it, call forget_motion and move the rotor anew.";
+  }
+  const std::vector<CycleReport>& reports = session_.calibration().reports();
+  return !reports.empty() && reports.back().cycle == Cycle::kMotion
+             ? "The motion leaves parameters open: its report says which, and what may be amiss. "
+               "Mend that, move the rotor further and call calibrate_motion again."
              : "Call calibrate_motion: a motion is recorded.";
 }
 
