@@ -100,6 +100,7 @@ bool Estimator::weighAnew() {
 
 bool Estimator::solve() {
   descent_.solveCoarsely();
+  terms_.findTrackerNoise(descent_.x());
   return solveFinely();
 }
 

@@ -131,6 +131,12 @@ std::size_t MotionTerms::coarseStride() const {
   return std::max<std::size_t>(1, static_cast<std::size_t>(step / std::max(finest, 1e-6)));
 }
 
+void MotionTerms::findTrackerNoise(const Eigen::VectorXd& x) {
+  constexpr std::size_t kEnough = 3000;
+  noise_.orientation =
+      std::min(noise_.orientation, trackerNoise(spans_, *problem_.model, x, kEnough));
+}
+
 void MotionTerms::setScales(double windows, double orientations) {
   window_scale_ = windows;
   orientations_.setScale(orientations);

@@ -67,6 +67,8 @@ class MotionTerms {
   const std::vector<MotionSpan>& spans() const { return spans_; }
   const std::vector<WindowsLeftOut>& leftOut() const { return left_out_; }
   const StreamNoise& noise() const { return noise_; }
+  /// Where the tracker's delay is known better than at the begin, what seemed noise may be motion.
+  void findTrackerNoise(const Eigen::VectorXd& x);
   const MotionPlaces& places() const { return places_; }
   /// Whether derivatives of some windows are not kept.
   bool areSummed() const;

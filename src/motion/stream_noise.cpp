@@ -38,15 +38,20 @@ class ThirdDifferences {
   std::vector<double> magnitudes_;
 };
 
-double orientationNoise(const std::vector<MotionSpan>& spans,
-                        const CalibrationModel& model,
-                        const Eigen::VectorXd& x) {
+}  // namespace
+
+double trackerNoise(const std::vector<MotionSpan>& spans,
+                    const CalibrationModel& model,
+                    const Eigen::VectorXd& x,
+                    std::size_t most) {
+  // A stream without noise has at least that of its numbers.
+  constexpr double kLeast = 1e-8;
   ThirdDifferences differences;
   const MotionPlaces places(model.space());
   for (const MotionSpan& span : spans) {
     TrackerTerm term(model, places, x);
     std::vector<Eigen::Vector3d> misfits;
-    for (std::size_t n = 0; n < std::min(kEnough, span.orientation_times.size()); ++n) {
+    for (std::size_t n = 0; n < std::min(most, span.orientation_times.size()); ++n) {
       if (term.evaluate(span, n)) {
         misfits.push_back(term.residual());
       }
@@ -55,10 +60,8 @@ double orientationNoise(const std::vector<MotionSpan>& spans,
       differences.add(misfits.size(), [&](std::size_t n) { return misfits[n][k]; });
     }
   }
-  return differences.stddev();
+  return std::max(kLeast, differences.stddev());
 }
-
-}  // namespace
 
 StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
@@ -66,7 +69,6 @@ StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
   // Streams without noise have at least that of their numbers.
   constexpr double kLeastJoint = 1e-9;
   constexpr double kLeastCurrent = 1e-7;
-  constexpr double kLeastOrientation = 1e-8;
   StreamNoise noise;
   for (Eigen::Index k = 0; k < 3; ++k) {
     ThirdDifferences joint;
@@ -84,7 +86,7 @@ StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
     }
   }
   noise.current = std::max(kLeastCurrent, current.stddev());
-  noise.orientation = std::max(kLeastOrientation, orientationNoise(spans, model, x));
+  noise.orientation = trackerNoise(spans, model, x, kEnough);
   return noise;
 }
 

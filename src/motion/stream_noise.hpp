@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,5 +22,11 @@ struct StreamNoise {
 StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
                     const Eigen::VectorXd& x);
+
+/// That of the tracker alone, by so many orientations of each span [rad].
+double trackerNoise(const std::vector<MotionSpan>& spans,
+                    const CalibrationModel& model,
+                    const Eigen::VectorXd& x,
+                    std::size_t most);
 
 }  // namespace sac

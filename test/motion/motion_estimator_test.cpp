@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +72,26 @@ std::size_t accountedFor(const MotionSummary& summary) {
     count += left_out.count;
   }
   return count;
+}
+
+// Delayed as it is, its misfit changes from one orientation to the next before the delay is known.
+TEST(MotionEstimator, TellsTheNoiseOfASlowTracker) {
+  constexpr std::size_t kEvery = 5;  // 50 Hz
+  MovingRotor moving = madeRotor();
+  moving.duration = 15.0;
+  moving.tracker_delay = 40e-3;
+  MotionRecording recording = noisy(moving.record());
+  MotionStreams& streams = recording.spans.front();
+  const std::vector<Stamp> stamps = std::exchange(streams.orientation_stamps, {});
+  const std::vector<Eigen::Quaterniond> all = std::exchange(streams.orientations, {});
+  for (std::size_t n = 0; n < stamps.size(); n += kEvery) {
+    streams.orientation_stamps.push_back(stamps[n]);
+    streams.orientations.push_back(all[n]);
+  }
+  const MotionEstimate found = estimated(motionModel(), recording);
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_NEAR(found.summary.orientation_stddev, 5e-4, 1e-4);
+  EXPECT_NEAR(found.summary.orientation_chi_square, 1.0, 0.4);
 }
 
 TEST(MotionEstimator, FindsTheUnitThatMoved) {
