@@ -43,9 +43,11 @@ HealthView::HealthView() : trouble_(new QLabel) {
 
 void HealthView::fill(const std::vector<HealthLine>& streams,
                       const std::vector<HealthLine>& troubles) {
-  for (std::size_t n = 0; n < streams_.size() && n < streams.size(); ++n) {
-    streams_[n]->setText(dotted(streams[n]));
-    streams_[n]->setToolTip(QString::fromStdString(streams[n].message));
+  // A rotor without joints has one stream fewer, as soon as that is known.
+  for (std::size_t n = 0; n < streams_.size(); ++n) {
+    const bool is_there = n < streams.size();
+    streams_[n]->setText(is_there ? dotted(streams[n]) : QString());
+    streams_[n]->setToolTip(is_there ? QString::fromStdString(streams[n].message) : QString());
   }
   trouble_->setVisible(!troubles.empty());
   if (!troubles.empty()) {
