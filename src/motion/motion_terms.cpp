@@ -133,8 +133,11 @@ std::size_t MotionTerms::coarseStride() const {
 
 void MotionTerms::findTrackerNoise(const Eigen::VectorXd& x) {
   constexpr std::size_t kEnough = 3000;
-  noise_.orientation =
-      std::min(noise_.orientation, trackerNoise(spans_, *problem_.model, x, kEnough));
+  constexpr double kLess = 0.9;  // the smaller of two that chance has made would be too small
+  const double found = trackerNoise(spans_, *problem_.model, x, kEnough);
+  if (found < kLess * noise_.orientation) {
+    noise_.orientation = found;
+  }
 }
 
 void MotionTerms::setScales(double windows, double orientations) {
