@@ -9,7 +9,7 @@
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 
-/// Tables cycles, cycle_errors, cycle_estimates and cycle_residuals (doc/session_database.md).
+/// Table cycles and those of its parts, cycle_... (doc/session_database.md).
 /// Throws SQLite::Exception; the caller holds the transaction.
 namespace sac::cycle_table {
 

@@ -48,7 +48,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   if (const auto report = session_.lastReport()) {
     topics_.publishReport(topics_.stamped(reportToRos(*report, session_.grade())));
   }
-  followPlan(session_.plan());
+  takeUpPlan();
   publishStatus();
 
   takeUpMotion();

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <ros/console.h>
+
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
@@ -115,6 +117,16 @@ void CalibrationNode::followPlan(const StoredPlan& poses) {
     plan_->addPose(pose.joint_position, pose.patterns);
   }
   plan_->countAnew(calibration.samples());
+}
+
+/// One that cannot be read keeps nobody from calibrating.
+void CalibrationNode::takeUpPlan() {
+  try {
+    followPlan(session_.plan());
+  } catch (const std::exception& error) {
+    last_error_ = printable(error.what());
+    ROS_WARN_STREAM("The plan of before is not followed, plan again: " << last_error_);
+  }
 }
 
 // Planning takes seconds: it works on a copy, so that nothing waits for it.

@@ -73,7 +73,10 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  /// What of a plan is left to be measured.
   void followPlan(const StoredPlan& poses);
+  /// The plan that was followed before a restart.
+  void takeUpPlan();
   void run(const CycleRequest& request,
            msg::Calibrate::Response& response,
            std::shared_ptr<const MotionRecording> motion = nullptr);
