@@ -51,7 +51,7 @@ std::string driftInWords(const MotionSummary& summary) {
   return format(
       "Orientations, in the mean of a window, are %.1f times their noise off: the tracker or its "
       "clock drifts or jumps, or a joint sensor is not as modelled, and that may bias the "
-      "parameters: check the tracker's stamps and mounting, or model encoder_harmonics.",
+      "parameters: check the tracker's stamps and mounting, and model errors of the joint sensors.",
       std::sqrt(chi_square));
 }
 
