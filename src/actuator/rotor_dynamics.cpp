@@ -64,12 +64,6 @@ Eigen::Vector3d gravityTorque(const RigidRotor& rotor, const Eigen::Matrix3d& R_
   return rotor.unbalance.cross(gravityDirection(R_stator_rotor));
 }
 
-double energyOf(const RigidRotor& rotor, const RotorState& state) {
-  const Eigen::Vector3d& w = state.angular_velocity;
-  return 0.5 * w.dot(rotor.inertia * w) -
-         rotor.unbalance.dot(gravityDirection(state.R_stator_rotor));
-}
-
 RotorState advance(const RigidRotor& rotor,
                    const RotorState& state,
                    const CoilTorque& torque,

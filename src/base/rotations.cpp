@@ -90,25 +90,4 @@ Eigen::Matrix3d leftJacobianInverse(const Eigen::Vector3d& v) {
   return J;
 }
 
-Eigen::Matrix3d rotationMean(const std::vector<Eigen::Matrix3d>& rotations) {
-  if (rotations.empty()) {
-    throw DataError("The mean of no rotations is undefined.");
-  }
-  constexpr int kMaxIterations = 20;
-  constexpr double kConverged = 1e-15;
-  Eigen::Matrix3d mean = rotations.front();
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    for (const Eigen::Matrix3d& R : rotations) {
-      step += rotationLog(R * mean.transpose());
-    }
-    step /= static_cast<double>(rotations.size());
-    mean = rotationExp(step) * mean;
-    if (step.norm() < kConverged) {
-      break;
-    }
-  }
-  return mean;
-}
-
 }  // namespace sac

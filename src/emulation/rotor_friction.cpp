@@ -22,11 +22,6 @@ void validate(const BearingFriction& friction) {
   requireInRange("transition of friction", friction.transition, ValueRange::positive("rad/s"));
 }
 
-Eigen::Vector3d frictionTorque(const BearingFriction& friction,
-                               const Eigen::Vector3d& angular_velocity) {
-  return -damping(friction, angular_velocity) * angular_velocity;
-}
-
 // Implicit, so that friction never turns the rotor around; with the damping of the middle of the
 // step, so that it is good to second order.
 Eigen::Vector3d slowedBy(const BearingFriction& friction,

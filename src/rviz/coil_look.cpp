@@ -49,7 +49,7 @@ void CoilLook::build() {
   row->addWidget(coil_);
   current_ = spinBox(-kLargestCurrent, kLargestCurrent, 2.0, "A");
   row->addWidget(current_);
-  duration_ = spinBox(kShortestExcitation, kLongestExcitation, kExcitation, "s");
+  duration_ = spinBox(kShortestExcitation, msg::ExciteGoal::LONGEST_DURATION, kExcitation, "s");
   row->addWidget(duration_);
   layout->addLayout(row);
   outcome_ = new QLabel;

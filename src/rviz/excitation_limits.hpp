@@ -5,6 +5,5 @@ namespace sac {
 /// What the panel offers; the coil driver and the engine have limits of their own.
 inline constexpr double kLargestCurrent = 100.0;    ///< [A]
 inline constexpr double kShortestExcitation = 0.5;  ///< [s]
-inline constexpr double kLongestExcitation = 60.0;  ///< [s] that the engine allows
 
 }  // namespace sac

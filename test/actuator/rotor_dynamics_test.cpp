@@ -37,6 +37,14 @@ RotorState after(const RigidRotor& rotor, RotorState state, double time, double 
   return state;
 }
 
+/// Kinetic and potential energy [J]; the latter is 0 with the centre of gravity level with the
+/// centre.
+double energyOf(const RigidRotor& rotor, const RotorState& state) {
+  const Eigen::Vector3d& w = state.angular_velocity;
+  return 0.5 * w.dot(rotor.inertia * w) +
+         rotor.unbalance.dot(state.R_stator_rotor.row(2).transpose());
+}
+
 double angleBetween(const Eigen::Matrix3d& one, const Eigen::Matrix3d& other) {
   return rotationLog(one * other.transpose()).norm();
 }

@@ -64,25 +64,5 @@ TEST(Rotations, LeftJacobianInverseInverts) {
   }
 }
 
-TEST(Rotations, MeanMinimisesTheSquaredDistances) {
-  scenarios::Generator generator(3);
-  const Eigen::Matrix3d center = rotationExp({0.4, -1.0, 2.0});
-  std::vector<Eigen::Matrix3d> rotations(20);
-  for (Eigen::Matrix3d& R : rotations) {
-    R = rotationExp(scenarios::uniformNoise(0.3, generator)) * center;
-  }
-  const Eigen::Matrix3d mean = rotationMean(rotations);
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  for (const Eigen::Matrix3d& R : rotations) {
-    gradient += rotationLog(R * mean.transpose());
-  }
-  EXPECT_LT(gradient.norm(), 1e-12);
-  EXPECT_LT((mean * mean.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-}
-
-TEST(Rotations, MeanOfNothingIsRefused) {
-  EXPECT_THROW(rotationMean({}), DataError);
-}
-
 }  // namespace
 }  // namespace sac

@@ -50,7 +50,12 @@ TEST(BearingFriction, DryFrictionBringsToRestAndNoFurther) {
 TEST(BearingFriction, IsTheTorqueOfItsEquation) {
   const BearingFriction friction{{1e-3, 2e-3}, 0.3};
   const Eigen::Vector3d w(0.0, 0.4, 0.0);
-  EXPECT_NEAR(frictionTorque(friction, w).y(), -(1e-3 + 2e-3 / 0.5) * 0.4, 1e-15);
+  constexpr double kInertia = 1e-3;
+  constexpr double kStep = 1e-6;
+  const Eigen::Vector3d slower =
+      slowedBy(friction, kInertia * Eigen::Matrix3d::Identity(), w, kStep);
+  const double torque = kInertia * (slower - w).y() / kStep;
+  EXPECT_NEAR(torque, -(1e-3 + 2e-3 / 0.5) * 0.4, 1e-7);
 }
 
 TEST(BearingFriction, AFreeRotorLosesItsEnergyToItAndTurnsOnWithoutIt) {

@@ -29,10 +29,6 @@ Eigen::Vector3d gravityDirection(const Eigen::Matrix3d& R_stator_rotor);
 /// Torque of gravity (along −z of the stator) about the centre, rotor frame [N·m].
 Eigen::Vector3d gravityTorque(const RigidRotor& rotor, const Eigen::Matrix3d& R_stator_rotor);
 
-/// Kinetic and potential energy [J]; the latter is 0 with the centre of gravity level with the
-/// centre.
-double energyOf(const RigidRotor& rotor, const RotorState& state);
-
 /// Torque of the coils on the rotor, rotor frame [N·m], at an orientation within a step.
 using CoilTorque = std::function<Eigen::Vector3d(const Eigen::Matrix3d& R_stator_rotor)>;
 

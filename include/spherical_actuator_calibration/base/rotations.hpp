@@ -30,8 +30,4 @@ Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& v);
 /// Inverse of leftJacobian(v), for ‖v‖ < 2π.
 Eigen::Matrix3d leftJacobianInverse(const Eigen::Vector3d& v);
 
-/// Mean rotation: the R that minimises Σ ‖ln(R_i Rᵀ)^∨‖², by Gauss–Newton on the manifold. Intended
-/// for rotations within one hemisphere of each other. Throws DataError on an empty list.
-Eigen::Matrix3d rotationMean(const std::vector<Eigen::Matrix3d>& rotations);
-
 }  // namespace sac

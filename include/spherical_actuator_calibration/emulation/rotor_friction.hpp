@@ -14,10 +14,6 @@ struct BearingFriction : RotorFriction {
 /// Throws ConfigError that names the key, its value and the allowed range.
 void validate(const BearingFriction& friction);
 
-/// Torque at an angular velocity [rad/s], in the same frame [N·m].
-Eigen::Vector3d frictionTorque(const BearingFriction& friction,
-                               const Eigen::Vector3d& angular_velocity);
-
 /// Angular velocity after `step` [s] in which friction alone acts on a body of this inertia
 /// [kg·m²]: to second order of the step, and never beyond rest, however long it is.
 Eigen::Vector3d slowedBy(const BearingFriction& friction,

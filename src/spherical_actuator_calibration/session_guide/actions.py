@@ -17,7 +17,6 @@ from .progress import Pose, in_words
 from .session import Session
 from .wanted_pose import WantedPose
 
-LONGEST_EXCITATION = 60.0  # [s]
 EXCITATION = 5.0  # [s] where none is asked for
 VALIDATING = "validating"
 
@@ -141,8 +140,8 @@ class ExciteAction(_AtTheBench):
     def work(self, goal, task, account):
         pattern = checked_pattern(goal.coils, self._coils)
         duration = goal.duration or EXCITATION
-        if not 0.0 < duration <= LONGEST_EXCITATION:
-            raise ValueError(f"duration: {duration:g} s is outside (0, {LONGEST_EXCITATION:g}].")
+        if not 0.0 < duration <= goal.LONGEST_DURATION:
+            raise ValueError(f"duration: {duration:g} s is outside (0, {goal.LONGEST_DURATION:g}].")
         if not goal.current > 0.0:
             raise ValueError(f"current: {goal.current:g} A is no current.")
         self._take(task, account)
