@@ -33,6 +33,11 @@ double usualStep(const StampTimes& times) {
   return medianStep(times);
 }
 
+double longestWhole(double step, double steps) {
+  constexpr double kShort = 5.1e-3;  // [s]
+  return std::max(steps * step, kShort);
+}
+
 std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) {
   std::vector<double> times;
   times.reserve(stamps.size());
@@ -44,7 +49,9 @@ std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) 
 
 JointTrack::JointTrack(const MotionStreams& streams, Stamp origin)
     : streams_(&streams), times_(origin, streams.joint_stamps) {
+  constexpr double kGap = 2.5;  // steps
   step_ = usualStep(times_);
+  longest_ = longestWhole(step_, kGap);
 }
 
 std::optional<TrackPoint> JointTrack::at(double time) const {

@@ -32,18 +32,21 @@ class JointTrack {
   /// Usual step between readings [s].
   double step() const { return step_; }
   /// Whether no reading is missing between n and n + 1.
-  bool isWhole(std::size_t n) const { return times_[n + 1] - times_[n] <= kGap * step_; }
+  bool isWhole(std::size_t n) const { return times_[n + 1] - times_[n] <= longest_; }
 
   /// Nothing where readings are missing.
   std::optional<TrackPoint> at(double time) const;
 
  private:
-  static constexpr double kGap = 2.5;  ///< steps
-
   const MotionStreams* streams_;
   StampTimes times_;
   double step_ = 0.0;
+  double longest_ = 0.0;  ///< interval in which no reading is missing [s]
 };
+
+/// Longest interval [s] between messages with the usual `step` [s] that no hole is in: of so many
+/// `steps`, or as short as the intervals of a stream at 200 Hz, which serves as it is.
+double longestWhole(double step, double steps);
 
 /// Median step of increasing times, by some of them where there are many; 0 for fewer than two.
 double usualStep(const std::vector<double>& times);

@@ -8,14 +8,15 @@ namespace {
 
 /// Whether currents were measured without a hole from `begin` to `end`.
 bool hasCurrents(const MotionSpan& span, double begin, double end) {
-  constexpr double kGap = 3.0;  // steps
+  constexpr double kGap = 3.5;  // steps
   const StampTimes& times = span.current_times;
+  const double longest = kGap * span.current_step;
   const std::size_t from = times.firstFrom(begin);
   if (from == 0 || times.back() < end) {
     return false;
   }
   for (std::size_t n = from - 1; times[n] < end; ++n) {
-    if (times[n + 1] - times[n] > kGap * span.current_step) {
+    if (times[n + 1] - times[n] > longest) {
       return false;
     }
   }

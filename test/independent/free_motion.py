@@ -47,6 +47,8 @@ class Streams:
     has_commands: bool = False
     command_delay: float = 1.5e-3  # [s] from the stamp of a command to its effect
     command_jitter: float = 0.0  # [s] standard deviation of the same
+    lost: float = 0.0  # share of the messages that got lost, of commands none
+
 
 def _rotations(vectors):
     """exp of many rotation vectors, n x 3."""
@@ -291,7 +293,15 @@ def record(unit, errors, motion, streams, seed):
     if streams.tracker_stddev:
         R = _rotations(rng.normal(0.0, streams.tracker_stddev, (len(t), 3))) @ R
     result["orientations"] = (t + streams.tracker_delay, R)
-    return result
+    return _without_lost(result, streams.lost, np.random.default_rng([seed, 1]))
+
+
+def _without_lost(recording, share, rng):
+    def arrived(key, stamps, values):
+        arrives = rng.random(len(stamps)) >= (0.0 if key == "commands" else share)
+        return stamps[arrives], values[arrives]
+
+    return {key: arrived(key, *stream) for key, stream in recording.items()}
 
 
 def write_text(path, recording):

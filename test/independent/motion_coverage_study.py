@@ -27,6 +27,7 @@ SCENARIOS = {
     "1000_hz": {"joint_rate": 1000.0, "current_rate": 1000.0},
     "200_hz": {"joint_rate": 200.0, "current_rate": 200.0},
     "200_hz_in_step": {"joint_rate": 200.0, "current_rate": 200.0, "in_step": True},
+    "1000_hz_lossy": {"joint_rate": 1000.0, "current_rate": 1000.0, "lost": 0.05},
     "100_hz": {"joint_rate": 100.0, "current_rate": 100.0},
 }
 

@@ -298,6 +298,49 @@ TEST(MotionEstimator, CutsWindowsAroundHoles) {
   EXPECT_LE(found.estimate.reduced_chi_square, 2.0);
 }
 
+/// A recording in which one message in twenty got lost, two or three in a row now and then.
+MotionRecording lossy(MotionRecording recording) {
+  scenarios::Generator generator(11);
+  std::uniform_real_distribution<double> chance;
+  MotionRecorder recorder(24);
+  for (const MotionStreams& streams : recording.spans) {
+    const auto arrives = [&] { return chance(generator) >= 0.05; };
+    for (std::size_t n = 0, o = 0; n < streams.joint_stamps.size(); ++n) {
+      if (arrives()) {
+        recorder.add(JointMeasurement{streams.joint_stamps[n], streams.joints[n]});
+      }
+      if (arrives()) {
+        const Eigen::VectorXf current = streams.currents.row(static_cast<Eigen::Index>(n));
+        recorder.add(CurrentMeasurement{streams.current_stamps[n], current.cast<double>()});
+      }
+      for (; o < streams.orientation_stamps.size() &&
+             streams.orientation_stamps[o] <= streams.joint_stamps[n];
+           ++o) {
+        if (arrives()) {
+          recorder.add(
+              OrientationMeasurement{streams.orientation_stamps[o], streams.orientations[o]});
+        }
+      }
+    }
+  }
+  return recorder.take();
+}
+
+TEST(MotionEstimator, LosesLittleWithMessagesThatGotLost) {
+  MovingRotor moving = madeRotor();
+  moving.duration = 12.0;
+  const CalibrationModel model = motionModel();
+  const MotionEstimate found = estimated(model, lossy(noisy(moving.record())));
+  ASSERT_EQ(found.estimate.termination, Termination::kConverged);
+  EXPECT_GE(found.summary.windows, 40U);
+  EXPECT_LE(10 * (found.summary.windows - found.summary.used), found.summary.windows);
+  EXPECT_LE(found.estimate.reduced_chi_square, 1.1);
+  const ParameterSpace& space = model.space();
+  const Eigen::VectorXd apart = found.estimate.belief.x - space.coordinatesOf(moving.truth);
+  const Eigen::VectorXd stddevs = found.estimate.belief.covariance.diagonal().cwiseSqrt();
+  EXPECT_LT(apart.cwiseQuotient(stddevs).head(space.effect()).cwiseAbs().maxCoeff(), 5.0);
+}
+
 // What is open bends: whoever follows it as if it were straight comes to no end.
 TEST(MotionEstimator, WithoutATrackerLeavesTheTurnOfTheStatorOpen) {
   MovingRotor moving = madeRotor();
