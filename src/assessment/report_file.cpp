@@ -119,7 +119,7 @@ void writeMotion(YamlWriter& writer, const MotionSummary& motion) {
     YamlLine line;
     line.add("delay", yamlNumber(motion.response->delay))
         .add("time_constant", yamlNumber(motion.response->lag))
-        .add("stddev", yamlNumber(motion.response->delay_stddev));
+        .add("stddev", yamlNumber(motion.response->lateness_stddev));
     writer.entry(4, "commands", line.text());
   }
   const HeldOutMotion& held_out = motion.held_out;

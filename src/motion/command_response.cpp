@@ -233,9 +233,9 @@ std::optional<CommandResponse> takeMeans(const CommandStream& commands, MotionSt
   CommandResponse response;
   response.delay = search.delay();
   response.lag = search.lag();
-  response.delay_stddev =
+  response.lateness_stddev =
       std::hypot(search.latenessStddev(), modelStddev(comparison, agreement, search.lag()));
-  if (!(response.delay_stddev < kMuchLess * stddevAsSampled(streams, agreement.noise()))) {
+  if (!(response.lateness_stddev < kMuchLess * stddevAsSampled(streams, agreement.noise()))) {
     return std::nullopt;
   }
   MeanTaker(comparison).run(comparison.follow(search.delay(), search.lag()), streams);

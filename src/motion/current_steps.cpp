@@ -51,7 +51,7 @@ void CurrentSteps::add(const MotionStreams& streams) {
   }
   if (streams.response) {
     const auto samples = static_cast<double>(streams.current_stamps.size());
-    told_ += samples * streams.response->delay_stddev * streams.response->delay_stddev;
+    told_ += samples * streams.response->lateness_stddev * streams.response->lateness_stddev;
     told_samples_ += samples;
     return;
   }

@@ -17,7 +17,7 @@ std::optional<CommandResponse> responseFrom(RowReader& row) {
   CommandResponse response;
   response.delay = row.number();
   response.lag = row.number();
-  response.delay_stddev = row.number();
+  response.lateness_stddev = row.number();
   return std::isnan(response.delay) ? std::nullopt : std::optional(response);
 }
 
@@ -87,7 +87,7 @@ void insert(const SQLite::Database& database, std::int64_t cycle, const MotionSu
   }
   row.put(summary.current_stddev).put(summary.orientation_stddev);
   const CommandResponse response = summary.response.value_or(CommandResponse{kNone, kNone, kNone});
-  row.put(response.delay).put(response.lag).put(response.delay_stddev);
+  row.put(response.delay).put(response.lag).put(response.lateness_stddev);
   const HeldOutMotion& held_out = summary.held_out;
   row.put(held_out.windows).put(held_out.rejected).put(held_out.orientations);
   row.put(held_out.orientation_rms).put(held_out.torque_rms);

@@ -182,7 +182,8 @@ void calibrate(const Actuator& nominal,
   for (const MotionStreams& streams : recording.spans) {
     if (streams.response) {
       const CommandResponse& response = *streams.response;
-      std::printf("response %.9g %.9g %.3g\n", response.delay, response.lag, response.delay_stddev);
+      std::printf(
+          "response %.9g %.9g %.3g\n", response.delay, response.lag, response.lateness_stddev);
     }
   }
   printParameters(model.space(), estimate);

@@ -107,8 +107,8 @@ TEST(CommandResponse, MakesSamplesTellWhatStepsBetweenThemDo) {
       EXPECT_LT(std::abs(lateness(streams, interval)), 1.5e-5) << interval << " " << phase;
       CurrentSteps steps;
       steps.add(streams);
-      EXPECT_EQ(steps.delayStddev(1e-3), streams.response->delay_stddev);
-      EXPECT_LT(streams.response->delay_stddev, 3e-5);
+      EXPECT_EQ(steps.delayStddev(1e-3), streams.response->lateness_stddev);
+      EXPECT_LT(streams.response->lateness_stddev, 3e-5);
     }
   }
   EXPECT_GT(std::abs(lateness(sampled(1e-3, 0.0), 1e-3)), 3e-5);
@@ -119,7 +119,7 @@ TEST(CommandResponse, IsLessKnownWhereAllSamplesAreAtOnePlaceBetweenCommands) {
   streams.response = takeMeans(commanded(), streams);
   ASSERT_TRUE(streams.response);
   EXPECT_LT(std::abs(lateness(streams, kHold)), 1e-4);
-  EXPECT_GT(streams.response->delay_stddev, 3e-4);
+  EXPECT_GT(streams.response->lateness_stddev, 3e-4);
 }
 
 TEST(CommandResponse, IsNoneWhereCurrentsDoSomethingElse) {

@@ -274,7 +274,7 @@ MotionSummary summary() {
 bool isSame(const MotionSummary& a, const MotionSummary& b) {
   const auto response = [](const MotionSummary& of) {
     const CommandResponse one = of.response.value_or(CommandResponse());
-    return Eigen::MatrixXd(Eigen::Vector3d(one.delay, one.lag, one.delay_stddev));
+    return Eigen::MatrixXd(Eigen::Vector3d(one.delay, one.lag, one.lateness_stddev));
   };
   const auto numbers = [](const MotionSummary& of) {
     Eigen::MatrixXd all(8, 1);

@@ -14,8 +14,9 @@ namespace sac {
 struct CommandResponse {
   double delay = 0.0;  ///< of what was commanded, by the stamps of both [s]
   double lag = 0.0;    ///< time constant [s]
-  /// Of both together, and so of what the steps between samples do to a delay [s].
-  double delay_stddev = 0.0;
+  /// Of the lateness, delay and lag together: each by itself is known less, what the steps between
+  /// samples do to a delay as well as this [s].
+  double lateness_stddev = 0.0;
 };
 
 /// Streams of one span of time, each with stamps that increase strictly.
