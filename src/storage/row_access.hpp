@@ -11,6 +11,7 @@
 #include <SQLiteCpp/Statement.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 
 namespace sac {
 
@@ -89,8 +90,12 @@ class RowReader {
     return statement_.executeStep();
   }
 
+  /// Throws RowDefect when it is none: SQLite would read any word as 0.
   double number() {
     const SQLite::Column value = column();
+    if (value.isText() || value.isBlob()) {
+      throw RowDefect("\"" + excerpt(value.getString()) + "\" stands where a number is wanted");
+    }
     return value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
   }
   std::int64_t integer() { return column().getInt64(); }

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """What the node tells the operator to do next, where it is easily wrong."""
 
+import contextlib
 import math
+import sqlite3
 import sys
 import tempfile
 import unittest
@@ -36,7 +38,8 @@ class NextStep(unittest.TestCase):
             actuator.pop(key, None)
         rospy.set_param(f"{NAMESPACE}/actuator", actuator)
         self.client = CalibrationClient()
-        self.node = CalibrationNode(folder.name + "/calibration", report_page=False)
+        self.output = folder.name + "/calibration"
+        self.node = CalibrationNode(self.output, report_page=False)
         self.addCleanup(self.node.stop)
         self.client.start(self.node)
         self.streams = EmulatedStreams()
@@ -82,6 +85,20 @@ class NextStep(unittest.TestCase):
                 self.node.kill()
                 self.client.start(self.node)
         wait_for(lambda: "plan" not in self.client.latest("status").next_step, "the end of the plan")
+
+    def test_a_damaged_plan_keeps_nobody_from_calibrating(self):
+        rospy.wait_for_service(NODE + "/plan_poses")
+        plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)(cycle="joint", max_poses=4)
+        self.assertTrue(plan.success, plan.message)
+        self.capture(POSES[0])
+        self.node.kill()
+        with contextlib.closing(sqlite3.connect(f"{self.output}/session.db")) as database:
+            database.execute("UPDATE planned_poses SET joint_1 = 'east'")
+            database.commit()
+        self.client.start(self.node)
+        self.assertNotIn("plan", self.client.latest("status").next_step)
+        self.assertEqual(self.client.latest("status").orientation_samples, 1)
+        self.calibrate()
 
     def test_forgotten_samples(self):
         self.calibrate()

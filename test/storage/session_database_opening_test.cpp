@@ -163,6 +163,8 @@ TEST_F(OpeningTest, RowsThatHoldNoSampleAreTold) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"UPDATE samples SET id = 4294967301 WHERE id = 20", "4294967301 stands where"},
       {"UPDATE samples SET measurements = -1 WHERE id = 20", "-1 stands where"},
+      {"UPDATE samples SET r11 = 'east' WHERE id = 20", "\"east\" stands where"},
+      {"UPDATE samples SET r11 = x'00' WHERE id = 20", "stands where"},
       {"UPDATE sample_currents SET coil = 30 WHERE sample = 7 AND coil = 3",
        "Sample 7: its currents"},
       {"DELETE FROM sample_currents WHERE sample = 7 AND coil = 1", "Sample 7: its currents"},

@@ -114,6 +114,9 @@ TEST_F(SessionDatabaseTest, TellsOfAPlanThatIsNone) {
                               std::string("UPDATE planned_patterns SET coils = '") + coils + "'");
     EXPECT_THROW(open().plan(), DataError) << coils;
   }
+  open().setPlan({{Eigen::Vector3d::Zero(), {}}});
+  database_examples::change(path(), "UPDATE planned_poses SET joint_1 = 'east'");
+  EXPECT_THROW(open().plan(), DataError);
 }
 
 TEST_F(SessionDatabaseTest, KeepsTheNewestWindowsInAFileThatDoesNotGrow) {
