@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -25,10 +25,10 @@ Eigen::MatrixXd rootOf(const Eigen::MatrixXd& covariance) {
   if (covariance.size() == 0) {
     return covariance;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(covariance);
-  const Eigen::VectorXd& values = spectrum.eigenvalues();
+  const SymmetricEigen eigen = symmetricEigen(covariance);
+  const Eigen::VectorXd& values = eigen.values;
   const Eigen::Index rank = (values.array() > 0.0).count();  // they ascend
-  return spectrum.eigenvectors().rightCols(rank) * values.tail(rank).cwiseSqrt().asDiagonal();
+  return eigen.vectors.rightCols(rank) * values.tail(rank).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace

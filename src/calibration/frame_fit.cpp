@@ -6,28 +6,18 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 
 namespace sac {
 namespace {
 
 constexpr Eigen::Index kFrames = 6;
-
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-using Vector9d = Eigen::Matrix<double, 9, 1>;
-
-Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  signs[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
 
 CalibrationModel modelOf(const CalibratedDescription& description) {
   return CalibrationModel(ParameterSpace(description.actuator, effectsOf(description.calibration)));
@@ -58,16 +48,15 @@ Eigen::MatrixXd rootOf(const ParameterSpace& space, Eigen::MatrixXd covariance) 
   const Eigen::Index magnetic = space.effect() - space.joint(kJoints);
   covariance.middleRows(space.joint(kJoints), magnetic).setZero();
   covariance.middleCols(space.joint(kJoints), magnetic).setZero();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  const SymmetricEigen eigen = symmetricEigen(covariance);
   constexpr double kNothing = 1e-14;  // of the largest variance
-  const double least = kNothing * solver.eigenvalues().maxCoeff();
+  const double least = kNothing * eigen.values.maxCoeff();
   Eigen::Index first = 0;
-  while (first < covariance.rows() && solver.eigenvalues()[first] <= least) {
+  while (first < covariance.rows() && eigen.values[first] <= least) {
     ++first;
   }
   const Eigen::Index count = covariance.rows() - first;
-  return solver.eigenvectors().rightCols(count) *
-         solver.eigenvalues().tail(count).cwiseSqrt().asDiagonal();
+  return eigen.vectors.rightCols(count) * eigen.values.tail(count).cwiseSqrt().asDiagonal();
 }
 
 /// The pose as a sample, its orientation by the frames.
@@ -111,25 +100,14 @@ FrameFit::FrameFit(const CalibratedDescription& description,
 }
 
 Frames FrameFit::start(const PoseSelection& used) const {
-  // vec(R Z Mᵀ) = (M ⊗ R) vec(Z), so that the sum is vec(X)ᵀ (Σ M ⊗ R) vec(Z).
-  Matrix9d sum = Matrix9d::Zero();
+  RotationPairSum sum;
   for (std::size_t n = 0; n < poses_.size(); ++n) {
-    if (!used[n]) {
-      continue;
-    }
-    for (Eigen::Index a = 0; a < 3; ++a) {
-      for (Eigen::Index b = 0; b < 3; ++b) {
-        sum.block<3, 3>(3 * a, 3 * b) += poses_[n].R_tracker_marker(a, b) * R_stator_rotor_[n];
-      }
+    if (used[n]) {
+      sum.add(poses_[n].R_tracker_marker, R_stator_rotor_[n]);
     }
   }
-  const Eigen::JacobiSVD<Matrix9d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector9d left = svd.matrixU().col(0);
-  const Vector9d right = svd.matrixV().col(0);
-  const Eigen::Map<const Eigen::Matrix3d> tracker(left.data());
-  const Eigen::Map<const Eigen::Matrix3d> marker(right.data());
-  const double sign = tracker.determinant() < 0.0 ? -1.0 : 1.0;
-  return {nearestRotation(sign * tracker), nearestRotation(sign * marker)};
+  const RotationPair frames = sum.nearest();
+  return {frames.X, frames.Z};
 }
 
 FrameFit::Row FrameFit::row(const ModelPoint& point,

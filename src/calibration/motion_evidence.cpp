@@ -4,8 +4,8 @@
 #include <string>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
@@ -32,15 +32,15 @@ WhitenedEvidence ownEvidence(const ParameterSpace& space, const MotionEvidence& 
       information(k, k) -= 1.0 / stated;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  const SymmetricEigen eigen = symmetricEigen(information);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < size; ++k) {
-    if (eigen.eigenvalues()[k] > kNothing * eigen.eigenvalues()[size - 1]) {
+    if (eigen.values[k] > kNothing * eigen.values[size - 1]) {
       kept.push_back(k);
     }
   }
-  const Eigen::MatrixXd directions = eigen.eigenvectors()(Eigen::all, kept);
-  const Eigen::VectorXd roots = eigen.eigenvalues()(kept).cwiseSqrt();
+  const Eigen::MatrixXd directions = eigen.vectors(Eigen::all, kept);
+  const Eigen::VectorXd roots = eigen.values(kept).cwiseSqrt();
   return {directions * roots.asDiagonal(), (directions.transpose() * vector).cwiseQuotient(roots)};
 }
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "coordinate_elimination.hpp"
 #include "effect_candidates.hpp"
 #include "score_sums.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
@@ -60,13 +60,13 @@ Score scoreOf(const Eigen::MatrixXd& information,
       return score;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(information);
+  const SymmetricEigen spectrum = symmetricEigen(information);
   score.value = Eigen::VectorXd::Zero(gradient.size());
   score.covariance = Eigen::MatrixXd::Zero(gradient.size(), gradient.size());
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
-    const double weight = spectrum.eigenvalues()[k];
+    const double weight = spectrum.values[k];
     if (weight > least) {
-      const Eigen::VectorXd direction = spectrum.eigenvectors().col(k);
+      const Eigen::VectorXd direction = spectrum.vectors.col(k);
       const double along = direction.dot(gradient);
       score.square += along * along / weight;
       score.value -= along / weight * direction;

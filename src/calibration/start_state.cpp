@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/QR>
-
+#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 
 namespace sac {
@@ -79,7 +78,7 @@ class RecordedCovariance {
     if (!exact_.empty()) {
       const Eigen::MatrixXd common = covariance(exact_, kept_);
       const Eigen::MatrixXd exact = covariance(exact_, exact_);
-      known -= common.transpose() * exact.completeOrthogonalDecomposition().solve(common);
+      known -= common.transpose() * pseudoInverse(exact) * common;
       known = (0.5 * (known + known.transpose())).eval();
     }
     state.belief.covariance(places_, places_) = known;

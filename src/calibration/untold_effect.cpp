@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Eigenvalues>
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -30,15 +30,15 @@ std::optional<UntoldEffect> untoldEffect(const TestedEffect& effect) {
   if (size <= 0.0) {
     return std::nullopt;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(effect.information);
+  const SymmetricEigen spectrum = symmetricEigen(effect.information);
   for (Eigen::Index k = 0; k < effect.information.rows(); ++k) {
     // Directions that no number of samples would tell are not a question of how many there are.
-    const double told = size * std::sqrt(std::max(0.0, spectrum.eigenvalues()[k]));
-    if (spectrum.eigenvalues()[k] <= effect.least || told < kLeastTold) {
+    const double told = size * std::sqrt(std::max(0.0, spectrum.values[k]));
+    if (spectrum.values[k] <= effect.least || told < kLeastTold) {
       continue;
     }
     return told < kToldFrom
-               ? std::optional(UntoldEffect{size, told, size * spectrum.eigenvectors().col(k)})
+               ? std::optional(UntoldEffect{size, told, size * spectrum.vectors.col(k)})
                : std::nullopt;
   }
   return std::nullopt;

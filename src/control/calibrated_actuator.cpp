@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 
 namespace sac {
 namespace {
@@ -68,8 +67,7 @@ CalibratedActuator::Currents CalibratedActuator::currents(const Eigen::Vector3d&
   result.torque = made.torque;
   result.torque_stddev = made.stddev;
   // What is missing of the torque would come from Q⁺ times it.
-  const Eigen::MatrixXd Q_inverse =
-      Eigen::MatrixXd(Q).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd Q_inverse = pseudoInverse(Q);
   result.stddev = ((Q_inverse * made.covariance).cwiseProduct(Q_inverse).rowwise().sum())
                       .cwiseMax(0.0)
                       .cwiseSqrt();

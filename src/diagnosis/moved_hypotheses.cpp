@@ -7,11 +7,10 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "cube_rotations.hpp"
 #include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -105,12 +104,6 @@ Hypothesis slippedJoint(const WiringCase& described, const Rows& rows, std::size
            words;
   };
   return result;
-}
-
-Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& sum) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double handed = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, handed).asDiagonal() * svd.matrixV().transpose();
 }
 
 /// An orientation that was measured, and what the description makes of its joint angles.

@@ -4,11 +4,10 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
@@ -270,35 +269,17 @@ class PairScreen {
   /// Tracker and marker that nobody registered, in closed form (Shah 2013): the rotations A and B
   /// that maximise Σ tr(R(q)ᵀ A R_measured B).
   void addFrames() {
-    using Matrix9d = Eigen::Matrix<double, 9, 9>;
     const JointGeometry joints = jointGeometry(few_.actuator);
-    Matrix9d sum = Matrix9d::Zero();
+    RotationPairSum sum;
     for (const Sample& sample : few_.samples) {
-      const Eigen::Matrix3d R = rotorOrientation(joints, sample.joint_position);
-      for (Eigen::Index a = 0; a < 3; ++a) {
-        for (Eigen::Index b = 0; b < 3; ++b) {
-          sum.block<3, 3>(3 * a, 3 * b) += sample.R_stator_rotor(a, b) * R;
-        }
-      }
+      sum.add(sample.R_stator_rotor, rotorOrientation(joints, sample.joint_position));
     }
-    const Eigen::JacobiSVD<Matrix9d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix<double, 9, 1> left = svd.matrixU().col(0);
-    const Eigen::Matrix<double, 9, 1> right = svd.matrixV().col(0);
-    const Eigen::Map<const Eigen::Matrix3d> A(left.data());
-    const Eigen::Map<const Eigen::Matrix3d> B_transposed(right.data());
-    const double sign = A.determinant() < 0.0 ? -1.0 : 1.0;
+    const RotationPair frames = sum.nearest();
     Hypothesis tracker = trackerRotation(config_.tolerance.joint_axis);
     Hypothesis marker = markerRotation(config_.tolerance.joint_axis);
-    tracker.start = rotationLog(nearestRotation(sign * A));
-    marker.start = rotationLog(nearestRotation(sign * B_transposed.transpose()));
+    tracker.start = rotationLog(frames.X);
+    marker.start = rotationLog(frames.Z.transpose());
     add(tracker, marker);
-  }
-
-  static Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double handed = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, handed).asDiagonal() *
-           svd.matrixV().transpose();
   }
 
   const WiringCase few_;

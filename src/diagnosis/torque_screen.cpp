@@ -9,6 +9,7 @@
 #include "posterior_fit.hpp"
 #include "predicted_torques.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "torque_hypotheses.hpp"
@@ -174,9 +175,7 @@ class TorqueScreen {
         sum += torque.total * measured[n].transpose() / size;
       }
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-    const Eigen::Matrix3d rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+    const Eigen::Matrix3d rotation = nearestRotation(sum);
     std::vector<Eigen::Vector3d> turned;
     turned.reserve(measured.size());
     for (const Eigen::Vector3d& torque : measured) {

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 #include "extreme_eigenvalue.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 namespace sac {
@@ -24,18 +23,17 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
   if (n == 0) {
     return result;
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information, Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd values = symmetricEigenvalues(information);
   // Eigenvalues ascend: the open directions come first.
   Eigen::Index open = 0;
-  while (open < n && eigen.eigenvalues()[open] * limit * limit < 1.0) {
+  while (open < n && values[open] * limit * limit < 1.0) {
     ++open;
   }
   result.rank = n - open;
   result.open_directions.resize(n, 0);
   if (open > 0) {
     // The vectors cost several times the values, and most sessions leave nothing open.
-    eigen.compute(information);
-    result.open_directions = eigen.eigenvectors().leftCols(open);
+    result.open_directions = symmetricEigen(information).vectors.leftCols(open);
   }
   const Eigen::VectorXd participation = result.open_directions.rowwise().squaredNorm();
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -44,11 +42,10 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
     }
   }
   if (open < n) {
-    result.identified_condition_number =
-        std::sqrt(eigen.eigenvalues()[n - 1] / eigen.eigenvalues()[open]);
+    result.identified_condition_number = std::sqrt(values[n - 1] / values[open]);
   }
-  const double smallest = eigen.eigenvalues()[0];
-  result.condition_number = smallest > 0.0 ? std::sqrt(eigen.eigenvalues()[n - 1] / smallest)
+  const double smallest = values[0];
+  result.condition_number = smallest > 0.0 ? std::sqrt(values[n - 1] / smallest)
                                            : std::numeric_limits<double>::infinity();
   return result;
 }

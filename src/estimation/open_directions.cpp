@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 
 namespace sac {
 namespace {
@@ -107,7 +107,7 @@ std::vector<OpenDirection> nameOpenDirections(const ParameterSpace& space,
       basis.cols() == rotations.cols() &&
       (within.colwise().norm().array() >= kWithin * rotations.colwise().norm().array()).all();
   if (made_of_rotations) {
-    const Eigen::MatrixXd angles = rotations.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd angles = pseudoInverse(rotations);
     const Eigen::MatrixXd covariance = angles * belief.covariance * angles.transpose();
     for (Eigen::Index k = 0; k < rotations.cols(); ++k) {
       named.push_back({std::string(space.joints() > 0 ? "a common rotation of joints and coils"

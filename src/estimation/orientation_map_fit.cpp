@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include <Eigen/Eigenvalues>
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -101,16 +101,15 @@ class MapLikelihood {
                                poses_.readings[static_cast<std::size_t>(b)]);
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
-    const Eigen::VectorXd spectrum = solver.eigenvalues().cwiseMax(0.0);
+    const SymmetricEigen eigen = symmetricEigen(gram);
+    const Eigen::VectorXd spectrum = eigen.values.cwiseMax(0.0);
     double cost = 0.0;
     for (const std::size_t k : moved_) {
       cost += 0.5 * std::pow(std::log(length[k] / kUsualLength) / kLengthSpread, 2);
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const ComponentFit fit = fitComponent(
-          spectrum,
-          solver.eigenvectors().transpose() * rotations_.col(static_cast<Eigen::Index>(c)));
+          spectrum, eigen.vectors.transpose() * rotations_.col(static_cast<Eigen::Index>(c)));
       cost += fit.cost;
       if (map != nullptr) {
         map->amplitude[c] = fit.amplitude;

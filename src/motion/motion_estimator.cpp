@@ -6,13 +6,13 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "current_steps.hpp"
 #include "motion_outliers.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 #include "steady_torque.hpp"
@@ -206,11 +206,9 @@ void Estimator::findCovariance() {
   belief.covariance(estimated, Eigen::all) += with_held;
   belief.covariance(Eigen::all, estimated) += with_held.transpose();
   belief.covariance(estimated, estimated) = 0.5 * (own + own.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information(estimated, estimated),
-                                                             Eigen::EigenvaluesOnly);
-  const double least = eigen.eigenvalues()[0];
-  result_.estimate.condition_number =
-      least > 0.0 ? std::sqrt(eigen.eigenvalues()[count - 1] / least) : 0.0;
+  const Eigen::VectorXd values = symmetricEigenvalues(information(estimated, estimated));
+  const double least = values[0];
+  result_.estimate.condition_number = least > 0.0 ? std::sqrt(values[count - 1] / least) : 0.0;
 }
 
 /// Windows and orientations that are held out, and their errors.

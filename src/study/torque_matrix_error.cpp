@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 
 namespace sac {
 namespace {
@@ -47,8 +48,7 @@ std::vector<TorqueMatrixError> torqueMatrixErrors(const Actuator& truth,
   errors.reserve(poses.size());
   for (const Eigen::Vector3d& q : poses) {
     const Eigen::Matrix3Xd Q_true = true_matrix.at(q);
-    const Eigen::MatrixXd inverse =
-        Eigen::MatrixXd(model_matrix.at(q)).completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd inverse = pseudoInverse(model_matrix.at(q));
     const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::MatrixXd>(Q_true).singularValues();
     const Eigen::Matrix3d difference = Q_true * inverse - Eigen::Matrix3d::Identity();
     errors.push_back(

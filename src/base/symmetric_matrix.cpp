@@ -1,0 +1,17 @@
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace sac {
+
+SymmetricEigen symmetricEigen(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXd symmetricEigenvalues(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
+}  // namespace sac
