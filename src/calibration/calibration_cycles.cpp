@@ -158,6 +158,21 @@ std::string join(const ParameterSpace& space,
                 all.probability);
 }
 
+/// Axes that could lie elsewhere as well, also by what a motion told, are not identified.
+void countAmbiguous(const ParameterSpace& space,
+                    const Estimate& estimate,
+                    CycleCoordinates& coordinates,
+                    CycleReport& report) {
+  if (estimate.ambiguous.empty()) {
+    return;
+  }
+  report.doubts.push_back(ambiguityInWords(space, estimate.ambiguous));
+  for (const Eigen::Index first : estimate.ambiguous) {
+    coordinates.unobservable.insert(coordinates.unobservable.end(), {first, first + 1});
+  }
+  std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
+}
+
 /// What is to say of observations that repeat others and are left out.
 struct LeftOut {
   std::string words;
@@ -284,10 +299,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
     return outcome;
   }
   fillReport(samples, problem.observations, estimate, report);
-  for (const Eigen::Index first : estimate.ambiguous) {
-    coordinates.unobservable.insert(coordinates.unobservable.end(), {first, first + 1});
-  }
-  std::sort(coordinates.unobservable.begin(), coordinates.unobservable.end());
+  countAmbiguous(model.space(), estimate, coordinates, report);
   conclude(model, estimate, coordinates, request.expected_errors, outcome.state, report);
   report.message =
       successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +

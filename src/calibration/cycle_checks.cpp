@@ -227,20 +227,6 @@ std::string axisName(const ParameterSpace& space, Eigen::Index p) {
   return (is_pole ? "pole " : "coil ") + std::to_string(numberOf(id.index));
 }
 
-std::string ambiguityInWords(const ParameterSpace& space,
-                             const std::vector<Eigen::Index>& ambiguous) {
-  std::string names;
-  for (const Eigen::Index p : ambiguous) {
-    const bool is_last = p == ambiguous.back();
-    names += (names.empty() ? "" : is_last ? " and " : ", ") + axisName(space, p);
-  }
-  return ambiguous.size() == 1
-             ? "Ambiguous: another place of " + names +
-                   " explains its torques nearly as well; measure it at further poses."
-             : "Ambiguous: other places of " + names +
-                   " explain their torques nearly as well; measure them at further poses.";
-}
-
 /// Axes of which no sample was left, though there had been many.
 std::string lostAxes(const EstimationProblem& problem,
                      const Estimate& estimate,
@@ -260,6 +246,20 @@ std::string lostAxes(const EstimationProblem& problem,
 }
 
 }  // namespace
+
+std::string ambiguityInWords(const ParameterSpace& space,
+                             const std::vector<Eigen::Index>& ambiguous) {
+  std::string names;
+  for (const Eigen::Index p : ambiguous) {
+    const bool is_last = p == ambiguous.back();
+    names += (names.empty() ? "" : is_last ? " and " : ", ") + axisName(space, p);
+  }
+  return ambiguous.size() == 1
+             ? "Ambiguous: another place of " + names +
+                   " explains its torques nearly as well; measure it at further poses."
+             : "Ambiguous: other places of " + names +
+                   " explain their torques nearly as well; measure them at further poses.";
+}
 
 std::string deviation(const ParameterSpace& space,
                       const Estimate& estimate,
@@ -334,9 +334,6 @@ std::vector<std::string> doubts(const EstimationProblem& problem,
         format("Residuals are only %.2g times their stated uncertainty: the stated noise is too "
                "large, or samples are copies of each other.",
                std::sqrt(chi_square)));
-  }
-  if (!estimate.ambiguous.empty()) {
-    words.push_back(ambiguityInWords(problem.model->space(), estimate.ambiguous));
   }
   return words;
 }

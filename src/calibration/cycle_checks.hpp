@@ -23,7 +23,12 @@ std::string deviation(const ParameterSpace& space,
                       const std::vector<Eigen::Index>& free,
                       const EstimationOptions& options);
 
-/// What keeps an estimate that is taken from being good, a sentence each.
+/// Which axes could lie elsewhere as well, by their first coordinates. Precondition: there are
+/// some.
+std::string ambiguityInWords(const ParameterSpace& space,
+                             const std::vector<Eigen::Index>& ambiguous);
+
+/// What keeps an estimate that is taken from being good, a sentence each, but that it is ambiguous.
 std::vector<std::string> doubts(const EstimationProblem& problem,
                                 const Estimate& estimate,
                                 const EstimationOptions& options);

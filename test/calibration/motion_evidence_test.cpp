@@ -224,6 +224,29 @@ TEST_F(MotionThenSamples, KeepsWhatSamplesDoNotTell) {
   }
 }
 
+// One torque of a coil has several places of it, and the motion knows which.
+TEST_F(MotionThenSamples, LeaveNothingAmbiguousThatTheMotionTold) {
+  scenarios::Generator generator(4);
+  moving_.truth = scenarios::paperTruth();
+  samples_ = scenarios::paperSession(moving_.truth, scenarios::Tracker::kFirstTenPoses, generator);
+  for (const Eigen::Index coil : {5, 22}) {
+    const auto excites = [coil](const Sample& sample) {
+      return sample.has_torque && std::abs(sample.current[coil]) > 1.0;
+    };
+    const auto first = std::find_if(samples_.begin(), samples_.end(), excites);
+    ASSERT_NE(first, samples_.end());
+    samples_.erase(std::remove_if(first + 1, samples_.end(), excites), samples_.end());
+  }
+  CalibrationSession alone = session(samples_);
+  const CycleReport of_samples = alone.run({Cycle::kRefine});
+  ASSERT_NE(of_samples.message.find("Ambiguous"), std::string::npos) << of_samples.message;
+  CalibrationSession both = session(samples_);
+  ASSERT_TRUE(both.run({Cycle::kMotion}).success);
+  const CycleReport report = both.run({Cycle::kRefine});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_EQ(report.message.find("Ambiguous"), std::string::npos) << report.message;
+}
+
 TEST_F(MotionThenSamples, ThatContradictEachOtherAreRefused) {
   moving_.truth = scenarios::paperNominal();  // a motion of another unit
   CalibrationSession both = session(samples_);
