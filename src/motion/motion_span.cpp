@@ -89,6 +89,19 @@ double largestSpeed(const JointTrack& track, const MotionWindow& window) {
   return fastest;
 }
 
+/// Of any coil, by stamps as they are [A].
+float largestCurrent(const MotionSpan& span, const MotionWindow& window) {
+  const std::size_t begin = span.current_times.firstFrom(span.track.time(window.first));
+  const std::size_t end = span.current_times.firstFrom(span.track.time(window.last));
+  if (begin >= end) {
+    return 0.0F;
+  }
+  return span.streams->currents
+      .middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin))
+      .cwiseAbs()
+      .maxCoeff();
+}
+
 }  // namespace
 
 MotionSpan::MotionSpan(const MotionStreams& recorded)
@@ -155,6 +168,27 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
     }
   }
   return windows;
+}
+
+std::vector<MotionWindow> drivenWindows(const std::vector<MotionSpan>& spans,
+                                        const std::vector<MotionWindow>& windows,
+                                        std::vector<WindowsLeftOut>& left_out) {
+  constexpr float kLeast = 0.02F;  // of the largest current
+  std::vector<float> currents;
+  for (const MotionWindow& window : windows) {
+    currents.push_back(largestCurrent(spans[window.span], window));
+  }
+  const float largest =
+      currents.empty() ? 0.0F : *std::max_element(currents.begin(), currents.end());
+  std::vector<MotionWindow> driven;
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    if (currents[n] >= kLeast * largest) {
+      driven.push_back(windows[n]);
+    } else {
+      countLeftOut("no coil carries current", left_out);
+    }
+  }
+  return driven;
 }
 
 std::optional<CommandResponse> responseOfLongest(const std::vector<MotionSpan>& spans) {

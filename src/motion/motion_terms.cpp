@@ -23,19 +23,31 @@ std::vector<MotionSpan> spansOf(const MotionRecording& recording) {
   return spans;
 }
 
+/// So many of them, evenly; 0: all.
+std::vector<MotionWindow> thinned(const std::vector<MotionWindow>& windows, std::size_t most) {
+  if (most == 0 || windows.size() <= most) {
+    return windows;
+  }
+  std::vector<MotionWindow> some;
+  for (std::size_t n = 0; n < most; ++n) {
+    some.push_back(windows[n * windows.size() / most]);
+  }
+  return some;
+}
+
 /// Those of slices, or cut.
 std::vector<MotionWindow> windowsOf(const MotionRecording& recording,
                                     const std::vector<MotionSpan>& spans,
                                     const MotionOptions& options,
                                     std::vector<WindowsLeftOut>& left_out) {
   if (recording.windows.empty()) {
-    return cutWindows(spans, options, left_out);
+    return drivenWindows(spans, cutWindows(spans, options, left_out), left_out);
   }
   std::vector<MotionWindow> windows;
   for (std::size_t s = 0; s < spans.size(); ++s) {
     windows.push_back({s, recording.windows[s].first, recording.windows[s].last});
   }
-  return windows;
+  return drivenWindows(spans, windows, left_out);
 }
 
 /// They judge before they serve: every so manieth, where there are enough.
@@ -104,7 +116,9 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       places_(problem.model->space()),
       spans_(spansOf(*problem.recording)),
       noise_(noiseOf(spans_, *problem.model, problem.prior.x)),
-      windows_(termsOf(windowsOf(*problem.recording, spans_, options, left_out_), options)),
+      windows_(termsOf(
+          thinned(windowsOf(*problem.recording, spans_, options, left_out_), options.most_windows),
+          options)),
       orientations_(*problem.model, places_, spans_, options.window, heldOutOf(windows_, spans_)),
       sums_(problem.prior.x.size()),
       evaluators_(std::max(1U, std::thread::hardware_concurrency()),

@@ -97,7 +97,10 @@ class BalanceEvaluator {
                    double step,
                    const BalanceOrder& order);
   Fading fadingAt(const JointTrack& track, std::size_t place) const;
-  void setMomentumFactors(std::size_t place, double h);
+  /// Of a place of one of its intervals, from the reading before the window on [s].
+  double lengthOf(const JointTrack& track, std::size_t place) const;
+  double neighbourShare(const JointTrack& track, std::size_t place, double neighbour) const;
+  void setMomentumFactors(const JointTrack& track, std::size_t place);
   void addNoise(const TrackPoint& track, double step, const BalanceOrder& order);
   void finishNoise(WindowBalance& out);
 

@@ -15,6 +15,8 @@ struct MotionOptions {
   std::size_t least_windows_to_hold_out = 40;
   /// Speed v below which dry friction fades [rad/s].
   double friction_speed = 0.05;
+  /// Of more windows so many serve, evenly over the recording; 0: all.
+  std::size_t most_windows = 0;
   /// Derivatives of so many windows are kept; of longer recordings sums, and fewer of them.
   std::size_t most_kept_windows = 260;
 };
