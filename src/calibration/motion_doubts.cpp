@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 namespace {
@@ -40,19 +41,17 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
 }
 
 /// What the tracker says does not fit, over windows: it drifts, or its clock does.
-std::string driftInWords(const MotionSummary& summary) {
-  // Once in a thousand by chance where as few windows as can tell it do, with 12 degrees of
-  // freedom.
-  constexpr double kLarge = 2.75;
-  const double chi_square = summary.orientation_chi_square;
-  if (!(chi_square > kLarge)) {
+std::string driftInWords(const WindowMeansMisfit& orientations) {
+  constexpr double kSignificance = 1e-3;
+  if (!(orientations.freedom > 0.0) ||
+      orientations.squares <= chiSquareLimit(orientations.freedom, kSignificance)) {
     return {};
   }
   return format(
-      "Orientations, in the mean of a window, are %.1f times their noise off: the tracker or its "
+      "Orientations, in the mean of a window, are %.2f times their noise off: the tracker or its "
       "clock drifts or jumps, or a joint sensor is not as modelled, and that may bias the "
       "parameters: check the tracker's stamps and mounting, and model errors of the joint sensors.",
-      std::sqrt(chi_square));
+      std::sqrt(orientations.reduced()));
 }
 
 }  // namespace
@@ -61,7 +60,7 @@ std::vector<std::string> motionDoubts(const MotionEstimate& found) {
   // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
   constexpr double kLarge = 1.1;
   std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
-                                 driftInWords(found.summary)};
+                                 driftInWords(found.orientations)};
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
     words.push_back(
         format("Residuals are %.2f times their noise: something acts that is not modelled, as a "

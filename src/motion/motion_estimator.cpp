@@ -44,7 +44,6 @@ class Estimator {
   std::size_t activeWindows() const;
   double windowFreedom() const;
   double windowSquares() const;
-  double orientationChiSquare() const;
   void judgeMisfit();
   void findCovariance();
   void judgeHeldOut();
@@ -99,7 +98,9 @@ bool Estimator::weighAnew() {
 }
 
 bool Estimator::solve() {
-  descent_.solveCoarsely();
+  if (problem_.start.size() == 0) {
+    descent_.solveCoarsely();
+  }
   terms_.findTrackerNoise(descent_.x());
   return solveFinely();
 }
@@ -151,11 +152,6 @@ bool Estimator::leavePushed() {
   return solveFinely();
 }
 
-double Estimator::orientationChiSquare() const {
-  const auto joints = static_cast<double>(problem_.model->space().pole(0));
-  return terms_.orientations().chiSquare(descent_.x(), joints);
-}
-
 void Estimator::judgeMisfit() {
   constexpr double kSignificance = 1e-3;
   Estimate& estimate = result_.estimate;
@@ -167,7 +163,9 @@ void Estimator::judgeMisfit() {
   }
   const double squares = windowSquares();
   result_.summary.window_chi_square = squares / freedom;
-  result_.summary.orientation_chi_square = orientationChiSquare();
+  const auto joints = static_cast<double>(problem_.model->space().pole(0));
+  result_.orientations = terms_.orientations().misfit(descent_.x(), joints);
+  result_.summary.orientation_chi_square = result_.orientations.reduced();
   estimate.reduced_chi_square = squares / freedom;
   if (squares > chiSquareLimit(freedom, kSignificance)) {
     estimate.covariance_scale = std::sqrt(squares / freedom);

@@ -30,7 +30,7 @@ MotionDescent::MotionDescent(const MotionProblem& problem,
       estimation_(estimation),
       options_(options),
       terms_(terms),
-      x_(problem.prior.x),
+      x_(problem.start.size() > 0 ? problem.start : problem.prior.x),
       open_limit_(estimation.unobservable_stddev),
       estimated_(problem.free) {
   open_.directions.resize(x_.size(), 0);

@@ -209,7 +209,7 @@ std::map<std::size_t, OrientationMean> OrientationTerms::heldOut(const Eigen::Ve
   return means;
 }
 
-double OrientationTerms::chiSquare(const Eigen::VectorXd& x, double coordinates) const {
+WindowMeansMisfit OrientationTerms::misfit(const Eigen::VectorXd& x, double coordinates) const {
   double squares = 0.0;
   double freedom = 0.0;
   for (std::size_t n = 0; n < groups_.size();) {
@@ -225,7 +225,8 @@ double OrientationTerms::chiSquare(const Eigen::VectorXd& x, double coordinates)
       freedom += 3.0;
     }
   }
-  return freedom > 2.0 * coordinates ? squares / (freedom - coordinates) : 0.0;
+  return freedom > 2.0 * coordinates ? WindowMeansMisfit{squares, freedom - coordinates}
+                                     : WindowMeansMisfit{};
 }
 
 void OrientationTerms::admitHeldOut() {

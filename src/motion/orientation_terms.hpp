@@ -82,9 +82,9 @@ class OrientationTerms {
   Eigen::Vector3d residualAt(const Eigen::VectorXd& x, const OrientationMean& mean) const {
     return mean.residual + mean.jacobian * apart(x);
   }
-  /// Reduced χ² of the means over a window's time of what serves, at x: drift and wrong joints show
-  /// there, white noise does not.
-  double chiSquare(const Eigen::VectorXd& x, double coordinates) const;
+  /// χ² of the means over a window's time of what serves, at x: drift and wrong joints show there,
+  /// white noise does not. Of nothing where these are too few to tell.
+  WindowMeansMisfit misfit(const Eigen::VectorXd& x, double coordinates) const;
   void admitHeldOut();
 
  private:

@@ -11,6 +11,7 @@ struct MotionEstimate {
   /// Its residuals are those of windows: the index of their sample is that of the window.
   Estimate estimate;
   MotionSummary summary;
+  WindowMeansMisfit orientations;
 };
 
 /// Finds the coordinates by weighted least squares over the momentum balance of windows and over

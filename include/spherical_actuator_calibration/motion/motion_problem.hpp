@@ -14,6 +14,9 @@ struct MotionProblem {
   const MotionRecording* recording = nullptr;
   std::vector<Eigen::Index> free;  ///< coordinates to estimate, ascending
   ParameterBelief prior;
+  /// All coordinates near the solution, as another estimate found them; empty: nothing is known,
+  /// and the prior and every delay are tried.
+  Eigen::VectorXd start;
 };
 
 }  // namespace sac

@@ -33,6 +33,14 @@ struct HeldOutMotion {
   std::vector<ObservationResidual> residuals;
 };
 
+/// Of the means of orientations over windows.
+struct WindowMeansMisfit {
+  double squares = 0.0;  ///< χ²
+  double freedom = 0.0;
+
+  double reduced() const { return freedom > 0.0 ? squares / freedom : 0.0; }
+};
+
 /// What became of a recording of motion.
 struct MotionSummary {
   double duration = 0.0;    ///< of the windows that served [s]
