@@ -15,6 +15,8 @@
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 #include "spherical_actuator_calibration/motion/silent_coils.hpp"
+#include "uneven_strengths.hpp"
+#include "wider_space.hpp"
 
 namespace sac {
 namespace {
@@ -46,24 +48,11 @@ bool knowsMotion(const ParameterSpace& space) {
   return false;
 }
 
-/// Where the coordinates of a space are in one that has more effects.
-std::vector<Eigen::Index> placesIn(const ParameterSpace& wide, const ParameterSpace& narrow) {
-  std::vector<Eigen::Index> places;
-  for (Eigen::Index p = 0, place = 0; p < narrow.size(); ++p, ++place) {
-    while (wide.name(place) != narrow.name(p)) {
-      ++place;
-    }
-    places.push_back(place);
-  }
-  return places;
-}
-
 /// The state where some coordinates are, and the one of `others` elsewhere.
 CalibrationState widened(const CalibrationState& state,
                          const std::vector<Eigen::Index>& places,
                          CalibrationState others) {
-  others.belief.x(places) = state.belief.x;
-  others.belief.covariance(places, places) = state.belief.covariance;
+  others.belief = widened(state.belief, places, others.belief);
   for (std::size_t n = 0; n < places.size(); ++n) {
     others.identified[static_cast<std::size_t>(places[n])] = state.identified[n];
   }
@@ -273,6 +262,10 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   }
   fillReport(found, report);
   report.doubts = motionDoubts(found);
+  const std::string strengths = unevenStrengths(problem, found.estimate.belief.x, silent, config);
+  if (!strengths.empty()) {
+    report.doubts.push_back(strengths);
+  }
   CycleCoordinates coordinates;
   coordinates.requested = asked;
   std::set_union(found.estimate.unobservable.begin(),

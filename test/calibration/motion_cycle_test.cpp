@@ -150,6 +150,48 @@ TEST_F(MotionCycleTest, DoubtsATrackerWhoseClockJumps) {
   }
 }
 
+TEST_F(MotionCycleTest, DoubtsATrackerWhoseMarkerSlips) {
+  moving_.duration = 15.0;
+  MotionRecording recording = noisy(moving_.record());
+  std::vector<Eigen::Quaterniond>& orientations = recording.spans.front().orientations;
+  const Eigen::Quaterniond slip(rotationExp({0.0, 2e-4, 2e-4}));
+  for (std::size_t n = orientations.size() / 2; n < orientations.size(); ++n) {
+    orientations[n] = orientations[n] * slip;
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_TRUE(isDoubted(report, "Orientations, in the mean")) << report.message;
+}
+
+// Two parts in a thousand: all windows fit, and axes are off by more than their intervals.
+TEST_F(MotionCycleTest, DoubtsCoilsOrPolesOfUnevenStrength) {
+  moving_.duration = 12.0;
+  moving_.rotor.inertia *= 1.1;
+  const Actuator made = moving_.truth;
+  const std::string words = "The motion fits better where ";
+  const auto report_of = [&] {
+    session_.setMotion(std::make_shared<const MotionRecording>(noisy(moving_.record())));
+    const CycleReport report = session_.run({Cycle::kMotion});
+    EXPECT_TRUE(report.success) << report.message;
+    return report;
+  };
+  EXPECT_FALSE(isDoubted(report_of(), words));
+  for (const std::size_t coil : {0U, 4U}) {
+    moving_.truth = made;
+    moving_.truth.coils[coil].gain = 1.002;
+    const CycleReport report = report_of();
+    EXPECT_TRUE(isDoubted(
+        report, words + "coils differ in strength, coil " + std::to_string(coil + 1) + " by 0."))
+        << report.message;
+  }
+  moving_.truth = made;
+  moving_.truth.poles[2].gain = 0.998;
+  const CycleReport report = report_of();
+  EXPECT_TRUE(isDoubted(report, words + "poles differ in strength, pole 3 by -0.2"))
+      << report.message;
+}
+
 // The amplifier is off, and what is read is the noise of its sensor.
 TEST_F(MotionCycleTest, HoldsACoilThroughWhichNothingFlowed) {
   constexpr std::size_t kDead = 4;

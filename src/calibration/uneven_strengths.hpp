@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_config.hpp"
+#include "spherical_actuator_calibration/motion/motion_problem.hpp"
+
+namespace sac {
+
+/// Whether a motion fits clearly better where each coil and pole has a strength of its own, in a
+/// sentence; empty: not, or some strength is modelled already. A coil that is 0.1 % stronger than
+/// the others shows here, long before windows do not fit, and shifts axes beyond their intervals.
+///
+/// `problem` was solved at `x`. `silent`: coils without current. Takes less time than the solution,
+/// and some 0.2 s however long the recording is. (doc/motion.md, How)
+std::string unevenStrengths(const MotionProblem& problem,
+                            const Eigen::VectorXd& x,
+                            const std::vector<std::size_t>& silent,
+                            const CalibrationConfig& config);
+
+}  // namespace sac
