@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+
 namespace sac {
 
 std::vector<std::size_t> measuredVisits(const std::vector<Sample>& samples,
@@ -15,7 +17,7 @@ std::vector<std::size_t> measuredVisits(const std::vector<Sample>& samples,
     for (const Sample& sample : samples) {
       const bool excites =
           sample.has_torque && !sample.validation &&
-          std::abs(sample.current[static_cast<Eigen::Index>(coil)]) >= current_threshold;
+          isExcited(sample.current[static_cast<Eigen::Index>(coil)], current_threshold);
       const auto is_near = [&](const Eigen::Vector3d& place) {
         return (place - sample.joint_position).norm() < spacing;
       };

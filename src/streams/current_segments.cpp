@@ -1,5 +1,7 @@
 #include "current_segments.hpp"
 
+#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+
 namespace sac {
 namespace {
 
@@ -33,7 +35,7 @@ class GrowingSegment {
     CurrentSegment segment;
     segment.span = {begin_, end_};
     segment.current = sum_ / static_cast<double>(count_);
-    segment.excited = segment.current.cwiseAbs().maxCoeff() >= threshold;
+    segment.excited = isExcited(segment.current.cwiseAbs().maxCoeff(), threshold);
     return segment;
   }
 
