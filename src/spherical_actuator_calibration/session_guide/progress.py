@@ -55,12 +55,10 @@ def joint_stddev(joints):
 
 
 def worst_stddev(parameters):
-    """[rad] of the axis or offset of an ActuatorParameters that is known worst; infinite where one is not known."""
+    """[rad] of the parameter of an ActuatorParameters that is known worst, as plans count it; infinite where one is not
+    known."""
     joints = [max(joint.offset_stddev, *joint.axis_stddev) for joint in parameters.joints]
-    axes = [
-        max(axis.polar_stddev, axis.azimuth_stddev * math.cos(axis.polar))
-        for axis in [*parameters.poles, *parameters.coils]
-    ]
+    axes = [max(axis.polar_stddev, axis.azimuth_stddev) for axis in [*parameters.poles, *parameters.coils]]
     return max(joints + axes)
 
 
