@@ -175,6 +175,7 @@ std::vector<MotionWindow> drivenWindows(const std::vector<MotionSpan>& spans,
                                         std::vector<WindowsLeftOut>& left_out) {
   constexpr float kLeast = 0.02F;  // of the largest current
   std::vector<float> currents;
+  currents.reserve(windows.size());
   for (const MotionWindow& window : windows) {
     currents.push_back(largestCurrent(spans[window.span], window));
   }
