@@ -67,6 +67,11 @@ void BalanceEvaluator::start(const MotionSpan& span,
   turned_.resize(readings);
   const TestFunctions functions(
       span.track.time(window.first), span.track.time(window.last), options_.test_functions);
+  lengths_.resize(readings - 1);
+  for (std::size_t n = 0; n + 1 < readings; ++n) {
+    const std::size_t reading = window.first - 1 + n;
+    lengths_[n] = span.track.time(reading + 1) - span.track.time(reading);
+  }
   middle_.resize(readings - 1);
   bends_.resize(readings - 1);
   // Of those around its intervals alone a part asks.
@@ -100,30 +105,23 @@ void BalanceEvaluator::start(const MotionSpan& span,
   }
 }
 
-double BalanceEvaluator::lengthOf(const JointTrack& track, std::size_t place) const {
-  const std::size_t reading = window_.first - 1 + place;
-  return track.time(reading + 1) - track.time(reading);
-}
-
 /// Of h³/12 ω̇ at a place within the window: what the turn of a neighbour, that long, counts there.
-double BalanceEvaluator::neighbourShare(const JointTrack& track,
-                                        std::size_t place,
-                                        double neighbour) const {
-  const double h = lengthOf(track, place);
-  const double apart = 0.5 * (lengthOf(track, place - 1) + 2.0 * h + lengthOf(track, place + 1));
+double BalanceEvaluator::neighbourShare(std::size_t place, double neighbour) const {
+  const double h = lengths_[place];
+  const double apart = 0.5 * (lengths_[place - 1] + 2.0 * h + lengths_[place + 1]);
   return h * h * h / (12.0 * apart * neighbour);
 }
 
 /// Of M = −Σ factor A Δ: −∫φ̇ L dt is −Σ (mean of φ̇) A Δ − Σ φ̈ A ω̇ h³/12, with ω̇ from the turns of
 /// both neighbours, which may be longer or shorter. Outside of the window φ̈ is zero.
-void BalanceEvaluator::setMomentumFactors(const JointTrack& track, std::size_t place) {
-  const double h = lengthOf(track, place);
+void BalanceEvaluator::setMomentumFactors(std::size_t place) {
+  const double h = lengths_[place];
   factor_ = middle_[place].first + (h * h / 24.0) * bends_[place].third;
   if (place > 1) {
-    factor_ += neighbourShare(track, place - 1, h) * bends_[place - 1].second;
+    factor_ += neighbourShare(place - 1, h) * bends_[place - 1].second;
   }
   if (place + 2 < middle_.size()) {
-    factor_ -= neighbourShare(track, place + 1, h) * bends_[place + 1].second;
+    factor_ -= neighbourShare(place + 1, h) * bends_[place + 1].second;
   }
 }
 
@@ -153,7 +151,7 @@ void BalanceEvaluator::addInterval(const MotionSpan& span,
                                    std::size_t place) {
   const TurnedRotor& before = turned_[place];
   const TurnedRotor& after = turned_[place + 1];
-  setMomentumFactors(span.track, place);
+  setMomentumFactors(place);
   const IntervalMomentum interval(before.R_stator_rotor, after.R_stator_rotor, point.inertia());
   const Fading fading = fadingAt(span.track, place);
   const double friction = point.viscous() + point.coulomb() * fading.value;

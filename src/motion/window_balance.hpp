@@ -97,10 +97,8 @@ class BalanceEvaluator {
                    double step,
                    const BalanceOrder& order);
   Fading fadingAt(const JointTrack& track, std::size_t place) const;
-  /// Of a place of one of its intervals, from the reading before the window on [s].
-  double lengthOf(const JointTrack& track, std::size_t place) const;
-  double neighbourShare(const JointTrack& track, std::size_t place, double neighbour) const;
-  void setMomentumFactors(const JointTrack& track, std::size_t place);
+  double neighbourShare(std::size_t place, double neighbour) const;
+  void setMomentumFactors(std::size_t place);
   void addNoise(const TrackPoint& track, double step, const BalanceOrder& order);
   void finishNoise(WindowBalance& out);
 
@@ -112,6 +110,7 @@ class BalanceEvaluator {
   Eigen::Index count_ = 0;                  ///< of test functions
   Eigen::Index turning_ = 0;                ///< rows of what turns the rotor
   std::vector<TurnedRotor> turned_;         ///< at the readings, one more on either side
+  std::vector<double> lengths_;             ///< of the intervals between them [s]
   std::vector<TestFunctionValues> middle_;  ///< between them
   std::vector<TestFunctionBends> bends_;    ///< there
   TurnedRotor between_;
