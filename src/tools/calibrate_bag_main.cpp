@@ -188,8 +188,11 @@ std::vector<CycleRequest> cyclesOf(const CalibrationSession& session,
 }
 
 void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) {
-  const std::vector<CycleRequest> requests = cyclesOf(session, options);
-  for (const CycleRequest& request : requests) {
+  for (const CycleRequest& request : cyclesOf(session, options)) {
+    if (request.cycle == Cycle::kRefine && session.motion() && session.samples().empty()) {
+      std::cout << "refine: no sample was recorded, it has nothing to add to the motion.\n";
+      continue;
+    }
     const CycleReport& report =
         session.run(options.report_folder ? request : withoutExpectedErrors(request));
     std::cout << cycleParagraph(report) << std::flush;
@@ -197,12 +200,9 @@ void runCycles(CalibrationSession& session, const CalibrateBagOptions& options) 
 }
 
 bool hasFailure(const CalibrationSession& session) {
-  for (const CycleReport& report : session.reports()) {
-    if (!report.success) {
-      return true;
-    }
-  }
-  return false;
+  const auto has_failed = [](const CycleReport& report) { return !report.success; };
+  const auto& reports = session.reports();
+  return std::any_of(reports.begin(), reports.end(), has_failed);
 }
 
 /// Runs the cycles unless the wiring is wrong; what explains the samples, where it was looked for.

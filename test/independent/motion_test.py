@@ -122,6 +122,9 @@ class Motion(unittest.TestCase):
             self.assertIn("held-out", result.stdout)
             with open(output, encoding="utf-8") as file:
                 calibrated = yaml.safe_load(file)["actuator"]
+            both = self.calibrate_bags(folder, "motion,refine", [bag])
+        self.assertEqual(both.returncode, 0, both.stdout)
+        self.assertIn("no sample was recorded", both.stdout)
         poles = self.unit.poles + self.errors[9 : 9 + 2 * len(self.unit.poles)].reshape(-1, 2)
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
