@@ -90,6 +90,14 @@ bool changesStrength(const PlacedEffect& placed, const ParameterSpace& space) {
          placed.effect->strengthCoordinate(space.poles() - 1, space.coils() - 1) >= 0;
 }
 
+/// Whether any strength is among the parameters.
+bool hasStrengths(const ParameterSpace& space) {
+  const std::vector<PlacedEffect>& effects = space.effects().effects();
+  return std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
+    return changesStrength(placed, space);
+  });
+}
+
 /// Whether a coordinate is a principal moment of inertia, or a relative change of strength: what it
 /// is when it is 0 itself. Nothing: neither.
 std::optional<double> strengthOrInertia(const ParameterSpace& space, Eigen::Index effect) {
@@ -262,9 +270,9 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   }
   fillReport(found, report);
   report.doubts = motionDoubts(found);
-  const std::string strengths = unevenStrengths(problem, found.estimate.belief.x, silent, config);
-  if (!strengths.empty()) {
-    report.doubts.push_back(strengths);
+  if (!hasStrengths(model.space())) {
+    const std::string uneven = unevenStrengths(problem, found.estimate.belief.x, silent, config);
+    report.doubts.insert(report.doubts.end(), uneven.empty() ? 0 : 1, uneven);
   }
   CycleCoordinates coordinates;
   coordinates.requested = asked;
@@ -288,11 +296,7 @@ std::vector<Eigen::Index> motionCoordinates(const ParameterSpace& space,
                                             HasOrientations has_orientations) {
   std::vector<Eigen::Index> coordinates(static_cast<std::size_t>(space.effect()));
   std::iota(coordinates.begin(), coordinates.end(), 0);
-  const std::vector<PlacedEffect>& effects = space.effects().effects();
-  const bool strength_moves =
-      std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
-        return changesStrength(placed, space);
-      });
+  const bool strength_moves = hasStrengths(space);
   for (Eigen::Index e = 0; e < space.effects().size(); ++e) {
     // Beside strengths one inertia is the reference; else all could shrink to nothing.
     const bool is_reference = strength_moves && space.effects().name(e) == "rotor_inertia/zz";

@@ -22,14 +22,6 @@ namespace {
 constexpr char kCoilGains[] = "coil_gains";
 constexpr char kPoleGains[] = "pole_gains";
 
-bool hasStrengths(const ParameterSpace& space) {
-  const std::vector<PlacedEffect>& effects = space.effects().effects();
-  return std::any_of(effects.begin(), effects.end(), [&](const PlacedEffect& placed) {
-    return placed.effect->changesCurve() ||
-           placed.effect->strengthCoordinate(space.poles() - 1, space.coils() - 1) >= 0;
-  });
-}
-
 /// Places of the gains of an effect, those of the second pole or coil on: all are relative to the
 /// first one, as motion tells only the ratio of strength and inertia.
 std::vector<Eigen::Index> gainsOf(const ParameterSpace& space, const std::string& effect) {
@@ -132,9 +124,6 @@ std::string unevenStrengths(const MotionProblem& problem,
                             const std::vector<std::size_t>& silent,
                             const CalibrationConfig& config) {
   constexpr double kSignificance = 1e-5;
-  if (hasStrengths(problem.model->space())) {
-    return {};
-  }
   EffectSelection selection = withMotionEffects(config.effects);
   selection[kCoilGains] = true;
   selection[kPoleGains] = true;

@@ -10,11 +10,11 @@
 namespace sac {
 
 /// Whether a motion fits clearly better where each coil and pole has a strength of its own, in a
-/// sentence; empty: not, or some strength is modelled already. A coil that is 0.1 % stronger than
-/// the others shows here, long before windows do not fit, and shifts axes beyond their intervals.
+/// sentence; empty: not. A coil that is 0.1 % stronger than the others shows here, long before
+/// windows do not fit, and shifts axes beyond their intervals.
 ///
-/// `problem` was solved at `x`. `silent`: coils without current. Takes less time than the solution,
-/// and some 0.2 s however long the recording is. (doc/motion.md, How)
+/// `problem` was solved at `x`, and has no strengths. `silent`: coils without current. Takes less
+/// time than the solution, and some 0.2 s however long the recording is. (doc/motion.md, How)
 std::string unevenStrengths(const MotionProblem& problem,
                             const Eigen::VectorXd& x,
                             const std::vector<std::size_t>& silent,
