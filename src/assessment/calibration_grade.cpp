@@ -12,13 +12,7 @@
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 
 namespace sac {
-namespace {
-
-std::string number(std::size_t value) {
-  return std::to_string(value);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 /// Collects what speaks for and against one session.
 class CalibrationGrader::Examiner {
@@ -118,7 +112,7 @@ class CalibrationGrader::Examiner {
   std::string unidentified() const {
     const std::vector<std::string> open = session_.openParameters();
     if (!open.empty()) {
-      return ", " + number(open.size()) + " that were asked for are not";
+      return ", " + std::to_string(open.size()) + " that were asked for are not";
     }
     return identified_ < parameters_ ? ", the others are not" : "";
   }
@@ -256,7 +250,8 @@ class CalibrationGrader::Examiner {
 
   std::string outliers() const {
     return validation_ != nullptr && validation_->outliers > 0
-               ? " but for " + number(validation_->outliers) + " outliers, as rare as the others'"
+               ? " but for " + std::to_string(validation_->outliers) +
+                     " outliers, as rare as the others'"
                : std::string();
   }
 
@@ -268,8 +263,9 @@ class CalibrationGrader::Examiner {
 
   std::string identified() const {
     return identified_ == parameters_
-               ? "all " + number(parameters_) + " parameters are identified"
-               : number(identified_) + " of " + number(parameters_) + " parameters are identified";
+               ? "all " + std::to_string(parameters_) + " parameters are identified"
+               : std::to_string(identified_) + " of " + std::to_string(parameters_) +
+                     " parameters are identified";
   }
 
   /// Of the last successful cycle; a description that was calibrated before tells none.

@@ -16,20 +16,16 @@
 namespace sac {
 namespace {
 
-std::string number(std::size_t value) {
-  return std::to_string(value);
-}
-
 /// "3, 7, 8 and 4 more" of ascending numbers.
 std::string enumerate(const std::vector<std::uint32_t>& ids) {
   constexpr std::size_t kMostNamed = 8;
   std::string text;
   for (std::size_t n = 0; n < ids.size() && n < kMostNamed; ++n) {
     text += n == 0 ? "" : ", ";
-    text += number(ids[n]);
+    text += std::to_string(ids[n]);
   }
   if (ids.size() > kMostNamed) {
-    text += " and " + number(ids.size() - kMostNamed) + " more";
+    text += " and " + std::to_string(ids.size() - kMostNamed) + " more";
   }
   return text;
 }

@@ -2,21 +2,16 @@
 #include <cmath>
 #include <utility>
 
-#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "explanation_words.hpp"
+#include "material_value.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "torque_hypotheses.hpp"
 
 namespace sac {
 namespace {
 
-/// A strength beyond so many tolerances is a mistake.
-constexpr double kMaterial = 3.0;
 /// Strength of a pole that is missing: a description has no zero.
 constexpr double kNearlyNothing = 1e-6;
-
-std::string number(std::size_t index) {
-  return std::to_string(numberOf(index));
-}
 
 /// Strengths nearer to −1 or 0 than to 1.
 constexpr double kTurned = -0.5;
@@ -47,8 +42,8 @@ Hypothesis ofPole(const std::string& cause,
                   const std::string& sentence,
                   Change change) {
   Hypothesis result;
-  result.cause = cause + ":" + number(pole);
-  result.family = "pole:" + number(pole);
+  result.cause = cause + ":" + numberText(pole);
+  result.family = "pole:" + numberText(pole);
   result.correct = [pole, change](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
     change(wiring.actuator.poles[pole]);
   };
@@ -67,15 +62,15 @@ Hypothesis strength(const std::string& kind,
                     double tolerance,
                     const std::string& should) {
   Hypothesis result;
-  result.cause = kind + "_gain:" + number(index);
-  result.family = kind + ":" + number(index);
+  result.cause = kind + "_gain:" + numberText(index);
+  result.family = kind + ":" + numberText(index);
   result.start = Eigen::VectorXd::Constant(1, factor);
   result.is_strength = true;
   result.is_material = [tolerance](const Eigen::VectorXd& values) {
     return std::abs(values[0] - 1.0) > kMaterial * tolerance;
   };
   result.sentence =
-      [kind, name = kind + " " + number(index), should](const Eigen::VectorXd& values) {
+      [kind, name = kind + " " + numberText(index), should](const Eigen::VectorXd& values) {
         return name + format(" exerts %.3g times the torque that ", values[0]) + should +
                format("; multiply its `gain` in the description by %.4g, or model ", values[0]) +
                kind + "_gains in calibration.yaml.";
@@ -88,7 +83,7 @@ Hypothesis strength(const std::string& kind,
 Hypothesis coilShift(std::size_t steps) {
   const std::string sentence =
       "the currents of all coils are shifted: what is recorded as coil 1 flows in coil " +
-      number(steps) +
+      numberText(steps) +
       ", and so on around: correct the first register `address` of setpoints and currents in the "
       "coil driver's file (coil_driver.yaml), or the order of coils in the description.";
   Hypothesis result =
@@ -109,19 +104,19 @@ Hypothesis coilShift(std::size_t steps) {
 
 Hypothesis coilSign(std::size_t coil) {
   return ofCurrents(
-      "coil_sign:" + number(coil),
-      "coil:" + number(coil),
-      "coil " + number(coil) +
+      "coil_sign:" + numberText(coil),
+      "coil:" + numberText(coil),
+      "coil " + numberText(coil) +
           " is wired the wrong way round: exchange its leads at the amplifier.",
       [coil](Eigen::VectorXd& current) { current[static_cast<Eigen::Index>(coil)] *= -1.0; });
 }
 
 Hypothesis coilSwap(std::size_t first, std::size_t second) {
-  const std::string cause = "coil_swap:" + number(first) + ":" + number(second);
+  const std::string cause = "coil_swap:" + numberText(first) + ":" + numberText(second);
   Hypothesis result =
       ofCurrents(cause,
                  cause,
-                 "coils " + number(first) + " and " + number(second) +
+                 "coils " + numberText(first) + " and " + numberText(second) +
                      " are exchanged: exchange their leads at the amplifier, or their entries in "
                      "the description.",
                  [first, second](Eigen::VectorXd& current) {
@@ -136,9 +131,9 @@ Hypothesis coilSwap(std::size_t first, std::size_t second) {
 
 Hypothesis coilDead(std::size_t coil) {
   return ofCurrents(
-      "coil_dead:" + number(coil),
-      "coil:" + number(coil),
-      "coil " + number(coil) +
+      "coil_dead:" + numberText(coil),
+      "coil:" + numberText(coil),
+      "coil " + numberText(coil) +
           " exerts no torque though a current is measured: check its winding, its "
           "connector and its current sensor; remove its samples meanwhile.",
       [coil](Eigen::VectorXd& current) { current[static_cast<Eigen::Index>(coil)] = 0.0; });
@@ -171,7 +166,7 @@ Hypothesis coilGain(std::size_t coil, double gain, double tolerance) {
 Hypothesis polePolarity(std::size_t pole) {
   return ofPole("pole_polarity",
                 pole,
-                "pole " + number(pole) +
+                "pole " + numberText(pole) +
                     " has the opposite polarity: turn its magnet around, or change its "
                     "`polarity` in the description.",
                 [](PoleAxis& axis) { axis.polarity *= -1; });
@@ -180,7 +175,7 @@ Hypothesis polePolarity(std::size_t pole) {
 Hypothesis poleMissing(std::size_t pole) {
   return ofPole("pole_missing",
                 pole,
-                "pole " + number(pole) +
+                "pole " + numberText(pole) +
                     " exerts no torque: its magnet is missing or lost its strength; mount it, or "
                     "take it out of the description.",
                 [](PoleAxis& axis) { axis.gain *= kNearlyNothing; });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
@@ -34,6 +35,10 @@ std::string valueInWords(const ParameterEstimate& estimate) {
 }
 
 }  // namespace
+
+std::string numberText(std::size_t index) {
+  return std::to_string(numberOf(index));
+}
 
 bool isSignificant(const ParameterEstimate& estimate) {
   constexpr double kSignificant = 5.0;  // standard deviations

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 
 namespace sac {
+
+/// The number that people see of a joint, pole or coil.
+std::string numberText(std::size_t index);
 
 /// Whether a value differs from what it is without its cause by more than its uncertainty explains.
 bool isSignificant(const ParameterEstimate& estimate);

@@ -1,25 +1,19 @@
 #include <cmath>
 #include <utility>
 
+#include "explanation_words.hpp"
+#include "material_value.hpp"
 #include "orientation_hypotheses.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
 
-/// A mistake is further from none than tolerances explain.
-constexpr double kMaterial = 3.0;
-
-std::string number(std::size_t index) {
-  return std::to_string(numberOf(index));
-}
-
 Hypothesis sign(std::size_t joint, const std::string& name) {
   Hypothesis result;
-  result.cause = "joint_sign:" + number(joint);
-  result.family = "joint_scale:" + number(joint);
+  result.cause = "joint_sign:" + numberText(joint);
+  result.family = "joint_scale:" + numberText(joint);
   result.correct = [joint](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
     for (Sample& sample : wiring.samples) {
       sample.joint_position[static_cast<Eigen::Index>(joint)] *= -1.0;
@@ -39,7 +33,7 @@ Hypothesis sign(std::size_t joint, const std::string& name) {
 
 Hypothesis swap(std::size_t first, std::size_t second, const Actuator& actuator) {
   Hypothesis result;
-  result.cause = "joint_swap:" + number(first) + ":" + number(second);
+  result.cause = "joint_swap:" + numberText(first) + ":" + numberText(second);
   result.family = result.cause;
   result.correct = [first, second](WiringCase& wiring, const Eigen::VectorXd& /*values*/) {
     for (Sample& sample : wiring.samples) {
@@ -85,7 +79,7 @@ Hypothesis unit(double factor, const std::string& words) {
 
 Hypothesis scale(std::size_t joint, const std::string& name, double tolerance) {
   Hypothesis result;
-  result.cause = "joint_scale:" + number(joint);
+  result.cause = "joint_scale:" + numberText(joint);
   result.family = result.cause;
   result.start = Eigen::VectorXd::Ones(1);
   result.correct = [joint](WiringCase& wiring, const Eigen::VectorXd& values) {
@@ -112,7 +106,7 @@ Hypothesis scale(std::size_t joint, const std::string& name, double tolerance) {
 
 Hypothesis index(std::size_t joint, const std::string& name, double tolerance) {
   Hypothesis result;
-  result.cause = "joint_index:" + number(joint);
+  result.cause = "joint_index:" + numberText(joint);
   result.family = result.cause;
   result.start = Eigen::VectorXd::Zero(1);
   result.correct = [joint](WiringCase& wiring, const Eigen::VectorXd& values) {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "cube_rotations.hpp"
+#include "explanation_words.hpp"
 #include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/nearest_rotation.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -24,10 +24,6 @@ namespace {
 constexpr std::size_t kFewestOnOneSide = 3;
 /// More rows than so many are tried in steps.
 constexpr std::size_t kMostPlaces = 60;
-
-std::string number(std::size_t index) {
-  return std::to_string(numberOf(index));
-}
 
 /// Samples that something moved before or after.
 struct Rows {
@@ -84,7 +80,7 @@ Hypothesis movedTracker(const WiringCase& described, const Rows& rows) {
 
 Hypothesis slippedJoint(const WiringCase& described, const Rows& rows, std::size_t joint) {
   Hypothesis result;
-  result.cause = "joint_slipped:" + number(joint);
+  result.cause = "joint_slipped:" + numberText(joint);
   result.family = result.cause;
   result.start = Eigen::VectorXd::Zero(1);
   const auto row = static_cast<Eigen::Index>(joint);

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "explanation_words.hpp"
 #include "moved_hypotheses.hpp"
 #include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -18,10 +18,6 @@ namespace sac {
 namespace {
 
 using IsWrapped = std::array<bool, kJoints>;
-
-std::string number(std::size_t index) {
-  return std::to_string(numberOf(index));
-}
 
 /// The angle beside its reading, among those that repeat after `period`, which the orientation of a
 /// sample is nearest to.
@@ -114,7 +110,7 @@ std::vector<Hypothesis> wrappedJoints(const WiringCase& described) {
         one[k] = true;
         all.push_back(wrapped(one,
                               branches,
-                              "joint_wrapped:" + number(k),
+                              "joint_wrapped:" + numberText(k),
                               "the readings of joint " + described.actuator.joints[k].name,
                               orientations));
       }

@@ -13,8 +13,6 @@
 namespace sac {
 namespace {
 
-/// A cause explains a misfit when it takes away so much of its excess at least.
-constexpr double kExplainedShare = 0.8;
 /// Misfits beyond it are none of chance: standard deviations of a reduced chi-square.
 constexpr double kBeyondChance = 6.0;
 

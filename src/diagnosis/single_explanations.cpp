@@ -9,7 +9,6 @@
 #include "explanation_words.hpp"
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
@@ -19,8 +18,6 @@
 namespace sac {
 namespace {
 
-/// A cause explains a misfit when it takes away so much of its excess at least.
-constexpr double kExplainedShare = 0.8;
 /// Of a squared misfit: single gross errors, which nothing here explains, have little weight.
 constexpr double kMostCounted = 30.0;
 /// Odds below it do not tell two causes apart [nats].
@@ -48,10 +45,6 @@ struct Explanation {
   /// The same, with what is known of the parameters beforehand.
   double probability() const { return score() + fit.log_posterior - fit.log_likelihood; }
 };
-
-std::string number(std::size_t index) {
-  return std::to_string(numberOf(index));
-}
 
 bool isOfMotion(const ParameterSpace& space, const std::string& effect) {
   for (const PlacedEffect& placed : space.effects().effects()) {
@@ -154,9 +147,9 @@ class Explainer {
       const auto [index, strength] = strengths[n];
       const double tolerance = config_.tolerance.effect;
       if (all.cause == "pole_gains") {
-        tryFactor(poleGain(index, strength, tolerance), "pole_" + number(index) + "/gain");
+        tryFactor(poleGain(index, strength, tolerance), "pole_" + numberText(index) + "/gain");
       } else {
-        tryFactor(coilGain(index, strength, tolerance), "coil_" + number(index) + "/gain");
+        tryFactor(coilGain(index, strength, tolerance), "coil_" + numberText(index) + "/gain");
       }
     }
   }

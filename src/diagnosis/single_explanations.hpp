@@ -8,6 +8,9 @@
 
 namespace sac {
 
+/// A cause explains a misfit when it takes away so much of its excess at least.
+constexpr double kExplainedShare = 0.8;
+
 /// What explains a misfit of samples by itself: effects of the laboratory, the scale of a joint,
 /// the strength of a coil or of a pole. Each is fitted to all samples at once, so that those that
 /// tell of it are not dropped as outliers. It is named when the samples tell its value, it differs

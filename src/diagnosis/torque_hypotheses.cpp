@@ -5,15 +5,13 @@
 #include <utility>
 
 #include "cube_rotations.hpp"
+#include "material_value.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
-
-/// A rotation or factor beyond so many tolerances is a mistake.
-constexpr double kMaterial = 3.0;
 
 /// `change`: what becomes of one sample with torque.
 template <typename Change>

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "material_value.hpp"
 #include "predicted_torques.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "torque_screen.hpp"
@@ -15,7 +16,6 @@
 namespace sac {
 namespace {
 
-constexpr double kMaterial = 3.0;
 constexpr const char* kAxes = "xyz";
 /// Fewer readings at the end of a range, or alike, may be chance.
 constexpr std::size_t kFewestAlike = 4;

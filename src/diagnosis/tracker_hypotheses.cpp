@@ -1,14 +1,12 @@
 #include <Eigen/Geometry>
 
 #include "cube_rotations.hpp"
+#include "material_value.hpp"
 #include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
-
-/// A rotation beyond so many tolerances is a mistake.
-constexpr double kMaterial = 3.0;
 
 template <typename Change>
 std::function<void(WiringCase&, const Eigen::VectorXd&)> changingOrientations(Change change) {
