@@ -1,30 +1,13 @@
 #include "motion_table.hpp"
 
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <type_traits>
 
+#include "number_bytes.hpp"
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/motion/motion_slice.hpp"
 
 namespace sac::motion_table {
 namespace {
-
-constexpr unsigned kBitsPerByte = 8;
-
-template <typename Value>
-using BitsOf = std::conditional_t<sizeof(Value) == 8, std::uint64_t, std::uint32_t>;
-
-/// Lowest byte first on every machine.
-template <typename Value>
-void append(std::string& bytes, Value value) {
-  BitsOf<Value> bits = 0;
-  std::memcpy(&bits, &value, sizeof value);
-  for (std::size_t n = 0; n < sizeof value; ++n) {
-    bytes.push_back(static_cast<char>(static_cast<unsigned char>(bits >> (kBitsPerByte * n))));
-  }
-}
 
 /// Takes values off the front of bytes.
 class Bytes {
@@ -41,14 +24,8 @@ class Bytes {
 
   template <typename Value>
   Value take() {
-    BitsOf<Value> bits = 0;
-    for (std::size_t n = 0; n < sizeof bits; ++n) {
-      const auto byte = static_cast<unsigned char>(bytes_[place_ + n]);
-      bits |= static_cast<BitsOf<Value>>(byte) << (kBitsPerByte * n);
-    }
-    place_ += sizeof bits;
-    Value value{};
-    std::memcpy(&value, &bits, sizeof value);
+    const auto value = numberAt<Value>(bytes_, place_);
+    place_ += sizeof value;
     return value;
   }
 
@@ -60,9 +37,9 @@ class Bytes {
 std::string jointsOf(const MotionStreams& streams) {
   std::string bytes;
   for (std::size_t n = 0; n < streams.joints.size(); ++n) {
-    append(bytes, streams.joint_stamps[n]);
+    appendNumber(bytes, streams.joint_stamps[n]);
     for (const double angle : streams.joints[n]) {
-      append(bytes, angle);
+      appendNumber(bytes, angle);
     }
   }
   return bytes;
@@ -71,9 +48,9 @@ std::string jointsOf(const MotionStreams& streams) {
 std::string currentsOf(const MotionStreams& streams) {
   std::string bytes;
   for (std::size_t n = 0; n < streams.current_stamps.size(); ++n) {
-    append(bytes, streams.current_stamps[n]);
+    appendNumber(bytes, streams.current_stamps[n]);
     for (const float current : streams.currents.row(static_cast<Eigen::Index>(n))) {
-      append(bytes, current);
+      appendNumber(bytes, current);
     }
   }
   return bytes;
@@ -82,9 +59,9 @@ std::string currentsOf(const MotionStreams& streams) {
 std::string orientationsOf(const MotionStreams& streams) {
   std::string bytes;
   for (std::size_t n = 0; n < streams.orientations.size(); ++n) {
-    append(bytes, streams.orientation_stamps[n]);
+    appendNumber(bytes, streams.orientation_stamps[n]);
     for (const double component : streams.orientations[n].coeffs()) {
-      append(bytes, component);
+      appendNumber(bytes, component);
     }
   }
   return bytes;

@@ -1,35 +1,14 @@
 #include "number_blob.hpp"
 
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 
+#include "number_bytes.hpp"
 #include "row_access.hpp"
 
 namespace sac {
 namespace {
 
 constexpr std::size_t kBytes = sizeof(double);
-constexpr unsigned kBitsPerByte = 8;
-
-void append(std::string& blob, double value) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, kBytes);
-  for (std::size_t n = 0; n < kBytes; ++n) {
-    blob.push_back(static_cast<char>(static_cast<unsigned char>(bits >> (kBitsPerByte * n))));
-  }
-}
-
-double numberAt(const std::string& blob, std::size_t offset) {
-  std::uint64_t bits = 0;
-  for (std::size_t n = 0; n < kBytes; ++n) {
-    const auto byte = static_cast<unsigned char>(blob[offset + n]);
-    bits |= static_cast<std::uint64_t>(byte) << (kBitsPerByte * n);
-  }
-  double value = 0.0;
-  std::memcpy(&value, &bits, kBytes);
-  return value;
-}
 
 }  // namespace
 
@@ -38,7 +17,7 @@ std::string blobOf(const Eigen::MatrixXd& matrix) {
   blob.reserve(static_cast<std::size_t>(matrix.size()) * kBytes);
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
     for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
-      append(blob, matrix(row, column));
+      appendNumber(blob, matrix(row, column));
     }
   }
   return blob;
@@ -52,7 +31,7 @@ Eigen::MatrixXd matrixOf(const std::string& blob, Eigen::Index rows, Eigen::Inde
   std::size_t offset = 0;
   for (Eigen::Index row = 0; row < rows; ++row) {
     for (Eigen::Index column = 0; column < columns; ++column) {
-      matrix(row, column) = numberAt(blob, offset);
+      matrix(row, column) = numberAt<double>(blob, offset);
       offset += kBytes;
     }
   }
@@ -67,7 +46,7 @@ std::string symmetricBlobOf(const Eigen::MatrixXd& matrix) {
   std::string blob;
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
     for (Eigen::Index column = 0; column <= row; ++column) {
-      append(blob, matrix(row, column));
+      appendNumber(blob, matrix(row, column));
     }
   }
   return blob;
@@ -81,7 +60,7 @@ Eigen::MatrixXd symmetricOf(const std::string& blob, Eigen::Index n) {
   std::size_t offset = 0;
   for (Eigen::Index row = 0; row < n; ++row) {
     for (Eigen::Index column = 0; column <= row; ++column) {
-      matrix(row, column) = numberAt(blob, offset);
+      matrix(row, column) = numberAt<double>(blob, offset);
       matrix(column, row) = matrix(row, column);
       offset += kBytes;
     }
