@@ -11,8 +11,6 @@
 namespace sac {
 namespace {
 
-constexpr std::int64_t kLargestAddress = 65535;
-
 constexpr double kLongestBeat = 1.0;  // [s]
 
 std::optional<int> readAddress(const YamlMap& map, const char* key) {

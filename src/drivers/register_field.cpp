@@ -4,7 +4,6 @@ namespace sac {
 
 RegisterField readRegisterField(const YamlMap& map) {
   constexpr std::int64_t kLargestUnit = 247;
-  constexpr std::int64_t kLargestAddress = 65535;
   RegisterField field;
   field.unit = static_cast<int>(map.integer("unit", 0, kLargestUnit, field.unit));
   const std::string table = map.choice("table", {"holding", "input"}, "holding");

@@ -10,6 +10,9 @@
 
 namespace sac {
 
+/// Addresses of words are 0 to this.
+constexpr std::int64_t kLargestAddress = 65535;
+
 /// One number, or a block of numbers of one kind, in the registers of a device:
 /// value = sign · scale · (register − zero).
 struct RegisterField {
