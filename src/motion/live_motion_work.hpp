@@ -65,7 +65,7 @@ class LiveMotionWork {
   Eigen::MatrixXd prior_information_;  ///< zero where a coordinate is held
   bool holds_uncertain_ = false;       ///< some coordinate that is not free is uncertain
 
-  StreamNoise noise_;
+  MotionNoise noise_;
   NoiseFactors factors_;
   SilentCoils silent_coils_;                  ///< of all windows
   std::vector<std::size_t> silent_;           ///< of them, for which `free_` was chosen

@@ -19,11 +19,6 @@ constexpr double kWait = 0.1;
 /// Longer than that without a reading: another motion [s].
 constexpr double kHole = 0.5;
 
-constexpr std::size_t kLeastReadings = 12;
-
-/// Readings on either side of a window, for what is interpolated there.
-constexpr std::size_t kBeside = 2;
-
 Stamp ticks(double seconds) {
   return static_cast<Stamp>(std::llround(seconds * 1e9));
 }

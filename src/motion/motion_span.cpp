@@ -54,8 +54,6 @@ ReadingRange drivenReadings(const MotionSpan& span,
 std::vector<std::size_t> bordersOf(const MotionSpan& span,
                                    double largest_delay,
                                    std::size_t length) {
-  // Two readings more on either side, for what is interpolated there.
-  constexpr std::size_t kBeside = 2;
   std::vector<std::size_t> borders;
   if (span.track.size() < 2 * kBeside + length) {
     return borders;
@@ -147,7 +145,6 @@ std::string refusalOf(const MotionSpan& span,
 std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out) {
-  constexpr std::size_t kLeastReadings = 12;
   std::vector<MotionWindow> windows;
   for (std::size_t s = 0; s < spans.size(); ++s) {
     const JointTrack& track = spans[s].track;

@@ -12,6 +12,12 @@
 
 namespace sac {
 
+/// A window has at least so many readings.
+constexpr std::size_t kLeastReadings = 12;
+
+/// Readings on either side of a window, for what is interpolated there.
+constexpr std::size_t kBeside = 2;
+
 /// One span of a recording, with times in seconds from its first reading.
 struct MotionSpan {
   explicit MotionSpan(const MotionStreams& recorded);

@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
+#include "motion_noise.hpp"
 #include "motion_span.hpp"
 #include "orientation_terms.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "spherical_actuator_calibration/motion/motion_problem.hpp"
-#include "stream_noise.hpp"
 #include "window_balance.hpp"
 
 namespace sac {
@@ -66,7 +66,7 @@ class MotionTerms {
   OrientationTerms& orientations() { return orientations_; }
   const std::vector<MotionSpan>& spans() const { return spans_; }
   const std::vector<WindowsLeftOut>& leftOut() const { return left_out_; }
-  const StreamNoise& noise() const { return noise_; }
+  const MotionNoise& noise() const { return noise_; }
   /// Where the tracker's delay is known better than at the begin, what seemed noise may be motion.
   void findTrackerNoise(const Eigen::VectorXd& x);
   const MotionPlaces& places() const { return places_; }
@@ -125,7 +125,7 @@ class MotionTerms {
   MotionPlaces places_;
   std::vector<MotionSpan> spans_;
   std::vector<WindowsLeftOut> left_out_;
-  StreamNoise noise_;
+  MotionNoise noise_;
   std::vector<WindowTerm> windows_;
   OrientationTerms orientations_;
   double window_scale_ = 1.0;

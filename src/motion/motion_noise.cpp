@@ -1,4 +1,4 @@
-#include "stream_noise.hpp"
+#include "motion_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,13 +63,13 @@ double trackerNoise(const std::vector<MotionSpan>& spans,
   return std::max(kLeast, differences.stddev());
 }
 
-StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
+MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
                     const Eigen::VectorXd& x) {
   // Streams without noise have at least that of their numbers.
   constexpr double kLeastJoint = 1e-9;
   constexpr double kLeastCurrent = 1e-7;
-  StreamNoise noise;
+  MotionNoise noise;
   for (Eigen::Index k = 0; k < 3; ++k) {
     ThirdDifferences joint;
     for (const MotionSpan& span : spans) {

@@ -12,14 +12,14 @@ namespace sac {
 
 /// Noise of the streams by differences of neighbours, robust against steps and outliers. What moves
 /// faster than the streams see counts as noise: these are upper bounds.
-struct StreamNoise {
+struct MotionNoise {
   Eigen::Vector3d joint = Eigen::Vector3d::Zero();  ///< standard deviation [rad]
   double current = 0.0;                             ///< [A]
   double orientation = 0.0;                         ///< per component [rad]
 };
 
 /// `x`: coordinates near enough that the tracker's misfit changes slowly.
-StreamNoise noiseOf(const std::vector<MotionSpan>& spans,
+MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
                     const Eigen::VectorXd& x);
 
