@@ -289,7 +289,7 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
     return std::max(AxisScan::reach(search.range), 1.1 * x.segment<2>(first).norm());
   };
   const ScannedModel model(problem, observations, x, within);
-  const CoarseCurve coarse_curve(model.curve());
+  const TabulatedCurve tabulated_curve(model.curve());
   // Few torques may fit elsewhere as well by chance. The prior is no judge: an earlier cycle may
   // have left it in the wrong place.
   const DrawingDistance distance(space, x, search.tolerance);
@@ -297,7 +297,7 @@ std::vector<AxisMode> otherModes(const EstimationProblem& problem,
       [&](Eigen::Index first, const AxisChart& chart, bool is_pole, ScannedTorques torques) {
         const Eigen::Vector2d present = x.segment<2>(first);
         const AxisScan axis(model.curve(),
-                            coarse_curve,
+                            tabulated_curve,
                             chart,
                             is_pole,
                             std::move(torques),

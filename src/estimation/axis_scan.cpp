@@ -14,7 +14,7 @@ namespace sac {
 namespace {
 
 /// The basins of a torque curve are wider than a step for ranges of up to 0.2 rad.
-constexpr int kSteps = 4;
+constexpr int kCoarseSteps = 4;
 /// Few torques fit in many places, on both sides of the curve's peak: looked for more closely.
 constexpr std::size_t kFewTorques = 3;
 constexpr int kFineSteps = 18;
@@ -23,41 +23,26 @@ constexpr double kWithin = 36.0;
 
 }  // namespace
 
-CoarseCurve::CoarseCurve(const TorqueCurve& curve) : first_(curve.cosSupportEnd()) {
-  constexpr std::size_t kIntervals = 1024;
-  per_kappa_ = static_cast<double>(kIntervals) / (1.0 - first_);
-  for (std::size_t n = 0; n <= kIntervals; ++n) {
-    const double kappa = std::min(first_ + static_cast<double>(n) / per_kappa_, 1.0);
-    values_.push_back(curve.safe(kappa, std::sqrt((1.0 - kappa) * (1.0 + kappa))).h);
-  }
-}
-
-double CoarseCurve::h(double kappa) const {
-  const double place = (std::min(kappa, 1.0) - first_) * per_kappa_;
-  const std::size_t n = std::min(static_cast<std::size_t>(place), values_.size() - 2);
-  return values_[n] + (place - static_cast<double>(n)) * (values_[n + 1] - values_[n]);
-}
-
 double AxisScan::reach(double range) {
   // To the corners, a step beyond the edge; angles and coordinates differ by less than a tenth.
-  return 1.1 * std::sqrt(2.0) * (range + range / kSteps);
+  return 1.1 * std::sqrt(2.0) * (range + range / kCoarseSteps);
 }
 
 AxisScan::AxisScan(const TorqueCurve& curve,
-                   const CoarseCurve& coarse_curve,
+                   const TabulatedCurve& tabulated_curve,
                    const AxisChart& chart,
                    bool is_pole,
                    ScannedTorques torques,
                    double range,
                    double transition)
     : curve_(curve),
-      coarse_curve_(coarse_curve),
+      tabulated_curve_(tabulated_curve),
       chart_(chart),
       is_pole_(is_pole),
       scanned_(std::move(torques)),
       limit_(transition * transition),
       range_(range),
-      steps_(scanned_.torques.size() <= kFewTorques ? kFineSteps : kSteps),
+      steps_(scanned_.torques.size() <= kFewTorques ? kFineSteps : kCoarseSteps),
       step_(range / steps_) {}
 
 /// Of a place of the grid: what decides where to look closely.
@@ -72,7 +57,7 @@ double AxisScan::coarseMisfit(const Eigen::Vector2d& place) const {
     Eigen::Vector3d rest = torque.rest;
     for (const ScannedPartner& partner : torque.partners) {
       if (interacts(curve_, partner.axis_rotor, own)) {
-        const double h = coarse_curve_.h(own.dot(partner.axis_rotor));
+        const double h = tabulated_curve_.at(own.dot(partner.axis_rotor)).h;
         rest -= sign * partner.weight * h * own.cross(partner.axis_rotor);
       }
     }
@@ -230,7 +215,7 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
   };
   const Eigen::Matrix2d all = Eigen::Matrix2d::Identity();
   std::vector<Eigen::Vector2d> starts = localMinima();
-  starts.resize(std::min(starts.size(), steps_ == kSteps ? kMostStarts : kMostFineStarts));
+  starts.resize(std::min(starts.size(), steps_ == kCoarseSteps ? kMostStarts : kMostFineStarts));
   for (const Eigen::Vector2d& start : starts) {
     add(descended(start, all));
   }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/tabulated_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
@@ -38,26 +39,13 @@ struct ScannedPlace {
   double gain;
 };
 
-/// h(κ) of a torque curve (TorqueCurve::Safe) between points of a table: to 1e-5 of its peak, for
-/// the first look.
-class CoarseCurve {
- public:
-  explicit CoarseCurve(const TorqueCurve& curve);
-  double h(double kappa) const;
-
- private:
-  double first_;  ///< κ below which there is no torque
-  double per_kappa_;
-  std::vector<double> values_;
-};
-
 /// The robust misfit of the torques of one pole or coil over its two angles, all else held.
 class AxisScan {
  public:
   /// Keeps references to curves and chart. `range`: half width of the scan [rad]; `transition`:
   /// whitened norm beyond which a misfit fades.
   AxisScan(const TorqueCurve& curve,
-           const CoarseCurve& coarse_curve,
+           const TabulatedCurve& tabulated_curve,
            const AxisChart& chart,
            bool is_pole,
            ScannedTorques torques,
@@ -88,7 +76,7 @@ class AxisScan {
                                            const Eigen::Matrix2d& information) const;
 
   const TorqueCurve& curve_;
-  const CoarseCurve& coarse_curve_;
+  const TabulatedCurve& tabulated_curve_;
   const AxisChart& chart_;
   bool is_pole_;
   ScannedTorques scanned_;

@@ -42,6 +42,7 @@ LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
       options_(options),
       live_(live),
       places_(model.space()),
+      tabulated_(model.curve()),
       orienting_(orientingCoordinates(model.space(), places_)),
       prior_information_(Eigen::MatrixXd::Zero(prior_.x.size(), prior_.x.size())),
       next_begin_(live.first_windows),
@@ -138,7 +139,7 @@ void LiveMotionWork::findNoise() {
 /// Linearises what is kept where the estimate is; the squared whitened misfit that the derivatives
 /// of before have got wrong.
 double LiveMotionWork::linearizeKept(bool with_covariance) {
-  const MotionPoint point(*model_, places_, x_);
+  const MotionPoint point(*model_, places_, x_, &tabulated_);
   std::vector<double> wrong(kept_.size(), 0.0);
   const auto threads = static_cast<unsigned>(evaluators_.size());
   parallelFor(kept_.size(), threads, [&](unsigned worker, std::size_t n) {
@@ -251,7 +252,7 @@ bool LiveMotionWork::misleads() {
   const LiveWindow& window = kept_[next_probe_ % kept_.size()];
   next_probe_ += 7;
   window.evaluate(
-      MotionPoint(*model_, places_, x_), {}, evaluators_, [] {}, probe_);
+      MotionPoint(*model_, places_, x_, &tabulated_), {}, evaluators_, [] {}, probe_);
   const double wrong = window.whitened(probe_.residual - window.balanceAt(x_)).squaredNorm();
   return wrong * static_cast<double>(kept_.size()) > live_.tolerance * live_.tolerance;
 }
@@ -276,7 +277,7 @@ bool LiveMotionWork::contradicts(const LiveWindow& window) const {
 
 /// A window that just came.
 void LiveMotionWork::take(LiveWindow& window) {
-  const MotionPoint point(*model_, places_, x_);
+  const MotionPoint point(*model_, places_, x_, &tabulated_);
   BalanceOrder order;
   order.covariance = true;
   window.linearize(point, order, evaluators_, [&] {

@@ -61,6 +61,7 @@ class LiveMotionWork {
   MotionOptions options_;
   LiveMotionOptions live_;
   MotionPlaces places_;
+  TabulatedCurve tabulated_;
   std::vector<Eigen::Index> orienting_;
   Eigen::MatrixXd prior_information_;  ///< zero where a coordinate is held
   bool holds_uncertain_ = false;       ///< some coordinate that is not free is uncertain

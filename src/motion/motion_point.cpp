@@ -26,11 +26,13 @@ MotionPlaces::MotionPlaces(const ParameterSpace& space) {
 
 MotionPoint::MotionPoint(const CalibrationModel& model,
                          const MotionPlaces& places,
-                         const Eigen::VectorXd& x)
+                         const Eigen::VectorXd& x,
+                         const TabulatedCurve* tabulated)
     : space_(&model.space()),
       places_(places),
       x_(x),
       curve_(&model.curve()),
+      tabulated_(tabulated),
       joints_(model.space(), x),
       nominal_joints_(jointGeometry(model.space().nominal())) {
   setScales();
@@ -93,6 +95,7 @@ void MotionPoint::setStrengths() {
       placed.effect->applyTo(bare, EffectLayout::values(placed, x_.data() + space_->effect()));
       changed_curve_.emplace(*bare.torque_curve);
       curve_ = &*changed_curve_;
+      tabulated_ = nullptr;
     }
   }
 }
@@ -212,7 +215,8 @@ void MotionPoint::findPairs(const Eigen::Matrix3d& R, StatorTorque& out) const {
   for (std::size_t n = 0; n < out.near; ++n) {
     NearPair& pair = out.pairs[n];
     pair.cross = out.poles.col(pair.pole).cross(coils_.col(pair.coil));
-    pair.curve = curve_->safe(out.cosines(pair.coil, pair.pole), pair.cross.norm());
+    const double kappa = out.cosines(pair.coil, pair.pole);
+    pair.curve = tabulated_ ? tabulated_->at(kappa) : curve_->safe(kappa, pair.cross.norm());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/tabulated_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/joint_point.hpp"
@@ -55,8 +56,12 @@ struct StatorTorque {
 /// All that a model of motion needs at coordinates x.
 class MotionPoint {
  public:
-  /// Keeps a reference to the model.
-  MotionPoint(const CalibrationModel& model, const MotionPlaces& places, const Eigen::VectorXd& x);
+  /// Keeps references. `tabulated`: the curve of the model, for speed; not used where effects
+  /// change the curve.
+  MotionPoint(const CalibrationModel& model,
+              const MotionPlaces& places,
+              const Eigen::VectorXd& x,
+              const TabulatedCurve* tabulated = nullptr);
 
   const ParameterSpace& space() const { return *space_; }
   const MotionPlaces& places() const { return places_; }
@@ -116,6 +121,7 @@ class MotionPoint {
   MotionPlaces places_;
   Eigen::VectorXd x_;
   const TorqueCurve* curve_;
+  const TabulatedCurve* tabulated_;  ///< of curve_, or none
   std::optional<TorqueCurve> changed_curve_;
   Eigen::VectorXd scales_;  ///< of each coordinate; 1 of the geometry's
   JointPoint joints_;

@@ -114,6 +114,7 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
     : problem_(problem),
       options_(options),
       places_(problem.model->space()),
+      tabulated_(problem.model->curve()),
       spans_(spansOf(*problem.recording)),
       noise_(noiseOf(spans_, *problem.model, problem.prior.x)),
       windows_(termsOf(
@@ -187,7 +188,7 @@ void MotionTerms::linearize(const Eigen::VectorXd& x, const TermOrder& order) {
 /// In a long recording the derivatives of few windows are kept.
 void MotionTerms::linearizeWindows(const BalanceOrder& order) {
   constexpr std::size_t kChunks = 16;
-  const MotionPoint point(*problem_.model, places_, linearized_at_);
+  const MotionPoint point(*problem_.model, places_, linearized_at_, &tabulated_);
   const auto threads = static_cast<unsigned>(evaluators_.size());
   const std::size_t count = (windows_.size() + every_ - 1) / every_;
   order_ = order;
@@ -273,7 +274,7 @@ void MotionTerms::sumUpWhatChanged() {
     linearizeWindows(order_);
     return;
   }
-  const MotionPoint point(*problem_.model, places_, linearized_at_);
+  const MotionPoint point(*problem_.model, places_, linearized_at_, &tabulated_);
   for (WindowTerm& term : windows_) {
     if (!term.is_summed || term.isSound() == term.is_in_sum) {
       continue;

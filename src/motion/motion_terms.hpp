@@ -123,6 +123,7 @@ class MotionTerms {
   const MotionProblem& problem_;
   const MotionOptions& options_;
   MotionPlaces places_;
+  TabulatedCurve tabulated_;
   std::vector<MotionSpan> spans_;
   std::vector<WindowsLeftOut> left_out_;
   MotionNoise noise_;
