@@ -34,16 +34,16 @@ function(use_precompiled_headers target)
   endif()
 endfunction()
 
-option(SOURCES_IN_BATCHES "Compile the sources of a room with messages together, in a third of the time" ON)
+option(SOURCES_IN_BATCHES "Compile ten sources of a room together, in half of the time" ON)
 
 # One shared library, whose rooms add their sources: sac_<part>, and sac::<part> for those who link it.
-# add_library_of_rooms(<name> [ROS] [BATCHES] [EXPORTED] [USES libraries...])
+# add_library_of_rooms(<name> [ROS] [EXPORTED] [USES libraries...])
 # ROS: with ROS headers and generated messages, as system headers: their warnings are not ours.
-# BATCHES: ten sources of a room are compiled as one (SOURCES_IN_BATCHES), so that what each keeps to itself, in a
-# namespace without a name, has a name of its own among them.
+# Ten sources of a room are compiled as one (SOURCES_IN_BATCHES), so that what each keeps to itself, in a namespace
+# without a name, has a name of its own among them.
 # EXPORTED: other packages may link it, so that the headers of its rooms are installed (see export.cmake).
 function(add_library_of_rooms name)
-  cmake_parse_arguments(arg "ROS;BATCHES;EXPORTED" "" "USES" ${ARGN})
+  cmake_parse_arguments(arg "ROS;EXPORTED" "" "USES" ${ARGN})
   # libFuzzer and the sanitizers of clang are linked into programs alone.
   set(kind SHARED)
   if(FUZZING)
@@ -59,7 +59,7 @@ function(add_library_of_rooms name)
     EXPORT_NAME ${part}
     EXPORTED ${arg_EXPORTED})
   # Before 3.18 CMake cannot keep the rooms apart.
-  if(arg_BATCHES AND SOURCES_IN_BATCHES AND NOT CMAKE_VERSION VERSION_LESS 3.18)
+  if(SOURCES_IN_BATCHES AND NOT CMAKE_VERSION VERSION_LESS 3.18)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
   add_library(sac::${part} ALIAS ${name})

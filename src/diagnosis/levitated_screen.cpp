@@ -12,8 +12,8 @@ namespace sac {
 namespace {
 
 /// More than so many torques tell nothing more to a screening.
-constexpr std::size_t kMostScreened = 40;
-constexpr std::size_t kMostFitted = 8;
+constexpr std::size_t kMostMapsScreened = 40;
+constexpr std::size_t kMostMapsFitted = 8;
 
 /// The orientation is the reading of the rotor, too.
 Hypothesis ofReadings(Hypothesis hypothesis) {
@@ -37,7 +37,7 @@ WiringCase torquesOf(const WiringCase& described) {
   }
   WiringCase few;
   few.actuator = described.actuator;
-  const std::size_t step = (all.size() + kMostScreened - 1) / kMostScreened;
+  const std::size_t step = (all.size() + kMostMapsScreened - 1) / kMostMapsScreened;
   for (std::size_t n = 0; n < all.size(); n += step) {
     few.samples.push_back(*all[n]);
   }
@@ -81,7 +81,7 @@ class Screen {
       const double loss = torqueLoss(corrected(described_, {shift}, {}), config_);
       add(shift, (all - loss) * share());
     }
-    keepBest(candidates_, kMostFitted);
+    keepBest(candidates_, kMostMapsFitted);
     return std::move(candidates_);
   }
 

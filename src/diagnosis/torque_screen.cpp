@@ -17,7 +17,7 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kMostFitted = 8;
+constexpr std::size_t kMostTurnsFitted = 8;
 constexpr std::size_t kMostShifts = 3;
 /// Gains below it come by chance and are not worth a fit [nats].
 constexpr double kLeastGain = 3.0;
@@ -56,7 +56,7 @@ class TorqueScreen {
         promising.push_back(std::move(candidate));
       }
     }
-    keepBest(promising, kMostFitted);
+    keepBest(promising, kMostTurnsFitted);
     return promising;
   }
 

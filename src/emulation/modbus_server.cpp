@@ -27,17 +27,8 @@ constexpr int kLongestQueue = 8;         // of connections that wait
 constexpr int kPollTime = 50;            // until a stop is seen [ms]
 constexpr std::uint32_t kQuiet = 50000;  // within a request [µs]
 
-struct ContextDeleter {
-  void operator()(modbus_t* context) const { modbus_free(context); }
-};
-struct MappingDeleter {
-  void operator()(modbus_mapping_t* mapping) const { modbus_mapping_free(mapping); }
-};
-using Context = std::unique_ptr<modbus_t, ContextDeleter>;
-using Mapping = std::unique_ptr<modbus_mapping_t, MappingDeleter>;
-
-std::uint16_t* tableOf(const Mapping& mapping, RegisterTable table) {
-  return table == RegisterTable::kHolding ? mapping->tab_registers : mapping->tab_input_registers;
+std::uint16_t* tableOf(const modbus_mapping_t& mapping, RegisterTable table) {
+  return table == RegisterTable::kHolding ? mapping.tab_registers : mapping.tab_input_registers;
 }
 
 int boundPort(int socket) {
@@ -91,12 +82,12 @@ class ModbusServer::Listener {
                 int address,
                 const std::vector<std::uint16_t>& words) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::copy(words.begin(), words.end(), tableOf(units_.at(unit), table) + address);
+    std::copy(words.begin(), words.end(), tableOf(*units_.at(unit), table) + address);
   }
 
   std::vector<std::uint16_t> words(int unit, RegisterTable table, int address, int count) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const std::uint16_t* first = tableOf(units_.at(unit), table) + address;
+    const std::uint16_t* first = tableOf(*units_.at(unit), table) + address;
     return {first, first + count};
   }
 
@@ -106,6 +97,15 @@ class ModbusServer::Listener {
   }
 
  private:
+  struct ContextDeleter {
+    void operator()(modbus_t* context) const { modbus_free(context); }
+  };
+  struct MappingDeleter {
+    void operator()(modbus_mapping_t* mapping) const { modbus_mapping_free(mapping); }
+  };
+  using Context = std::unique_ptr<modbus_t, ContextDeleter>;
+  using Mapping = std::unique_ptr<modbus_mapping_t, MappingDeleter>;
+
   void run() {
     while (!stopped_) {
       std::vector<pollfd> waiting{{socket_, POLLIN, 0}};

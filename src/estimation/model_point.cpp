@@ -21,16 +21,6 @@ Eigen::Vector3d applied(const Eigen::Matrix3Xd& columns, const ActingEffects& ac
                         : Eigen::Vector3d(columns * acting.values);
 }
 
-/// A rotation by the effects that act on it, e^{v̂}, and ∂v/∂their values.
-struct EffectRotation {
-  EffectRotation(const Eigen::Matrix3Xd& columns, const ActingEffects& acting)
-      : d_vector(columns), vector(applied(columns, acting)), rotation(rotationExp(vector)) {}
-
-  Eigen::Matrix3Xd d_vector;
-  Eigen::Vector3d vector;
-  Eigen::Matrix3d rotation;
-};
-
 Eigen::Matrix3d minus() {
   return -Eigen::Matrix3d::Identity();
 }
@@ -58,6 +48,16 @@ using CoilTerms = boost::container::small_vector<CoilTerm, 8>;
 }  // namespace
 
 struct ModelPoint::Parts {
+  /// A rotation by the effects that act on it, e^{v̂}, and ∂v/∂their values.
+  struct EffectRotation {
+    EffectRotation(const Eigen::Matrix3Xd& columns, const ActingEffects& acting)
+        : d_vector(columns), vector(applied(columns, acting)), rotation(rotationExp(vector)) {}
+
+    Eigen::Matrix3Xd d_vector;
+    Eigen::Vector3d vector;
+    Eigen::Matrix3d rotation;
+  };
+
   Parts(const CalibrationModel& model, const Eigen::VectorXd& x);
 
   bool hasJoints() const { return space.joints() > 0; }

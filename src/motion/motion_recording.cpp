@@ -11,7 +11,7 @@ namespace sac {
 namespace {
 
 /// Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
-constexpr std::size_t kMost = 1U << 20U;
+constexpr std::size_t kMostReadings = 1U << 20U;
 
 MotionStreams::Currents matrixOf(const std::vector<float>& currents, std::size_t rows) {
   const auto count = static_cast<Eigen::Index>(rows);
@@ -47,7 +47,7 @@ bool MotionRecorder::isNext(Sequence& sequence,
     endSpan();
   }
   const bool is_next =
-      is_fine && (stamps.empty() || stamp > stamps.back()) && sequence.taken < kMost;
+      is_fine && (stamps.empty() || stamp > stamps.back()) && sequence.taken < kMostReadings;
   sequence.taken += is_next ? 1 : 0;
   recording_.dropped += is_next ? 0 : 1;
   return is_next;
@@ -81,7 +81,7 @@ void MotionRecorder::add(const CurrentMeasurement& measurement) {
 
 void MotionRecorder::add(const CurrentCommand& command) {
   const bool is_later = command_stamps_.empty() || command.stamp > command_stamps_.back();
-  if (is_later && isCurrent(command.current) && command_stamps_.size() < kMost) {
+  if (is_later && isCurrent(command.current) && command_stamps_.size() < kMostReadings) {
     command_stamps_.push_back(command.stamp);
     append(command.current, commands_);
   }

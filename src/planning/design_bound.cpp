@@ -18,7 +18,7 @@ constexpr double kLastExponent = 66.0;
 /// where orientations tell as much as torques, it approaches slowly.
 constexpr std::size_t kLooks = 8;
 constexpr std::size_t kMostLooks = 24;
-constexpr double kNear = 0.97;
+constexpr double kNearMixture = 0.97;
 constexpr std::size_t kStepsPerLook = 8;
 constexpr std::size_t kActive = 200;
 /// Visits that one step mixes in, at different poses: a single one would rarely be worth a step.
@@ -101,7 +101,7 @@ void DesignBound::improve(const std::function<bool()>& is_time_up) {
     for (const RankedVisit& visit : best) {
       active_.push_back(visit.second.candidate);
     }
-    if (look + 1 >= kLooks && stddev() > kNear * mixture) {
+    if (look + 1 >= kLooks && stddev() > kNearMixture * mixture) {
       return;
     }
   }

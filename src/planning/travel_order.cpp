@@ -9,7 +9,7 @@ namespace sac {
 namespace {
 
 /// Shorter by less than this is not shorter [rad].
-constexpr double kLeastGain = 1e-9;
+constexpr double kLeastShortening = 1e-9;
 /// A way that no change shortens need not be the shortest, so several first poses are tried: fewer
 /// where there are many poses, because the time of one trial grows with their third power.
 constexpr std::size_t kMostVisits = 300;
@@ -37,7 +37,7 @@ bool shorten(const Eigen::Vector3d& start,
              Order& order) {
   const double length = travelLength(start, poses, order);
   const auto improves = [&](const Order& changed) {
-    return travelLength(start, poses, changed) < length - kLeastGain;
+    return travelLength(start, poses, changed) < length - kLeastShortening;
   };
   const auto count = static_cast<std::ptrdiff_t>(order.size());
   for (std::ptrdiff_t first = 0; first < count; ++first) {

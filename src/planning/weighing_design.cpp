@@ -21,7 +21,7 @@ constexpr double kExponents[] = {8.0, 24.0, 72.0};
 constexpr int kMostPasses = 6;
 /// Exchanges that gain less, of the logarithm of a standard deviation, are rounding or not worth
 /// it.
-constexpr double kLeastGain = 1e-5;
+constexpr double kLeastImprovement = 1e-5;
 /// Candidates that are looked at closely where a pose is exchanged.
 constexpr std::size_t kPromising = 8;
 
@@ -106,7 +106,7 @@ bool WeighingDesign::exchangePatterns() {
         changed = std::move(anew);
       }
       observe(patternObservation(at, changed), 1.0, without);
-      if (meritOf(without) < meritOf(covariance) - kLeastGain) {
+      if (meritOf(without) < meritOf(covariance) - kLeastImprovement) {
         pattern = std::move(changed);
         covariance = std::move(without);
         has_changed = true;
@@ -128,7 +128,7 @@ bool WeighingDesign::exchangePoses() {
       Eigen::MatrixXd with = covarianceAtNewPose(without);
       DesignedPose pose = designedAt(candidate, with);
       const double merit = meritOf(with);
-      if (merit < reached - kLeastGain) {
+      if (merit < reached - kLeastImprovement) {
         reached = merit;
         best_pose = std::move(pose);
         has_changed = true;

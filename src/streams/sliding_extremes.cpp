@@ -4,7 +4,7 @@ namespace sac {
 namespace {
 
 /// Forgotten entries are given back only from here on.
-constexpr std::size_t kSmallestCompaction = 64;
+constexpr std::size_t kFewestDropped = 64;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void SlidingExtremes::Queue::push(const Entry& entry) {
   while (!empty() && entries.back().value >= entry.value) {
     entries.pop_back();
   }
-  if (head >= kSmallestCompaction && 2 * head >= entries.size()) {
+  if (head >= kFewestDropped && 2 * head >= entries.size()) {
     entries.erase(entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(head));
     head = 0;
   }

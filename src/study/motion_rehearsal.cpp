@@ -10,12 +10,12 @@
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;  // of integration [s]
+constexpr double kIntegrationStep = 1e-3;  // of integration [s]
 constexpr Stamp kCycle = 1'000'000;
 constexpr double kStopTilt = 1.2;  // [rad] far beyond what is allowed
 
 void validate(const RehearsalOptions& options) {
-  const ValueRange rate = ValueRange::closed(10.0, 1.0 / kStep, "Hz");
+  const ValueRange rate = ValueRange::closed(10.0, 1.0 / kIntegrationStep, "Hz");
   requireInRange("joint_rate", options.joint_rate, rate);
   requireInRange("current_rate", options.current_rate, rate);
   requireInRange("joint_noise", options.joint_noise, ValueRange::nonNegative("rad"));
@@ -24,7 +24,7 @@ void validate(const RehearsalOptions& options) {
 
 /// Every so many cycles of control something happens.
 int cyclesOf(double rate) {
-  return std::max(1, static_cast<int>(std::lround(1.0 / (rate * kStep))));
+  return std::max(1, static_cast<int>(std::lround(1.0 / (rate * kIntegrationStep))));
 }
 
 class Stage {
@@ -90,10 +90,11 @@ class Stage {
       setpoints_ = command_;
     }
     // Half of the lag before, half after: the currents of the middle of the cycle.
-    const double share =
-        options_.time_constant > 0.0 ? -std::expm1(-0.5 * kStep / options_.time_constant) : 1.0;
+    const double share = options_.time_constant > 0.0
+                             ? -std::expm1(-0.5 * kIntegrationStep / options_.time_constant)
+                             : 1.0;
     currents_ += share * (setpoints_ - currents_);
-    rotor_.advance(kStep, currents_);
+    rotor_.advance(kIntegrationStep, currents_);
     currents_ += share * (setpoints_ - currents_);
     result_.largest_tilt =
         std::max(result_.largest_tilt, rotor_.position().head<2>().cwiseAbs().maxCoeff());

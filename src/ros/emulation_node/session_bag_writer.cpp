@@ -47,13 +47,6 @@ geometry_msgs::TransformStamped transformMessage(const std::string& parent,
   return message;
 }
 
-/// A topic with its message at hand, so that only what changes is filled in anew.
-template <typename Message>
-struct Topic {
-  std::string name;
-  Message message = {};
-};
-
 }  // namespace
 
 class SessionBagWriter::Recording {
@@ -127,6 +120,13 @@ class SessionBagWriter::Recording {
   std::uint64_t messages() const { return messages_; }
 
  private:
+  /// A topic with its message at hand, so that only what changes is filled in anew.
+  template <typename Message>
+  struct Topic {
+    std::string name;
+    Message message = {};
+  };
+
   /// Leaves nothing behind, unless the bag is complete.
   void abandon() {
     if (!bag_) {
