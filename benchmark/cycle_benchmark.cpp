@@ -97,7 +97,7 @@ void statusManyCoils(benchmark::State& state) {
   LinearitySearch linearity(options);
   PlanProgress plan(options.current_threshold);
   for (std::size_t n = 0; n < scenario.samples.size(); n += kSamplesPerPose) {
-    plan.addPose(scenario.samples[n].joint_position, {});
+    plan.addPose({scenario.samples[n].joint_position, {}});
   }
   const auto add = [&](const Sample& sample) {
     counter.add(sample);

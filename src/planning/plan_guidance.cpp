@@ -7,23 +7,11 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/pose_plan.hpp"
 
 namespace sac {
 namespace {
-
-/// The opposite of a pattern tells the same.
-bool isSame(const CoilPattern& a, CoilPattern b) {
-  if (a == b) {
-    return true;
-  }
-  for (SignedCoil& coil : b) {
-    coil.sign = -coil.sign;
-  }
-  return a == b;
-}
 
 /// "a, b and c".
 std::string enumerated(const std::vector<std::string>& words) {
@@ -74,27 +62,17 @@ std::string counted(std::size_t count, const std::string& what) {
 
 }  // namespace
 
-void PlanProgress::add(const Sample& sample) {
-  for (Pose& pose : poses_) {
-    if (!isAtPose(sample, pose.joint_position)) {
-      continue;
-    }
-    pose.has_sample = true;
-    const CoilPattern measured = patternOf(sample, current_threshold_);
-    const auto done =
-        std::find_if(pose.open.begin(), pose.open.end(), [&](const CoilPattern& pattern) {
-          return isSame(pattern, measured);
-        });
-    if (done != pose.open.end()) {
-      pose.open.erase(done);
-    }
+bool PlanProgress::add(const Sample& sample) {
+  bool is_more = false;
+  for (PoseProgress& pose : poses_) {
+    is_more = pose.add(sample, current_threshold_) || is_more;
   }
+  return is_more;
 }
 
 void PlanProgress::countAnew(const std::vector<Sample>& samples) {
-  for (Pose& pose : poses_) {
-    pose.open = pose.patterns;
-    pose.has_sample = false;
+  for (PoseProgress& pose : poses_) {
+    pose.beginAnew();
   }
   for (const Sample& sample : samples) {
     add(sample);
@@ -102,18 +80,17 @@ void PlanProgress::countAnew(const std::vector<Sample>& samples) {
 }
 
 std::string PlanProgress::nextStep() const {
-  const auto measured = std::count_if(
-      poses_.begin(), poses_.end(), [](const Pose& pose) { return pose.isMeasured(); });
-  const auto next = std::find_if(
-      poses_.begin(), poses_.end(), [](const Pose& pose) { return !pose.isMeasured(); });
+  const auto is_measured = [](const PoseProgress& pose) { return pose.isMeasured(); };
+  const auto measured = std::count_if(poses_.begin(), poses_.end(), is_measured);
+  const auto next = std::find_if_not(poses_.begin(), poses_.end(), is_measured);
   if (next == poses_.end()) {
     return "";
   }
-  const Eigen::Vector3d& q = next->joint_position;
+  const Eigen::Vector3d& q = next->pose().joint_position;
   const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
       "Go on with the plan, %td of %zu poses are measured: turn the rotor to "
-      "%s %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture",
+      "%s %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture%s",
       measured,
       poses_.size(),
       has_joints_ ? "joints" : "turns about x, y, z of",
@@ -122,8 +99,9 @@ std::string PlanProgress::nextStep() const {
       q.z(),
       degrees.x(),
       degrees.y(),
-      degrees.z());
-  text += excitationsInWords(next->open);
+      degrees.z(),
+      next->pose().validation ? " (held out)" : "");
+  text += excitationsInWords(next->missing());
   return text + ".";
 }
 

@@ -79,12 +79,18 @@ TEST(PlanGuidance, TellsSignsOfPatterns) {
   EXPECT_EQ(planStep({pose}, samples, kThreshold), "");
 }
 
-// A plan may be made for the samples that judge.
-TEST(PlanGuidance, CountsHeldOutSamples) {
-  const std::vector<PlannedPose> plan = {{Eigen::Vector3d::Zero(), {1}, {}}};
-  Sample held_out = sampleAt(Eigen::Vector3d::Zero(), {0.0, 2.0, 0.0});
-  held_out.validation = true;
-  EXPECT_EQ(planStep(plan, {held_out}, kThreshold), "");
+TEST(PlanGuidance, TellsWhichSamplesAreToBeHeldOut) {
+  PlanProgress progress(kThreshold);
+  progress.addPose({Eigen::Vector3d::Zero(), {{{1, 1}}}, true});
+  EXPECT_NE(progress.nextStep().find("and capture (held out) without current, then with coil 2"),
+            std::string::npos)
+      << progress.nextStep();
+  Sample sample = sampleAt(Eigen::Vector3d::Zero(), {0.0, 2.0, 0.0});
+  EXPECT_FALSE(progress.add(sample));
+  EXPECT_NE(progress.nextStep(), "");
+  sample.validation = true;
+  EXPECT_TRUE(progress.add(sample));
+  EXPECT_EQ(progress.nextStep(), "");
 }
 
 TEST(PlanGuidance, DistantSamplesCarryOutNothing) {
@@ -107,7 +113,7 @@ TEST(PlanGuidance, GoesOnFromSampleToSample) {
                                        sampleAt(second, {0.0, 0.0, 0.0})};
   PlanProgress progress(kThreshold);
   for (const PlannedPose& pose : plan) {
-    progress.addPose(pose.joint_position, pose.excitations());
+    progress.addPose({pose.joint_position, pose.excitations()});
   }
   std::vector<Sample> so_far;
   for (const Sample& sample : samples) {

@@ -15,7 +15,7 @@ inline std::string planStep(const std::vector<PlannedPose>& poses,
                             bool has_joints = true) {
   PlanProgress progress(current_threshold, has_joints);
   for (const PlannedPose& pose : poses) {
-    progress.addPose(pose.joint_position, pose.excitations());
+    progress.addPose({pose.joint_position, pose.excitations()});
   }
   progress.countAnew(samples);
   return progress.nextStep();

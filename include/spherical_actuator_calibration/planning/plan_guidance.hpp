@@ -1,20 +1,18 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/planning/pose_progress.hpp"
 
 namespace sac {
 
 struct PosePlan;
 
-/// What of a plan is measured, by samples that come one after the other. A pose is measured when
-/// samples at it, held out or not, have each of its patterns or its opposite, or when one is there
-/// where it has none.
+/// How far a plan is carried out, by samples that come one after the other (message PlanProgress):
+/// the progress of each of its poses, in their order.
 class PlanProgress {
  public:
   /// `current_threshold` [A]: a coil below it counts as off. Without joints a pose is told as
@@ -22,28 +20,20 @@ class PlanProgress {
   explicit PlanProgress(double current_threshold, bool has_joints = true)
       : current_threshold_(current_threshold), has_joints_(has_joints) {}
 
-  /// One more pose, before any sample. `patterns`: see PlannedPose::excitations().
-  void addPose(const Eigen::Vector3d& joint_position, const std::vector<CoilPattern>& patterns) {
-    poses_.push_back({joint_position, patterns, patterns});
-  }
-  void add(const Sample& sample);
+  /// One more pose, before any sample.
+  void addPose(PoseToMeasure pose) { poses_.emplace_back(std::move(pose)); }
+  /// Returns whether more is measured now.
+  bool add(const Sample& sample);
   /// All samples in use, in the place of those that were added.
   void countAnew(const std::vector<Sample>& samples);
+
+  const std::vector<PoseProgress>& poses() const { return poses_; }
   /// What the operator does next, in a sentence with the pose [rad and degrees] and the coils;
   /// empty when each pose is measured.
   std::string nextStep() const;
 
  private:
-  struct Pose {
-    Eigen::Vector3d joint_position;
-    std::vector<CoilPattern> patterns;
-    std::vector<CoilPattern> open;  ///< that no sample there has
-    bool has_sample = false;
-
-    bool isMeasured() const { return open.empty() && has_sample; }
-  };
-
-  std::vector<Pose> poses_;
+  std::vector<PoseProgress> poses_;
   double current_threshold_;
   bool has_joints_;
 };

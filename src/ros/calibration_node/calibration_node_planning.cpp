@@ -114,7 +114,7 @@ void CalibrationNode::followPlan(const StoredPlan& poses) {
   plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
                                          calibration.model().space().joints() > 0);
   for (const StoredPose& pose : poses) {
-    plan_->addPose(pose.joint_position, pose.patterns);
+    plan_->addPose({pose.joint_position, pose.patterns});
   }
   plan_->countAnew(calibration.samples());
 }
