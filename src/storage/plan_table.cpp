@@ -33,8 +33,8 @@ void replace(const SQLite::Database& database, const StoredPlan& plan) {
   RowWriter(database, "DELETE FROM planned_patterns").write();
   RowWriter(database, "DELETE FROM planned_poses").write();
   RowWriter pose(database,
-                 "INSERT INTO planned_poses (position, joint_1, joint_2, joint_3) "
-                 "VALUES (?, ?, ?, ?)");
+                 "INSERT INTO planned_poses (position, joint_1, joint_2, joint_3, validation) "
+                 "VALUES (?, ?, ?, ?, ?)");
   RowWriter pattern(database,
                     "INSERT INTO planned_patterns (pose, position, coils) VALUES (?, ?, ?)");
   for (std::size_t n = 0; n < plan.size(); ++n) {
@@ -42,7 +42,7 @@ void replace(const SQLite::Database& database, const StoredPlan& plan) {
     for (const double angle : plan[n].joint_position) {
       pose.put(angle);
     }
-    pose.write();
+    pose.put(plan[n].validation).write();
     for (std::size_t k = 0; k < plan[n].patterns.size(); ++k) {
       pattern.put(n).put(k).put(patternText(plan[n].patterns[k])).write();
     }
@@ -52,13 +52,15 @@ void replace(const SQLite::Database& database, const StoredPlan& plan) {
 StoredPlan find(const SQLite::Database& database) {
   StoredPlan plan;
   RowReader pose(database,
-                 "SELECT position, joint_1, joint_2, joint_3 FROM planned_poses ORDER BY position");
+                 "SELECT position, joint_1, joint_2, joint_3, validation FROM planned_poses "
+                 "ORDER BY position");
   while (pose.next()) {
     const std::int64_t position = pose.integer();
     StoredPose& one = plan.emplace_back();
     for (double& angle : one.joint_position) {
       angle = pose.number();
     }
+    one.validation = pose.flag();
     RowReader pattern(
         database, "SELECT coils FROM planned_patterns WHERE pose = ? ORDER BY position", position);
     while (pattern.next()) {

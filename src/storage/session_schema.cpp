@@ -12,7 +12,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 7;
+constexpr std::int64_t kSchemaVersion = 8;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -120,7 +120,8 @@ CREATE TABLE cycle_windows_held_out (
 constexpr char kPlan[] = R"sql(
 CREATE TABLE planned_poses (
   position INTEGER PRIMARY KEY,
-  joint_1 ANY NOT NULL, joint_2 ANY NOT NULL, joint_3 ANY NOT NULL
+  joint_1 ANY NOT NULL, joint_2 ANY NOT NULL, joint_3 ANY NOT NULL,
+  validation INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 
 CREATE TABLE planned_patterns (
@@ -304,8 +305,12 @@ void upgradeSessionSchema(SQLite::Database& database) {
   if (version < 6) {
     database.exec(kDoubts);
   }
-  database.exec(kMotionSummaries);
-  database.exec(kPlan);
+  if (version < 7) {
+    database.exec(kMotionSummaries);
+    database.exec(kPlan);
+  } else if (version < 8) {
+    database.exec("ALTER TABLE planned_poses ADD COLUMN validation INTEGER NOT NULL DEFAULT 0");
+  }
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 

@@ -311,8 +311,8 @@ def text(value):
 # -- kinds of requests: service, and the bytes of its request --------------------------------------------------------
 
 
-# Patterns, currents and time budget of a plan, as by default.
-REST_OF_PLAN = text("") + struct.pack("<ddd", 0.0, 0.0, 0.0)
+# Patterns, currents, time budget and purpose of a plan, as by default.
+REST_OF_PLAN = text("") + struct.pack("<ddd?", 0.0, 0.0, 0.0, False)
 
 REQUESTS = {
     "half a request": ("calibration/capture", b"\0\0"),
@@ -340,10 +340,10 @@ REQUESTS = {
     ),
     "a path for patterns": (
         "calibration/plan_poses",
-        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text(TRICK) + struct.pack("<ddd", 0.0, 0.0, 0.0),
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text(TRICK) + struct.pack("<ddd?", 0.0, 0.0, 0.0, False),
     ),
     "NaN of currents and of a time": (
         "calibration/plan_poses",
-        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd", *[math.nan] * 3),
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd?", *[math.nan] * 3, False),
     ),
 }

@@ -111,7 +111,7 @@ TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
 
 TEST_F(OpeningTest, ANewerFormatIsRefused) {
   make();
-  database_examples::change(path(), "PRAGMA user_version = 8");
+  database_examples::change(path(), "PRAGMA user_version = 9");
   expectRefusal("a newer version of this package made this session database");
 }
 

@@ -248,7 +248,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "7");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "8");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -340,6 +340,19 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
   report.motion = database_examples::summary();
   database.addCycle(report, kDate);
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle()->motion, *report.motion));
+}
+
+TEST_F(PlaceTest, APlanOfTheSeventhFormatIsToCalibrateBy) {
+  StoredPlan plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}}, true}};
+  SessionDatabase(path(), identity()).setPlan(plan);
+  database_examples::change(
+      path(), "ALTER TABLE planned_poses DROP COLUMN validation; PRAGMA user_version = 7");
+  SessionDatabase database(path(), identity());
+  plan[0].validation = false;
+  EXPECT_EQ(database.plan(), plan);
+  plan[0].validation = true;
+  database.setPlan(plan);
+  EXPECT_EQ(database.plan(), plan);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST_F(SessionDatabaseTest, KeepsEveryBitOfAMotion) {
 
 TEST_F(SessionDatabaseTest, KeepsAPlanUntilItIsDone) {
   const StoredPlan plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}, {{2, -1}, {23, 1}}}},
-                        {Eigen::Vector3d(0.4, 0.5, -0.0), {}}};
+                        {Eigen::Vector3d(0.4, 0.5, -0.0), {}, true}};
   open().setPlan({{Eigen::Vector3d::Zero(), {{{7, 1}}}}});
   open().setPlan(plan);
   EXPECT_EQ(open().plan(), plan);

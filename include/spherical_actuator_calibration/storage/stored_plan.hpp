@@ -12,9 +12,11 @@ namespace sac {
 struct StoredPose {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles [rad]
   std::vector<CoilPattern> patterns;                         ///< in turn; none: orientation only
+  bool validation = false;                                   ///< to judge: its samples are held out
 
   friend bool operator==(const StoredPose& a, const StoredPose& b) {
-    return a.joint_position == b.joint_position && a.patterns == b.patterns;
+    return a.joint_position == b.joint_position && a.patterns == b.patterns &&
+           a.validation == b.validation;
   }
 };
 

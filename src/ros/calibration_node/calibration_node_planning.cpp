@@ -114,7 +114,7 @@ void CalibrationNode::followPlan(const StoredPlan& poses) {
   plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
                                          calibration.model().space().joints() > 0);
   for (const StoredPose& pose : poses) {
-    plan_->addPose({pose.joint_position, pose.patterns});
+    plan_->addPose({pose.joint_position, pose.patterns, pose.validation});
   }
   plan_->countAnew(calibration.samples());
 }
@@ -156,7 +156,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     const std::lock_guard<std::mutex> lock(session_mutex_);
     StoredPlan poses;
     for (const PlannedPose& pose : plan.poses) {
-      poses.push_back({pose.joint_position, pose.excitations()});
+      poses.push_back({pose.joint_position, pose.excitations(), request.validation != 0});
     }
     session_.setPlan(poses);
     followPlan(poses);
