@@ -15,11 +15,14 @@ from spherical_actuator_calibration.msg import (
     CalibrationReport,
     CalibrationSample,
     CalibrationStatus,
+    PlanProgress,
 )
 from spherical_actuator_calibration.srv import (
     Calibrate,
     Capture,
     ListSamples,
+    MissingPatterns,
+    PlanPoses,
     RemoveSample,
     Restore,
 )
@@ -42,6 +45,8 @@ SERVICES = {
     "clear_samples": Trigger,
     "forget_motion": Trigger,
     "list_samples": ListSamples,
+    "missing_patterns": MissingPatterns,
+    "plan_poses": PlanPoses,
     "refine": Calibrate,
     "remove_sample": RemoveSample,
     "reset": Trigger,
@@ -55,6 +60,7 @@ LATCHED = {
     "parameters": ActuatorParameters,
     "report": CalibrationReport,
     "status": CalibrationStatus,
+    "plan_progress": PlanProgress,
 }
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The service plan_poses of the calibration node."""
+"""The services plan_poses and missing_patterns of the calibration node."""
 
 import sys
 import tempfile
@@ -7,7 +7,8 @@ import unittest
 
 import rospy
 import rostest
-from calibration_client import NODE, PACKAGE, CalibrationClient, CalibrationNode
+from calibration_client import NODE, PACKAGE, CalibrationClient, CalibrationNode, wait_for
+from spherical_actuator_calibration.msg import CoilPattern, PosePatterns
 from spherical_actuator_calibration.srv import PlanPoses
 
 TILT_LIMIT = 0.6
@@ -62,6 +63,36 @@ class Planning(unittest.TestCase):
         poles = self.plan(cycle="poles", coil=3, max_poses=12)
         self.assertTrue(poles.success, poles.message)
         self.assertTrue(all(list(pose.coils) == [3] for pose in poles.poses))
+
+    def missing(self, *patterns):
+        pose = PosePatterns(patterns=[CoilPattern(coils=coils) for coils in patterns])
+        return self.client.call("missing_patterns", poses=[pose])
+
+    def test_tells_what_any_pose_lacks(self):
+        (there,) = self.missing([3], [1, -24], [-3]).poses
+        self.assertEqual([tuple(pattern.coils) for pattern in there.missing], [(3,), (1, -24)])
+        self.assertFalse(there.has_sample or there.is_measured)
+        for coils in ([], [0], [25], [-2, 1], [-(2**31)]):
+            answer = self.missing([3], coils)
+            self.assertFalse(answer.success)
+            self.assertRegex(answer.message, "coil")
+            self.assertEqual(answer.poses, [])
+
+    def test_the_plan_in_force_is_told_with_its_patterns(self):
+        wait_for(lambda: self.client.latest("plan_progress"), "that there is no plan")
+        self.assertEqual(self.client.latest("plan_progress").poses, [])
+        answer = self.plan(cycle="refine", max_poses=4, patterns="weighing", time_budget=10.0)
+        self.assertTrue(answer.success, answer.message)
+
+        def is_told():
+            return len(self.client.latest("plan_progress").poses) == len(answer.poses)
+
+        wait_for(is_told, "the plan")
+        for there, planned in zip(self.client.latest("plan_progress").poses, answer.poses):
+            self.assertEqual(there.pose.joint_position, planned.joint_position)
+            wanted = [[n if i > 0.0 else -n for n, i in enumerate(each.current, 1) if i] for each in planned.patterns]
+            self.assertEqual([list(pattern.coils) for pattern in there.pose.patterns], wanted)
+            self.assertEqual(there.missing, there.pose.patterns)
 
     def test_refuses_what_it_cannot_plan(self):
         for request, word in (

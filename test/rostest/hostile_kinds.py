@@ -326,6 +326,11 @@ REQUESTS = {
     "sample 4294967295": ("calibration/remove_sample", struct.pack("<I", 0xFFFFFFFF)),
     "coil -2147483648": ("calibration/capture_planned", struct.pack("<3dIi2d?", *(0.0,) * 3, 1, -(2**31), 2.0, 0.1, False)),
     "a current of NaN": ("calibration/capture_planned", struct.pack("<3dIi2d?", *(0.0,) * 3, 1, 1, math.nan, 0.1, False)),
+    "patterns of coil -2147483648": (
+        "calibration/missing_patterns",
+        struct.pack("<I3dIIi?", 1, *(0.0,) * 3, 1, 1, -(2**31), False),
+    ),
+    "poses of lying number": ("calibration/missing_patterns", struct.pack("<I", 0xFFFFFFFF)),
     "coil 4294967295": ("calibration/calibrate_coil", struct.pack("<I", 0xFFFFFFFF)),
     "no coil": ("calibration/calibrate_poles", struct.pack("<I", 0)),
     "a path for a cycle": ("calibration/plan_poses", text(TRICK) + struct.pack("<IId", 1, 1, 0.0) + REST_OF_PLAN),

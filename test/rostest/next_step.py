@@ -12,6 +12,7 @@ import rospy
 import rostest
 from calibration_client import NAMESPACE, NODE, PACKAGE, CalibrationClient, CalibrationNode, wait_for
 from emulated_streams import EmulatedStreams
+from spherical_actuator_calibration.msg import PosePatterns
 from spherical_actuator_calibration.srv import PlanPoses
 
 DURATION = 0.3  # [s] of a capture
@@ -85,6 +86,56 @@ class NextStep(unittest.TestCase):
                 self.node.kill()
                 self.client.start(self.node)
         wait_for(lambda: "plan" not in self.client.latest("status").next_step, "the end of the plan")
+
+    def tells(self, *measured):
+        """Whether poses of the plan in force are measured, in their order; the others are not even begun."""
+
+        def is_told():
+            message = self.client.latest("plan_progress")
+            told = [(there.has_sample, there.is_measured) for there in message.poses] if message else None
+            return told == [(each, each) for each in measured]
+
+        wait_for(is_told, f"plan_progress of {measured}")
+
+    def test_what_is_measured_of_a_plan_is_told_with_every_change(self):
+        self.tells()
+        plan = self.client.call("plan_poses", cycle="joint", max_poses=2)
+        self.assertTrue(plan.success, plan.message)
+        first, second = (tuple(pose.joint_position) for pose in plan.poses)
+        self.tells(False, False)
+        poses = [there.pose for there in self.client.latest("plan_progress").poses]
+        self.assertEqual([tuple(pose.joint_position) for pose in poses], [first, second])
+        self.capture(first, validation=True)
+        self.capture(second)
+        self.tells(False, True)
+        self.capture(first)
+        self.tells(True, True)
+        self.assertTrue(self.client.call("remove_sample", id=max(self.client.held())).success)
+        self.tells(False, True)
+        self.says(f"joints {first[0]:.2f},")
+        self.node.kill()
+        self.client.start(self.node)
+        self.tells(False, True)
+        # Of other poses, as of the first one for the samples that judge, on request.
+        asked = [PosePatterns(joint_position=pose, validation=True) for pose in (first, second)]
+        answer = self.client.call("missing_patterns", poses=asked)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual([there.is_measured for there in answer.poses], [True, False])
+        self.assertTrue(self.client.call("clear_samples").success)
+        self.tells()
+
+    def test_a_plan_to_judge_by_is_measured_by_held_out_samples(self):
+        plan = self.client.call("plan_poses", cycle="joint", max_poses=1, validation=True)
+        self.assertTrue(plan.success, plan.message)
+        (pose,) = (tuple(planned.joint_position) for planned in plan.poses)
+        self.says("and capture (held out).")
+        self.capture(pose)
+        self.node.kill()
+        self.client.start(self.node)
+        self.tells(False)
+        self.assertTrue(self.client.latest("plan_progress").poses[0].pose.validation)
+        self.capture(pose, validation=True)
+        self.tells(True)
 
     def test_a_damaged_plan_keeps_nobody_from_calibrating(self):
         rospy.wait_for_service(NODE + "/plan_poses")

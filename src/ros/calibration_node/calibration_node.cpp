@@ -49,6 +49,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
     topics_.publishReport(topics_.stamped(reportToRos(*report, session_.grade())));
   }
   takeUpPlan();
+  topics_.publishPlan(plan_.get());
   publishStatus();
 
   takeUpMotion();
@@ -83,6 +84,7 @@ void CalibrationNode::advertiseServices() {
   advertise("diagnose", &CalibrationNode::explainSamples);
   advertise("check", &CalibrationNode::checkParameters);
   advertise("plan_poses", &CalibrationNode::planPoses);
+  advertise("missing_patterns", &CalibrationNode::missingPatterns);
   advertise("reset", &CalibrationNode::reset);
   advertise("restore", &CalibrationNode::restore);
   advertise("save", &CalibrationNode::save);
@@ -138,6 +140,7 @@ bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
     }
     if (plan_) {
       plan_->countAnew(session_.calibration().samples());
+      topics_.publishPlan(plan_.get());
     }
     publishStatus();
     return "Sample " + std::to_string(request.id) +
@@ -161,6 +164,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
     const std::size_t count = session_.clearSamples(utcDate());
     beginMotionAnew();
     plan_ = nullptr;
+    topics_.publishPlan(nullptr);
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
   });
@@ -208,6 +212,7 @@ void CalibrationNode::run(const CycleRequest& request,
       topics_.publishParameters(session_);
       if (request.cycle == Cycle::kRefine) {
         plan_ = nullptr;
+        topics_.publishPlan(nullptr);
       }
     }
     publishStatus();
@@ -326,8 +331,9 @@ void CalibrationNode::storeWaitingSamples() {
 Sample CalibrationNode::store(const Sample& sample) {
   const std::size_t before = session_.calibration().samples().size();
   Sample stored = session_.addSample(sample, utcDate());
-  if (plan_ && session_.calibration().samples().size() > before) {
-    plan_->add(stored);
+  const bool is_new = session_.calibration().samples().size() > before;
+  if (plan_ && is_new && plan_->add(stored)) {
+    topics_.publishPlan(plan_.get());
   }
   topics_.publishSample(topics_.sampleMessage(stored));
   publishStatus();

@@ -1,5 +1,3 @@
-#include <cstdint>
-#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <string>
@@ -20,6 +18,7 @@
 #include "spherical_actuator_calibration/planning/time_budget.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
 
 namespace sac {
 namespace {
@@ -44,17 +43,7 @@ PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request,
                               double least_current) {
   PlannedCapture planned;
   planned.joint_position = Eigen::Vector3d(request.joint_position.data());
-  std::size_t before = 0;
-  for (const std::int32_t signed_number : request.coils) {
-    const auto number =
-        static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(signed_number)));
-    if (number <= before || number > coils) {
-      throw ConfigError("coils: numbers from 1 to " + std::to_string(coils) +
-                        " in ascending order, negative where the current is.");
-    }
-    planned.pattern.push_back({indexOf(number).value(), signed_number < 0 ? -1 : 1});
-    before = number;
-  }
+  planned.pattern = patternFromRos(request.coils, coils);
   if (!planned.pattern.empty()) {
     requireInRange(
         "current", request.current, ValueRange::closed(least_current, kLargestCurrent, "A"));
@@ -129,6 +118,31 @@ void CalibrationNode::takeUpPlan() {
   }
 }
 
+// Of many poses it takes a while: samples are copied, so that nothing waits for it.
+bool CalibrationNode::missingPatterns(msg::MissingPatterns::Request& request,
+                                      msg::MissingPatterns::Response& response) {
+  try {
+    // The model never changes while the node runs.
+    const CalibrationSession& calibration = session_.calibration();
+    const std::size_t coils = calibration.model().space().coils();
+    PlanProgress progress(calibration.config().estimation.current_threshold);
+    for (const msg::PosePatterns& pose : request.poses) {
+      progress.addPose(poseFromRos(pose, coils));
+    }
+    std::vector<Sample> samples;
+    {
+      const std::lock_guard<std::mutex> lock(session_mutex_);
+      samples = calibration.samples();
+    }
+    progress.countAnew(samples);
+    response.poses = progressToRos(progress.poses());
+    response.success = 1;
+  } catch (const std::exception& error) {
+    response.message = printable(error.what());
+  }
+  return true;
+}
+
 // Planning takes seconds: it works on a copy, so that nothing waits for it.
 bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
                                 msg::PlanPoses::Response& response) {
@@ -160,6 +174,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     }
     session_.setPlan(poses);
     followPlan(poses);
+    topics_.publishPlan(plan_.get());
     publishStatus();
   } catch (const std::exception& error) {
     response.success = 0;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <spherical_actuator_calibration/CalibrationStatus.h>
+#include <spherical_actuator_calibration/PlanProgress.h>
 #include <std_msgs/String.h>
 
 #include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
@@ -10,8 +11,10 @@
 #include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"
 
@@ -38,6 +41,7 @@ CalibrationTopics::CalibrationTopics(ros::NodeHandle node, std::string frame)
       parameters_(node.advertise<msg::ActuatorParameters>("parameters", 1, kLatched)),
       report_(node.advertise<msg::CalibrationReport>("report", 1, kLatched)),
       status_(node.advertise<msg::CalibrationStatus>("status", 1, kLatched)),
+      plan_progress_(node.advertise<msg::PlanProgress>("plan_progress", 1, kLatched)),
       description_(node.advertise<std_msgs::String>(kDescriptionTopic, 1, kLatched)),
       config_(node.advertise<std_msgs::String>(kConfigTopic, 1, kLatched)),
       samples_(node.advertise<msg::CalibrationSample>("samples", kQueueLength)) {}
@@ -104,6 +108,15 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
     last_report_->grade_reason = message.grade_reason;
     publishLatched(report_, *last_report_);
   }
+}
+
+void CalibrationTopics::publishPlan(const PlanProgress* plan) {
+  msg::PlanProgress message;
+  message.header = header();
+  if (plan != nullptr) {
+    message.poses = progressToRos(plan->poses());
+  }
+  publishLatched(plan_progress_, message);
 }
 
 void CalibrationTopics::publishSample(const msg::CalibrationSample& sample) {

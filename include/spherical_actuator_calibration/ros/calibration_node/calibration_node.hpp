@@ -14,6 +14,7 @@
 #include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
 #include <spherical_actuator_calibration/ListSamples.h>
+#include <spherical_actuator_calibration/MissingPatterns.h>
 #include <spherical_actuator_calibration/RemoveSample.h>
 #include <spherical_actuator_calibration/Restore.h>
 #include <std_srvs/SetBool.h>
@@ -73,6 +74,8 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  bool missingPatterns(msg::MissingPatterns::Request& request,
+                       msg::MissingPatterns::Response& response);
   /// What of a plan is left to be measured.
   void followPlan(const StoredPlan& poses);
   /// The plan that was followed before a restart.

@@ -16,8 +16,10 @@
 
 namespace sac {
 
-/// What the calibration node publishes: `parameters`, `report`, `status`, and what the session
-/// rests on (`calibration_description`, `calibration_config`), latched, and `samples`.
+class PlanProgress;
+
+/// What the calibration node publishes: `parameters`, `report`, `status`, `plan_progress`, and what
+/// the session rests on (`calibration_description`, `calibration_config`), latched, and `samples`.
 class CalibrationTopics {
  public:
   /// `frame`: name of the stator frame.
@@ -32,6 +34,8 @@ class CalibrationTopics {
   void publishStatus(const LiveSession& session,
                      const SessionProgress& progress,
                      const GradedCalibration& graded);
+  /// `plan`: null where there is none.
+  void publishPlan(const PlanProgress* plan);
   void publishSample(const msg::CalibrationSample& sample);
 
   /// Messages with their header, stamped now where they have no time of their own.
@@ -46,6 +50,7 @@ class CalibrationTopics {
   ros::Publisher parameters_;
   ros::Publisher report_;
   ros::Publisher status_;
+  ros::Publisher plan_progress_;
   ros::Publisher description_;
   ros::Publisher config_;
   ros::Publisher samples_;
