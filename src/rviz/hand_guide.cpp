@@ -3,9 +3,9 @@
 #include <QApplication>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
-#include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstdint>
+#include <cstdlib>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcValue.h>
@@ -105,7 +105,6 @@ void HandGuide::build() {
 // The newest message counts; rviz delivers it in the thread of the windows.
 void HandGuide::listen() {
   constexpr std::uint32_t kNewest = 1;
-  constexpr std::uint32_t kAll = 1000;
   subscribers_.push_back(subscribeChecked<sensor_msgs::JointState>(
       node_,
       "joint_states",
@@ -120,16 +119,24 @@ void HandGuide::listen() {
         guide_.receive(*message);
       },
       tellRefusal("measured_orientation")));
-  subscribers_.push_back(subscribeChecked<msg::CalibrationSample>(
+  subscribers_.push_back(subscribeChecked<msg::PlanProgress>(
       node_,
-      "samples",
-      kAll,
-      [this](const msg::CalibrationSample::ConstPtr& message) { guide_.receive(*message); },
-      tellRefusal("samples")));
+      "plan_progress",
+      kNewest,
+      [this](const msg::PlanProgress::ConstPtr& message) {
+        if (!guide_.hasPlan() && !message->poses.empty()) {
+          guide_.nameJoints(jointNames(node_, guide_.jointNames()));
+        }
+        guide_.receive(*message);
+      },
+      tellRefusal("plan_progress")));
 }
 
 void HandGuide::refresh() {
-  guide_.judgeBy(model_.poseTolerance(), model_.currentThreshold());
+  guide_.judgeBy(model_.poseTolerance());
+  if (!model_.hasJoints()) {
+    guide_.followOrientations();
+  }
   showPlan();
   showMeasurement();
   tellTarget();
@@ -147,6 +154,7 @@ void HandGuide::planOrStop() {
   planning_since_.start();
   msg::PlanGoal goal;
   goal.max_poses = static_cast<std::uint32_t>(poses_->value());
+  goal.validation = static_cast<std::uint8_t>(hold_out_());
   planned_ = "Planning …";
   planning_.begin(goal);
 }
@@ -154,12 +162,7 @@ void HandGuide::planOrStop() {
 void HandGuide::showPlan() {
   if (const auto end = planning_.takeEnd()) {
     if (end->success) {
-      if (model_.hasJoints()) {
-        guide_.nameJoints(jointNames(node_, guide_.jointNames()));
-      } else {
-        guide_.followOrientations();
-      }
-      guide_.take(end->result.poses);
+      own_plan_ = end->result.poses;
     }
     outcome_->setText(QString::fromStdString(end->message));
   } else if (planning_.isRunning()) {
@@ -181,41 +184,58 @@ void HandGuide::measure() {
   goal.current = current_->value();
   goal.duration = duration_();
   goal.validation = static_cast<std::uint8_t>(hold_out_());
-  pose_ = guide_.here();
-  goal.here = static_cast<std::uint8_t>(!pose_);
-  if (pose_) {
-    const std::vector<std::uint32_t> missing = guide_.missing(*pose_);
-    if (missing.empty()) {
-      outcome_->setText("This pose is measured already.");
-      return;
-    }
-    const std::array<double, 3>& joints = guide_.joints(*pose_);
-    std::copy(joints.begin(), joints.end(), goal.pose.joint_position.begin());
-    std::copy_if(
-        missing.begin(), missing.end(), std::back_inserter(goal.pose.coils), [](auto coil) {
-          return coil != 0;
-        });
-  }
-  if (!goal.pose.coils.empty() && goal.current == 0.0) {
-    outcome_->setText("Choose the current of the planned coils first.");
+  const std::optional<std::size_t> here = guide_.here();
+  goal.here = static_cast<std::uint8_t>(!here);
+  const std::string refusal = here ? askFor(guide_.pose(*here), goal) : "";
+  if (!refusal.empty()) {
+    outcome_->setText(QString::fromStdString(refusal));
     return;
   }
   words_ = ProgressWords();
   capture_.begin(goal);
 }
 
+std::string HandGuide::askFor(const msg::PoseProgress& pose, msg::CaptureGoal& goal) const {
+  if (pose.is_measured != 0) {
+    return "This pose is measured already.";
+  }
+  if ((pose.pose.validation != 0) != (goal.validation != 0)) {
+    return pose.pose.validation != 0
+               ? "This pose is planned to judge by: tick \"hold out\", or plan anew."
+               : "This pose is planned to calibrate by: untick \"hold out\", or plan anew.";
+  }
+  if (!pose.missing.empty() && goal.current == 0.0) {
+    return "Choose the current of the planned coils first.";
+  }
+  goal.pose.joint_position = pose.pose.joint_position;
+  for (const msg::CoilPattern& pattern : pose.missing) {
+    std::vector<double>& currents = goal.pose.patterns.emplace_back().current;
+    currents.assign(model_.coils(), 0.0);
+    for (const std::int32_t coil : pattern.coils) {
+      const auto number = static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(coil)));
+      if (number == 0 || number > currents.size()) {
+        return "The plan is of another actuator: plan anew.";
+      }
+      // The goal's sign is that of the pattern as a whole.
+      currents[number - 1] = std::copysign(goal.current, static_cast<double>(coil));
+    }
+  }
+  return "";
+}
+
 void HandGuide::showMeasurement() {
   if (const auto end = capture_.takeEnd()) {
-    if (end->success && pose_) {
-      guide_.noteMeasured(*pose_);
-    }
     outcome_->setText(QString::fromStdString(end->message));
   } else if (capture_.isRunning()) {
     outcome_->setText(QString::fromStdString(words_.text()));
   }
 }
 
+// To a plan that was made elsewhere whoever made it leads.
 void HandGuide::tellTarget() {
+  if (guide_.hasPlan() && !guide_.follows(own_plan_)) {
+    return;
+  }
   const std::optional<std::array<double, 3>> target = guide_.target();
   if (target == told_target_) {
     return;

@@ -7,7 +7,6 @@
 #include <QSpinBox>
 #include <QWidget>
 #include <array>
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -47,6 +46,9 @@ class HandGuide : public QWidget {
   void showPlan();
   void measureOrStop();
   void measure();
+  /// Has a goal ask for what a planned pose lacks. Returns why it cannot, in a sentence; empty: it
+  /// can.
+  std::string askFor(const msg::PoseProgress& pose, msg::CaptureGoal& goal) const;
   void showMeasurement();
   void showAdvice();
   void tellTarget();
@@ -60,11 +62,11 @@ class HandGuide : public QWidget {
   EngineAction<msg::CaptureAction> capture_;
   EngineAction<msg::PlanAction> planning_;
   QElapsedTimer planning_since_;
-  std::string planned_;  ///< how far it is
+  std::string planned_;                     ///< how far it is
+  std::vector<msg::PlannedPose> own_plan_;  ///< that was asked for here last
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;
-  std::optional<std::size_t> pose_;  ///< of the plan, that is measured; nothing: what is there
 
   QPushButton* plan_ = nullptr;
   QSpinBox* poses_ = nullptr;

@@ -86,8 +86,6 @@ class PanelModel {
   std::vector<CoverageGroup> coverage() const;
   std::uint32_t coils() const { return static_cast<std::uint32_t>(status_.coils.size()); }
 
-  /// A coil below it counts as off [A].
-  double currentThreshold() const { return status_.current_threshold; }
   /// Joint angles that differ by at most this from a planned pose are at it [rad].
   double poseTolerance() const { return status_.pose_tolerance; }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iterator>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -39,30 +41,31 @@ std::array<double, 3> turnsOf(const geometry_msgs::Quaternion& q) {
   return {first, second, std::atan2(left_0, left_1)};
 }
 
-std::string listed(const std::vector<std::uint32_t>& coils) {
+std::array<double, 3> jointsOf(const msg::PoseProgress& pose) {
+  std::array<double, 3> joints = {};
+  std::copy(pose.pose.joint_position.begin(), pose.pose.joint_position.end(), joints.begin());
+  return joints;
+}
+
+/// "coil 2, 5"; "coils +1 −4, +2 +3".
+std::string listed(const std::vector<msg::CoilPattern>& patterns) {
+  const bool is_single = std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) {
+    return pattern.coils.size() == 1 && pattern.coils.front() > 0;
+  });
   std::string text;
-  for (const std::uint32_t coil : coils) {
-    text += (text.empty() ? "" : ", ") + std::to_string(coil);
+  for (const msg::CoilPattern& pattern : patterns) {
+    text += text.empty() ? "" : ",";
+    for (const std::int32_t coil : pattern.coils) {
+      text += (is_single  ? " "
+               : coil < 0 ? " −"
+                          : " +") +
+              std::to_string(std::abs(static_cast<std::int64_t>(coil)));
+    }
   }
-  return text;
+  return (is_single ? "coil" : "coils") + text;
 }
 
 }  // namespace
-
-void PoseGuide::judgeBy(double tolerance, double threshold) {
-  tolerance_ = tolerance;
-  threshold_ = threshold;
-}
-
-void PoseGuide::take(const std::vector<msg::PlannedPose>& poses) {
-  poses_.clear();
-  for (const msg::PlannedPose& planned : poses) {
-    Pose pose;
-    std::copy(planned.joint_position.begin(), planned.joint_position.end(), pose.joints.begin());
-    pose.coils.assign(planned.coils.begin(), planned.coils.end());
-    poses_.push_back(std::move(pose));
-  }
-}
 
 void PoseGuide::followOrientations() {
   has_joints_ = false;
@@ -92,81 +95,45 @@ void PoseGuide::receive(const sensor_msgs::JointState& message) {
   joints_ = joints;
 }
 
-void PoseGuide::receive(const msg::CalibrationSample& sample) {
-  const std::optional<std::uint32_t> coil = excitedCoil(sample.current);
-  std::array<double, 3> joints = {};
-  std::copy(sample.joint_position.begin(), sample.joint_position.end(), joints.begin());
-  for (Pose& pose : poses_) {
-    if (!isSame(pose.joints, joints)) {
-      continue;
-    }
-    pose.has_sample = true;
-    if (coil) {
-      pose.measured.insert(*coil);
-    }
-  }
+bool PoseGuide::follows(const std::vector<msg::PlannedPose>& plan) const {
+  return std::equal(poses_.begin(),
+                    poses_.end(),
+                    plan.begin(),
+                    plan.end(),
+                    [](const msg::PoseProgress& one, const msg::PlannedPose& other) {
+                      return one.pose.joint_position == other.joint_position;
+                    });
 }
 
-void PoseGuide::noteMeasured(std::size_t pose) {
-  Pose& at = poses_.at(pose);
-  at.has_sample = true;
-  at.measured.insert(0);
-  at.measured.insert(at.coils.begin(), at.coils.end());
-}
-
-bool PoseGuide::isSame(const std::array<double, 3>& one, const std::array<double, 3>& other) const {
-  return std::equal(one.begin(), one.end(), other.begin(), [this](double a, double b) {
-    return std::abs(difference(a, b)) <= tolerance_;
-  });
-}
-
-std::optional<std::uint32_t> PoseGuide::excitedCoil(const std::vector<double>& currents) const {
-  std::uint32_t coil = 0;
-  for (std::size_t j = 0; j < currents.size(); ++j) {
-    if (std::abs(currents[j]) < threshold_) {
-      continue;
-    }
-    if (coil != 0) {
-      return std::nullopt;
-    }
-    coil = static_cast<std::uint32_t>(numberOf(j));
-  }
-  return coil;
-}
-
-std::vector<std::uint32_t> PoseGuide::missing(std::size_t pose) const {
-  const Pose& at = poses_.at(pose);
-  std::vector<std::uint32_t> result;
-  std::copy_if(at.coils.begin(), at.coils.end(), std::back_inserter(result), [&](auto coil) {
-    return at.measured.count(coil) == 0;
-  });
-  if (at.measured.count(0) == 0 && (!result.empty() || !at.has_sample)) {
-    result.insert(result.begin(), 0);
-  }
-  return result;
+bool PoseGuide::isThere(const msg::PoseProgress& pose) const {
+  const std::array<double, 3> wanted = jointsOf(pose);
+  return joints_ &&
+         std::equal(wanted.begin(), wanted.end(), joints_->begin(), [this](double a, double b) {
+           return std::abs(difference(a, b)) <= tolerance_;
+         });
 }
 
 std::optional<std::size_t> PoseGuide::next() const {
-  for (std::size_t n = 0; n < poses_.size(); ++n) {
-    if (!missing(n).empty()) {
-      return n;
-    }
-  }
-  return std::nullopt;
+  const auto next = std::find_if(poses_.begin(), poses_.end(), [](const msg::PoseProgress& pose) {
+    return pose.is_measured == 0;
+  });
+  return next == poses_.end()
+             ? std::nullopt
+             : std::make_optional<std::size_t>(std::distance(poses_.begin(), next));
 }
 
 std::optional<std::array<double, 3>> PoseGuide::target() const {
   const std::optional<std::size_t> pose = next();
-  return pose ? std::make_optional(poses_[*pose].joints) : std::nullopt;
+  return pose ? std::make_optional(jointsOf(poses_[*pose])) : std::nullopt;
 }
 
 std::optional<std::size_t> PoseGuide::here() const {
   std::optional<std::size_t> measured;
-  for (std::size_t n = 0; joints_ && n < poses_.size(); ++n) {
-    if (!isSame(poses_[n].joints, *joints_)) {
+  for (std::size_t n = 0; n < poses_.size(); ++n) {
+    if (!isThere(poses_[n])) {
       continue;
     }
-    if (!missing(n).empty()) {
+    if (poses_[n].is_measured == 0) {
       return n;
     }
     measured = measured.value_or(n);
@@ -178,24 +145,26 @@ std::string PoseGuide::advice() const {
   if (!hasPlan()) {
     return "Plan poses to be led from one to the next.";
   }
-  const std::optional<std::size_t> target = next();
-  if (!target) {
-    return "All " + std::to_string(poses_.size()) + " poses are measured: calibrate.";
+  const std::optional<std::size_t> next = this->next();
+  if (!next) {
+    return "All " + std::to_string(poses_.size()) + " poses are measured: " +
+           (poses_.front().pose.validation != 0 ? "validate." : "calibrate.");
   }
-  const std::string which =
-      "Pose " + std::to_string(numberOf(*target)) + " of " + std::to_string(poses_.size()) + ": ";
+  const msg::PoseProgress& pose = poses_[*next];
+  const std::string which = "Pose " + std::to_string(numberOf(*next)) + " of " +
+                            std::to_string(poses_.size()) +
+                            (pose.pose.validation != 0 ? ", held out: " : ": ");
   if (!joints_) {
     return which + (has_joints_ ? "the joint angles are silent." : "the tracker is silent.");
   }
-  if (isSame(poses_[*target].joints, *joints_)) {
-    const std::vector<std::uint32_t> open = missing(*target);
-    const std::vector<std::uint32_t> coils(open.begin() + (open.front() == 0 ? 1 : 0), open.end());
+  if (isThere(pose)) {
     return which + "there. Clamp the rotor, then measure" +
-           (coils.empty() ? "." : "; it excites coil " + listed(coils) + " in turn.");
+           (pose.missing.empty() ? "." : "; it excites " + listed(pose.missing) + " in turn.");
   }
+  const std::array<double, 3> wanted = jointsOf(pose);
   std::string turns;
   for (std::size_t k = 0; k < joints_->size(); ++k) {
-    const double left = difference(poses_[*target].joints[k], (*joints_)[k]);
+    const double left = difference(wanted[k], (*joints_)[k]);
     if (std::abs(left) > tolerance_) {
       turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + inDegrees(left);
     }

@@ -1,6 +1,7 @@
 #include "pose_guide.hpp"
 
-#include <string>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -10,15 +11,25 @@
 namespace sac {
 namespace {
 
-using Coils = std::vector<std::uint32_t>;
+using Coils = std::vector<std::int32_t>;
 
-msg::PlannedPose planned(double q1, double q2, double q3, const Coils& coils) {
-  msg::PlannedPose pose;
-  pose.joint_position[0] = q1;
-  pose.joint_position[1] = q2;
-  pose.joint_position[2] = q3;
-  pose.coils = coils;
+/// A pose of which patterns are missing; without any it is measured where it `has_sample`.
+msg::PoseProgress progress(
+    double q1, double q2, double q3, const std::vector<Coils>& missing, bool has_sample = false) {
+  msg::PoseProgress pose;
+  pose.pose.joint_position = {q1, q2, q3};
+  for (const Coils& coils : missing) {
+    pose.missing.emplace_back().coils = coils;
+  }
+  pose.has_sample = static_cast<std::uint8_t>(has_sample);
+  pose.is_measured = static_cast<std::uint8_t>(has_sample && missing.empty());
   return pose;
+}
+
+msg::PlanProgress plan(const std::vector<msg::PoseProgress>& poses) {
+  msg::PlanProgress message;
+  message.poses = poses;
+  return message;
 }
 
 sensor_msgs::JointState joints(double q1, double q2, double q3) {
@@ -28,18 +39,11 @@ sensor_msgs::JointState joints(double q1, double q2, double q3) {
   return message;
 }
 
-msg::CalibrationSample sample(double q1, double q2, double q3, const std::vector<double>& current) {
-  msg::CalibrationSample message;
-  message.joint_position = {q1, q2, q3};
-  message.current = current;
-  return message;
-}
-
 class PoseGuideTest : public testing::Test {
  protected:
   PoseGuideTest() {
-    guide_.judgeBy(0.05, 0.1);
-    guide_.take({planned(0.1, 0.0, -1.0, {2, 5}), planned(0.3, 0.2, 1.0, {})});
+    guide_.judgeBy(0.05);
+    guide_.receive(plan({progress(0.1, 0.0, -1.0, {{2}, {5}}), progress(0.3, 0.2, 1.0, {})}));
   }
 
   PoseGuide guide_;
@@ -59,32 +63,58 @@ TEST_F(PoseGuideTest, TellsWhichWayToTurnInDegrees) {
 TEST_F(PoseGuideTest, TellsWhatIsToBeMeasuredThere) {
   guide_.receive(joints(0.11, 0.0, -1.01));
   EXPECT_EQ(guide_.here(), 0U);
-  EXPECT_EQ(guide_.missing(0), (Coils{0, 2, 5}));
   EXPECT_EQ(guide_.advice(),
             "Pose 1 of 2: there. Clamp the rotor, then measure; it excites coil 2, 5 in turn.");
 }
 
-TEST_F(PoseGuideTest, GoesOnWhenAllIsMeasured) {
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.01, 0.0, 0.0, 0.0}));
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 0.0}));
-  // Several coils, and another pose.
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 2.0}));
-  guide_.receive(sample(0.2, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, 2.0}));
-  EXPECT_EQ(guide_.missing(0), (Coils{5}));
-  // The opposite current tells the same.
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, -2.0}));
+TEST_F(PoseGuideTest, GoesOnWhereTheNodeSaysThatAPoseIsMeasured) {
+  guide_.receive(joints(0.1, 0.0, -1.0));
+  guide_.receive(plan({progress(0.1, 0.0, -1.0, {{5}}, true), progress(0.3, 0.2, 1.0, {})}));
+  EXPECT_EQ(guide_.advice(),
+            "Pose 1 of 2: there. Clamp the rotor, then measure; it excites coil 5 in turn.");
+  guide_.receive(plan({progress(0.1, 0.0, -1.0, {}, true), progress(0.3, 0.2, 1.0, {})}));
   EXPECT_EQ(guide_.next(), 1U);
+  EXPECT_EQ(guide_.here(), 0U);
+  EXPECT_EQ(guide_.target(), (std::array<double, 3>{0.3, 0.2, 1.0}));
   guide_.receive(joints(0.3, 0.2, 1.0));
   EXPECT_EQ(guide_.advice(), "Pose 2 of 2: there. Clamp the rotor, then measure.");
-  guide_.receive(sample(0.3, 0.2, 1.0, {0.0, 0.0, 0.0, 0.0, 0.0}));
+  guide_.receive(plan({progress(0.1, 0.0, -1.0, {}, true), progress(0.3, 0.2, 1.0, {}, true)}));
   EXPECT_FALSE(guide_.next());
   EXPECT_EQ(guide_.advice(), "All 2 poses are measured: calibrate.");
+  // A sample was removed.
+  guide_.receive(plan({progress(0.1, 0.0, -1.0, {{2}}, true), progress(0.3, 0.2, 1.0, {}, true)}));
+  EXPECT_EQ(guide_.next(), 0U);
+  guide_.receive(plan({}));
+  EXPECT_EQ(guide_.advice(), "Plan poses to be led from one to the next.");
 }
 
-TEST_F(PoseGuideTest, GoesOnWhereAnotherSaysThatAllIsHeld) {
-  guide_.noteMeasured(0);
-  EXPECT_TRUE(guide_.missing(0).empty());
-  EXPECT_EQ(guide_.next(), 1U);
+TEST_F(PoseGuideTest, TellsPatternsOfSeveralCoilsWithTheirSigns) {
+  guide_.receive(joints(0.1, 0.0, -1.0));
+  guide_.receive(plan({progress(0.1, 0.0, -1.0, {{1, -4}, {2, 3}})}));
+  EXPECT_EQ(guide_.advice(),
+            "Pose 1 of 1: there. Clamp the rotor, then measure; it excites coils +1 −4, +2 +3 in "
+            "turn.");
+}
+
+TEST_F(PoseGuideTest, TellsOfAPlanToJudgeBy) {
+  msg::PlanProgress to_judge = plan({progress(0.1, 0.0, -1.0, {{2}})});
+  to_judge.poses[0].pose.validation = 1;
+  guide_.receive(to_judge);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 1, held out: the joint angles are silent.");
+  to_judge.poses[0].is_measured = 1;
+  guide_.receive(to_judge);
+  EXPECT_EQ(guide_.advice(), "All 1 poses are measured: validate.");
+}
+
+TEST_F(PoseGuideTest, KnowsAPlanByItsPoses) {
+  std::vector<msg::PlannedPose> poses(2);
+  poses[0].joint_position = {0.1, 0.0, -1.0};
+  poses[1].joint_position = {0.3, 0.2, 1.0};
+  EXPECT_TRUE(guide_.follows(poses));
+  poses[1].joint_position[2] = 1.1;
+  EXPECT_FALSE(guide_.follows(poses));
+  poses.pop_back();
+  EXPECT_FALSE(guide_.follows(poses));
 }
 
 TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {
@@ -93,18 +123,8 @@ TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {
   guide_.receive(joints(0.16, 0.0, -1.0));
   EXPECT_FALSE(guide_.here());
   EXPECT_EQ(guide_.advice(), "Pose 1 of 2: turn joint_1 by −3.4°.");
-  guide_.judgeBy(0.07, 0.1);
+  guide_.judgeBy(0.07);
   EXPECT_EQ(guide_.here(), 0U);
-}
-
-// As the node counts: without its sample without current a pose is measured all the same.
-TEST_F(PoseGuideTest, NeedsEachCoilAndAnySample) {
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 2.0, 0.0, 0.0, 0.0}));
-  EXPECT_EQ(guide_.missing(0), (Coils{0, 5}));
-  guide_.receive(sample(0.1, 0.0, -1.0, {0.0, 0.0, 0.0, 0.0, 2.0}));
-  EXPECT_EQ(guide_.missing(0), Coils());
-  guide_.receive(sample(0.3, 0.2, 1.0, {2.0, 2.0, 0.0, 0.0, 0.0}));
-  EXPECT_FALSE(guide_.next());
 }
 
 TEST_F(PoseGuideTest, CallsJointsAsTheDescriptionDoes) {
@@ -124,7 +144,7 @@ TEST_F(PoseGuideTest, OrientationsLeadARotorWithoutJoints) {
   guide_.followOrientations();
   EXPECT_EQ(guide_.advice(), "Pose 1 of 2: the tracker is silent.");
   // Turned by 0.3 about x, then 0.2 about y, then −3 about z.
-  guide_.take({planned(0.3, 0.2, 3.0, {})});
+  guide_.receive(plan({progress(0.3, 0.2, 3.0, {})}));
   const Eigen::Quaterniond q = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()) *
                                Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()) *
                                Eigen::AngleAxisd(-3.0, Eigen::Vector3d::UnitZ());
@@ -137,7 +157,7 @@ TEST_F(PoseGuideTest, OrientationsLeadARotorWithoutJoints) {
   orientation.quaternion.w = 2.0;
   guide_.receive(orientation);
   EXPECT_EQ(guide_.advice(), "Pose 1 of 1: turn rotation_z by −16.2°.");
-  guide_.judgeBy(0.3, 0.1);
+  guide_.judgeBy(0.3);
   EXPECT_EQ(guide_.here(), 0U);
 }
 
