@@ -16,7 +16,7 @@ from calibration_client import NAMESPACE, PACKAGE, wait_for
 from emulated_lab import LabCase
 from guided_program import GuidedProgram
 from spherical_actuator_calibration import msg
-from spherical_actuator_calibration.session_guide.progress import Measured, excited_coils, is_same_pattern, poses_of
+from spherical_actuator_calibration.session_guide.progress import Measured, excited_coils, poses_of
 from true_parameters import expect_truth
 
 AT_ONCE = 0.3  # [s] in which currents end
@@ -158,8 +158,9 @@ class SessionEngine(LabCase):
         for pose in poses_of(measured, status.pose_tolerance):
             there = [m for m in measured if m.validation == pose.validation and pose.is_at(m.joints, status.pose_tolerance)]
             patterns = [m.pattern for m in there if m.pattern]
+            opposites = [tuple(-coil for coil in pattern) for pattern in patterns]
             for place, pattern in enumerate(patterns):
-                self.assertFalse(any(is_same_pattern(pattern, other) for other in patterns[:place]), patterns)
+                self.assertNotIn(pattern, patterns[:place] + opposites[:place])
 
     def check_linearity(self):
         """One coil at three currents in one rest, once, tells that torque is proportional to it."""

@@ -48,11 +48,9 @@ class Rehearsal(Session):
         super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account, no_plan)
 
     # What it asks its calibration node.
-    def measured(self):
+    def progress_of(self, poses):
+        assert not poses  # of no earlier plan
         return []
-
-    def pose_tolerance(self):
-        return 0.01
 
     def plan(self, poses, wanted_stddev, **_excitation):
         expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses

@@ -7,10 +7,10 @@ import threading
 import unittest
 from types import SimpleNamespace
 
-from spherical_actuator_calibration.msg import JointAxis
+from spherical_actuator_calibration.msg import CoilPattern, JointAxis, PoseProgress
 from spherical_actuator_calibration.session_guide import laboratory, progress
 from spherical_actuator_calibration.session_guide.account import Account
-from spherical_actuator_calibration.session_guide.calibration import excitations_of
+from spherical_actuator_calibration.session_guide.calibration import excitations_of, message_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
@@ -87,37 +87,30 @@ class Excitation(unittest.TestCase):
         course.require_current(poses)
 
 
-class MissingPatterns(unittest.TestCase):
-    POSE = Pose((0.1, -0.2, 1.5), ((3,), (1, -7)))
+class PatternsToCapture(unittest.TestCase):
+    """By what the node says of a pose."""
 
-    def missing(self, held):
-        return progress.missing_patterns(self.POSE, held, TOLERANCE)
+    @staticmethod
+    def to_capture(*missing, is_measured=False):
+        patterns = [CoilPattern(coils=list(pattern)) for pattern in missing]
+        return progress.patterns_to_capture(PoseProgress(is_measured=is_measured, missing=patterns))
 
-    def at(self, pattern, joints=(0.1, -0.2, 1.5), validation=False):
-        return Measured(joints, pattern, validation)
+    def test_the_one_without_current_comes_first_on_each_visit(self):
+        self.assertEqual(self.to_capture((3,), (1, -7)), [(), (3,), (1, -7)])
+        self.assertEqual(self.to_capture((1, -7)), [(), (1, -7)])
 
-    def test_the_one_without_current_comes_first(self):
-        self.assertEqual(self.missing([]), [(), (3,), (1, -7)])
+    def test_a_pose_without_coils_is_captured_once(self):
+        self.assertEqual(self.to_capture(), [()])
 
-    def test_what_is_held_is_left_out(self):
-        self.assertEqual(self.missing([self.at(()), self.at((1, -7))]), [(3,)])
-        self.assertEqual(self.missing([self.at(()), self.at((-1, 7))]), [(3,)])
+    def test_of_a_measured_pose_are_none(self):
+        self.assertEqual(self.to_capture(is_measured=True), [])
 
-    def test_another_pose_or_purpose_does_not_count(self):
-        elsewhere = self.at((), joints=(0.1, -0.2, 1.56))
-        held_out = self.at((3,), validation=True)
-        self.assertEqual(self.missing([elsewhere, held_out]), [(), (3,), (1, -7)])
-
-    def test_other_coils_or_signs_are_another_pattern(self):
-        held = [self.at((1, 7)), self.at((1, -3, -7))]
-        self.assertEqual(self.missing(held), [(), (3,), (1, -7)])
-
-    def test_a_new_visit_begins_without_current(self):
-        def to_capture(held):
-            return progress.patterns_to_capture(self.POSE, held, TOLERANCE)
-
-        self.assertEqual(to_capture([self.at(()), self.at((3,))]), [(), (1, -7)])
-        self.assertEqual(to_capture([self.at(()), self.at((3,)), self.at((1, -7))]), [])
+    def test_a_pose_is_asked_about_with_signs_and_purpose(self):
+        message = message_of(Pose((0.1, -0.2, 1.5), ((3,), (1, -7)), True))
+        self.assertEqual(message.joint_position, [0.1, -0.2, 1.5])
+        self.assertEqual([pattern.coils for pattern in message.patterns], [[3], [1, -7]])
+        self.assertTrue(message.validation)
+        self.assertFalse(message_of(Pose((0.0, 0.0, 0.0), ())).validation)
 
 
 class WayToAPose(unittest.TestCase):
@@ -296,6 +289,7 @@ class Bench:
         self.pattern = ()
         self.held = []
         self.log = []
+        self.loses = False  # the sample, too, where an answer is lost
 
     def excite(self, pattern, _current):
         self.pattern = pattern
@@ -304,18 +298,17 @@ class Bench:
         assert pose is self.POSE and pattern == self.pattern
         flaw = next(self._flaws)
         self.log.append(pattern)
-        if flaw is None or not flaw:
+        if not flaw and not (flaw is None and self.loses):
             self.held.append(Measured(pose.joints, pattern, pose.validation))
         if flaw is None:
             return None
         return SimpleNamespace(success=not flaw, message=f"Flaw: {flaw}.", flaw=flaw, sample=(pose, pattern))
 
-    def measured(self):
-        return self.held
-
-    @staticmethod
-    def pose_tolerance():
-        return TOLERANCE
+    def progress_of(self, poses):
+        """What is missing of the pose, by what is held now."""
+        held = {sample.pattern for sample in self.held}
+        missing = [CoilPattern(coils=list(pattern)) for pattern in self.POSE.excitations if pattern not in held]
+        return [PoseProgress(is_measured=not missing and bool(held), missing=missing) for _ in poses]
 
 
 class CapturingAPose(unittest.TestCase):
@@ -324,7 +317,8 @@ class CapturingAPose(unittest.TestCase):
         bench, account = Bench(flaws), Account()
         course = PoseCourse(bench, bench, Options(), Hour([0.0]), account)
         course.wait_for_rest = lambda pose: bench.log.append("rest" if not bench.pattern else "current is on")
-        for pattern in course.to_capture(Bench.POSE, []):
+        (patterns,) = course.to_capture([Bench.POSE])
+        for pattern in patterns:
             course.capture(Bench.POSE, pattern)
         return bench, "\n".join(account.message().sentences)
 
@@ -351,6 +345,12 @@ class CapturingAPose(unittest.TestCase):
     def test_a_sample_whose_answer_was_lost_counts(self):
         bench, _ = self.captured(["", None])
         self.assertEqual(bench.log, [(), (3,)])
+
+    def test_what_the_answer_was_lost_of_is_captured_anew_where_no_sample_has_it(self):
+        bench, account = Bench([None, ""]), Account()
+        bench.loses = True
+        PoseCourse(bench, bench, Options(), Hour([0.0]), account).capture(Bench.POSE, (3,))
+        self.assertEqual(bench.log, [(3,), (3,)])
 
 
 class Screen(io.StringIO):

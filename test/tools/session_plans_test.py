@@ -7,6 +7,7 @@ import sqlite3
 import tempfile
 import unittest
 
+from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.options import Options
 from spherical_actuator_calibration.session_guide.plans import PlanError, read_plan, read_session
@@ -109,7 +110,7 @@ class Sessions(InAFolder):
         self.assertEqual(plan.current, 2.0)
         self.assertEqual([pose.joints for pose in plan.poses], [here, there])
         self.assertEqual([pose.validation for pose in plan.poses], [False, True])
-        self.assertEqual(plan.poses[0].excitations, ((1,), (2, -3)))
+        self.assertEqual(plan.poses[0].excitations, ((1,), (-1,), (2, -3)))
         self.assertEqual(plan.poses[1].excitations, ((3,),))
 
     def test_names_what_is_wrong(self):
@@ -139,6 +140,14 @@ class Bench:
     @staticmethod
     def pose_tolerance():
         return 0.05
+
+    def progress_of(self, poses):
+        return [self._progress_of(pose) for pose in poses]
+
+    def _progress_of(self, pose):
+        there = {sample.pattern for sample in self.held if sample.joints == pose.joints}
+        missing = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations if pattern not in there]
+        return PoseProgress(has_sample=bool(there), is_measured=bool(there) and not missing, missing=missing)
 
     def plan(self, poses, wanted_stddev, **_):
         self.asked.append(poses)

@@ -114,7 +114,7 @@ class CaptureAction(_AtTheBench):
 
     def _measure(self, course, pose, account):
         course.require_current([pose])
-        wanted = len(course.to_capture(pose, self._calibration.measured()))
+        wanted = sum(map(len, course.to_capture([pose])))
         account.set(pose=1, poses=1, captures_wanted=wanted)
         if wanted:
             course.measure(pose, "", lambda: account.set(captures=len(course.samples)))

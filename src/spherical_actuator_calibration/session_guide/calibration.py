@@ -3,8 +3,15 @@
 import math
 
 import rospy
-from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationStatus
-from spherical_actuator_calibration.srv import Calibrate, Capture, CapturePlanned, ListSamples, PlanPoses
+from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationStatus, CoilPattern, PosePatterns
+from spherical_actuator_calibration.srv import (
+    Calibrate,
+    Capture,
+    CapturePlanned,
+    ListSamples,
+    MissingPatterns,
+    PlanPoses,
+)
 from std_srvs.srv import Trigger
 
 from .progress import Measured, Pose, excited_coils, service_of
@@ -17,6 +24,7 @@ SERVICES = {
     "capture": Capture,
     "capture_planned": CapturePlanned,
     "list_samples": ListSamples,
+    "missing_patterns": MissingPatterns,
     "plan_poses": PlanPoses,
     "refine": Calibrate,
     "save": Trigger,
@@ -147,6 +155,14 @@ class Calibration:
             sample.dwell.to_sec(),
         )
 
+    def progress_of(self, poses):
+        """A PoseProgress of each pose: what the samples that are held now lack there. Asked for, not listened to: what
+        was captured before counts."""
+        answer = self.call("missing_patterns", poses=[message_of(pose) for pose in poses])
+        if not answer.success:
+            raise RuntimeError(answer.message)
+        return answer.poses
+
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""
         return self._latest[CalibrationStatus].pose_tolerance
@@ -162,6 +178,12 @@ class Calibration:
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)
         return [Pose(tuple(p.joint_position), excitations_of(p)) for p in answer.poses], answer.message
+
+
+def message_of(pose):
+    """The PosePatterns of a Pose."""
+    patterns = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations]
+    return PosePatterns(joint_position=list(pose.joints), patterns=patterns, validation=pose.validation)
 
 
 def excitations_of(planned):

@@ -2,7 +2,7 @@
 
 import rospy
 
-from .progress import Pose, missing_patterns
+from .progress import Pose
 
 
 class OpenPlan:
@@ -24,13 +24,8 @@ class OpenPlan:
         ]
 
 
-def begun(poses, measured, tolerance, coils):
+def begun(poses, calibration, coils):
     """Those of planned poses of an actuator with so many coils that have samples, and lack others."""
-    places = [sample.joints for sample in measured if not sample.validation]
-    return [
-        pose
-        for pose in poses
-        if all(abs(coil) <= coils for pattern in pose.excitations for coil in pattern)
-        and any(pose.is_at(place, tolerance) for place in places)
-        and missing_patterns(pose, measured, tolerance)
-    ]
+    possible = [pose for pose in poses if all(abs(coil) <= coils for pattern in pose.excitations for coil in pattern)]
+    progress = calibration.progress_of(possible)
+    return [pose for pose, there in zip(possible, progress) if there.has_sample and not there.is_measured]

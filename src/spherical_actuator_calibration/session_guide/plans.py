@@ -9,7 +9,7 @@ import statistics
 from ..session_tables.export import ExportError
 from ..session_tables.export import Session as StoredSession
 from ..text_files import LARGEST_CONFIGURATION, TextFileError, read_yaml
-from .progress import Pose, excited_coils, is_same_pattern, poses_of
+from .progress import Pose, excited_coils, poses_of
 
 SIGNED_COIL = re.compile(r"[+-][1-9]\d{0,5}")
 
@@ -83,7 +83,7 @@ def _repeated(path, samples, currents, threshold, tolerance):
         carried = currents.get(row["id"], [])
         pattern = excited_coils(carried, threshold)
         strengths += [abs(carried[abs(coil) - 1]) for coil in pattern]
-        if pattern and not any(is_same_pattern(pattern, known) for known in patterns[there]):
+        if pattern and pattern not in patterns[there]:
             patterns[there].append(pattern)
     if not places:
         raise PlanError(f"{path}: it holds no samples in use.")

@@ -29,9 +29,9 @@ class PoseCourse:
         self.current = options.current  # [A] of an excited coil
         self.samples = []  # that were captured
 
-    def to_capture(self, pose, measured):
-        """Patterns of a pose that samples lack."""
-        return progress.patterns_to_capture(pose, measured, self._calibration.pose_tolerance())
+    def to_capture(self, poses):
+        """For each pose the patterns that are to be captured there, in their order."""
+        return [progress.patterns_to_capture(there) for there in self._calibration.progress_of(poses)]
 
     def require_current(self, poses):
         """Raises RuntimeError where a coil would not be told from one that is off, or a pattern needs too much."""
@@ -50,7 +50,8 @@ class PoseCourse:
         `which`: the pose in words, for a hand that is told where to turn it; empty: it is not."""
         self._lead_to(pose, which)
         self.wait_for_rest(pose)
-        for pattern in self.to_capture(pose, self._calibration.measured()):
+        (patterns,) = self.to_capture([pose])
+        for pattern in patterns:
             self.capture(pose, pattern)
             done()
         if further:
@@ -183,8 +184,8 @@ class PoseCourse:
 
     def _holds(self, pose, pattern):
         """Whether a sample has the pattern, though its answer was lost."""
-        measured = self._calibration.measured()
-        return pattern not in progress.missing_patterns(pose, measured, self._calibration.pose_tolerance())
+        (patterns,) = self.to_capture([pose])
+        return pattern not in patterns
 
     def _mend(self, flaw, pose):
         """What is to be done about a flaw that the node tells of, beside another capture."""

@@ -26,10 +26,6 @@ class Pose:
         """[rad] by which each joint is to turn from these angles, the shorter way round."""
         return [difference(wanted, angle) for wanted, angle in zip(self.joints, joints)]
 
-    def patterns(self):
-        """In the order of their capture; that without current comes first."""
-        return ((),) + tuple(self.excitations)
-
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
@@ -60,11 +56,6 @@ def worst_stddev(parameters):
     joints = [max(joint.offset_stddev, *joint.axis_stddev) for joint in parameters.joints]
     axes = [max(axis.polar_stddev, axis.azimuth_stddev) for axis in [*parameters.poles, *parameters.coils]]
     return max(joints + axes)
-
-
-def is_same_pattern(one, other):
-    """A pattern or its opposite, which tells the same."""
-    return one == other or one == tuple(-coil for coil in other)
 
 
 def in_words(pattern):
@@ -106,17 +97,10 @@ def poses_of(measured, tolerance):
     return places
 
 
-def missing_patterns(pose, measured, tolerance):
-    """Patterns of a pose that no sample holds yet."""
-    there = [s for s in measured if s.validation == pose.validation and pose.is_at(s.joints, tolerance)]
-    return [pattern for pattern in pose.patterns() if not any(is_same_pattern(pattern, s.pattern) for s in there)]
-
-
-def patterns_to_capture(pose, measured, tolerance):
-    """Those that are missing; first, whether held or not, that without current: its torque is taken off the others of
-    the same rest, and a new visit is a new rest."""
-    missing = missing_patterns(pose, measured, tolerance)
-    return [(), *(pattern for pattern in missing if pattern)] if missing else []
+def patterns_to_capture(there):
+    """In their order, by the PoseProgress of a pose; first that without current: its torque is taken off the others of
+    the same rest, and a new visit is a new rest. None where the pose is measured."""
+    return [] if there.is_measured else [(), *(tuple(pattern.coils) for pattern in there.missing)]
 
 
 def validation_poses(count, coils_each, coils, tilt, seed):

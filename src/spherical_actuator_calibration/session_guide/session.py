@@ -103,8 +103,7 @@ class Session:
     def _interrupted(self):
         """Poses of the last plan that were begun, and that the currents of this session can complete."""
         most = self._options.total_current / self._course.current
-        measured = self._calibration.measured()
-        poses = begun(self._open_plan.poses(), measured, self._calibration.pose_tolerance(), self._coils)
+        poses = begun(self._open_plan.poses(), self._calibration, self._coils)
         return [pose for pose in poses if all(len(pattern) <= most for pattern in pose.excitations)]
 
     def _plan(self, count, wanted_stddev, interrupted=()):
@@ -124,10 +123,10 @@ class Session:
 
     def _measure(self, poses):
         measured = self._calibration.measured()
-        to_capture = {pose: len(self._course.to_capture(pose, measured)) for pose in poses}
-        open_poses = [pose for pose in poses if to_capture[pose]]
+        captures = [len(patterns) for patterns in self._course.to_capture(poses)]
+        open_poses = [pose for pose, count in zip(poses, captures) if count]
         further = max((self._linearity.captures(pose, measured) for pose in open_poses), default=0)
-        self._progress = Progress(sum(to_capture.values()) + further, self._task.time)
+        self._progress = Progress(sum(captures) + further, self._task.time)
         self._account.count(self._progress)
         for number, pose in enumerate(open_poses, 1):
             self._account.set(pose=number, poses=len(open_poses))
