@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""What calibrate_by_motion plans, carries out and calibrates, and with which options; the programs it starts are told
+only."""
+
+import importlib.machinery
+import importlib.util
+import os
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+SOURCE = pathlib.Path(os.environ["SOURCE"])
+
+
+def loaded():
+    """The program as a module."""
+    loader = importlib.machinery.SourceFileLoader("calibrate_by_motion", str(SOURCE / "scripts" / "calibrate_by_motion"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+    loader.exec_module(module)
+    return module
+
+
+class Recording:
+    """One bag of each motion."""
+
+    def __init__(self, _ns, folder):
+        self._bag = folder / "recordings" / "1.bag"
+
+    def close(self):
+        self._bag.parent.mkdir()
+        self._bag.touch()
+        return [str(self._bag)]
+
+
+class CalibrateByMotion(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name) / "new"
+        self.started = []  # programs with their arguments
+        self.fails = lambda command: False
+        self.module = loaded()
+        for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
+            patch = mock.patch.object(self.module, name, fake)
+            patch.start()
+            self.addCleanup(patch.stop)
+        watch = mock.patch.object(self.module, "ProgressWatch")
+        watch.start().return_value.end.return_value = True
+        self.addCleanup(watch.stop)
+
+    def status_of(self, command, _look=None):
+        words = [str(word) for word in command]
+        self.started.append(words)
+        if words[0] == "calibrate_bag":
+            pathlib.Path(words[words.index("--output") + 1]).touch()
+        return 1 if self.fails(words) else 0
+
+    def run_with(self, *arguments):
+        """Its status, or the error; and what it says."""
+        options = self.module.parse(["--actuator", "A.yaml", "--directory", str(self.folder), *arguments])
+        terminal = mock.Mock()
+        try:
+            result = self.module.run(options, terminal)
+        except RuntimeError as error:
+            result = str(error)
+        return result, " ".join(call.args[0] for call in terminal.say.call_args_list)
+
+    def of_program(self, name):
+        return [words for words in self.started if words[0] == name]
+
+    def test_plans_moves_and_calibrates_once(self):
+        status, _ = self.run_with()
+        self.assertEqual(status, 0)
+        self.assertEqual([words[0] for words in self.started], ["plan_motion", "run_motion", "calibrate_bag"])
+        self.assertIn("--duration=60.0", self.started[0])
+        self.assertNotIn("--parameters", self.started[1])
+
+    def test_begins_gently_and_goes_on_by_what_that_tells(self):
+        status, _ = self.run_with("--gently", "--plan-option=--joint-rate=1000", "--plan-option=--tilt=0.1")
+        self.assertEqual(status, 0)
+        gentle = str(self.folder / "gentle" / "calibrated.yaml")
+        (first, plan), (slow, fast), (alone, both) = map(self.of_program, ("plan_motion", "run_motion", "calibrate_bag"))
+        self.assertEqual(first[first.index("--actuator") + 1], "A.yaml")
+        # What the user says counts for both, and stands once.
+        self.assertEqual([word for word in first if "--tilt" in word], ["--tilt=0.1"])
+        self.assertTrue({"--duration=20.0", "--rate=1.5", "--excitation=0.05", "--joint-rate=1000"} <= set(first))
+        self.assertNotIn("--parameters", slow)
+        self.assertEqual(plan[plan.index("--actuator") + 1], gentle)
+        self.assertTrue({"--duration=60.0", "--joint-rate=1000", "--tilt=0.1"} <= set(plan))
+        self.assertNotIn("--rate=1.5", plan)
+        self.assertEqual(fast[fast.index("--parameters") + 1], gentle)
+        # The result is that of both motions, from the drawing on.
+        bags = [str(self.folder / "gentle" / "recordings" / "1.bag"), str(self.folder / "recordings" / "1.bag")]
+        self.assertEqual(alone[-1:], bags[:1])
+        self.assertEqual(both[-2:], bags)
+        self.assertEqual(both[both.index("--actuator") + 1], "A.yaml")
+        self.assertEqual(both[both.index("--output") + 1], str(self.folder / "calibrated.yaml"))
+
+    def test_a_motion_that_fails_loses_nothing_that_was_recorded(self):
+        self.fails = lambda words: words[0] == "run_motion" and "--parameters" in words
+        error, said = self.run_with("--gently")
+        self.assertEqual(error, "The motion failed.")
+        self.assertIn(f"{self.folder}/gentle/recordings/1.bag {self.folder}/recordings/1.bag", said)
+        self.assertNotIn("--gently", said)
+
+    def test_tells_of_the_gentle_way_where_a_motion_fails(self):
+        self.fails = lambda words: words[0] == "run_motion"
+        error, said = self.run_with()
+        self.assertEqual(error, "The motion failed.")
+        self.assertIn("--gently", said)
+
+    def test_begins_gently_without_a_plan_only(self):
+        with self.assertRaises(SystemExit) as refused, mock.patch("sys.stderr"):
+            self.run_with("--gently", "--plan", "P.yaml")
+        self.assertEqual(refused.exception.code, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
