@@ -268,7 +268,7 @@ void CalibrationPanel::showAnswer() {
                    QString::fromStdString(answer->message));
   answer_->show();
   since_.start();
-  noteRemoval(answer->success);
+  changed_ = true;
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
   setCallsEnabled(true);
   if (auto_capture_asked_) {
@@ -277,16 +277,6 @@ void CalibrationPanel::showAnswer() {
     }
     auto_capture_asked_.reset();
   }
-}
-
-// The report of the last cycle still names what is out of use since.
-void CalibrationPanel::noteRemoval(bool success) {
-  if (success && called_ == "remove_sample") {
-    model_.noteRemoved(removal_);
-  } else if (success && called_ == "clear_samples") {
-    model_.noteCleared();
-  }
-  changed_ = true;
 }
 
 void CalibrationPanel::showAge() {
@@ -355,7 +345,6 @@ void CalibrationPanel::forgetSamples() {
 void CalibrationPanel::removeSample(std::uint32_t id) {
   msg::RemoveSample::Request request;
   request.id = id;
-  removal_ = caller_.isBusy() ? removal_ : id;
   call<msg::RemoveSample>("remove_sample", request);
 }
 

@@ -60,7 +60,6 @@ class CalibrationPanel : public rviz::Panel {
   void refresh();
   void showCalibration();
   void showAnswer();
-  void noteRemoval(bool success);
   /// How long a call runs; an answer of long ago turns grey.
   void showAge();
 
@@ -107,7 +106,6 @@ class CalibrationPanel : public rviz::Panel {
   ParameterTable* estimates_ = nullptr;
   SampleTable* samples_ = nullptr;
   RevisionTable* revisions_ = nullptr;
-  std::uint32_t removal_ = 0;  ///< sample that the last call of remove_sample names
   ConvergenceChart* chart_ = nullptr;
   MotionView* motion_ = nullptr;
 };

@@ -199,14 +199,6 @@ std::vector<ParameterLine> PanelModel::estimates() const {
   return lines;
 }
 
-void PanelModel::noteRemoved(std::uint32_t sample) {
-  std::vector<msg::SampleResidual>& residuals = report_.residuals;
-  residuals.erase(std::remove_if(residuals.begin(),
-                                 residuals.end(),
-                                 [sample](const auto& one) { return one.id == sample; }),
-                  residuals.end());
-}
-
 std::vector<SampleLine> PanelModel::samples() const {
   std::vector<msg::SampleResidual> residuals = report_.residuals;
   const auto worse = [](const msg::SampleResidual& one, const msg::SampleResidual& other) {

@@ -64,9 +64,6 @@ class PanelModel {
 
   void receive(const msg::CalibrationStatus& message) { status_ = message; }
   void receive(const msg::CalibrationReport& message) { report_ = message; }
-  /// The service has taken this sample out of use, or all of them.
-  void noteRemoved(std::uint32_t sample);
-  void noteCleared() { report_.residuals.clear(); }
   void receive(const msg::ActuatorParameters& message) { parameters_ = message; }
   /// Keeps what the nodes in the namespace tell.
   void receive(const diagnostic_msgs::DiagnosticArray& message, const ros::WallTime& now);

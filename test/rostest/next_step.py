@@ -74,6 +74,22 @@ class NextStep(unittest.TestCase):
         self.says("3 of 10 are held")
         self.assertNotIn("Call calibrate_joint", self.client.latest("status").next_step)
 
+    def test_the_report_names_samples_in_use_only(self):
+        def names(samples):
+            wait_for(lambda: {one.id for one in self.client.latest("report").residuals} == set(samples), f"{samples}")
+
+        self.calibrate()
+        held = sorted(self.client.held())
+        wait_for(lambda: self.client.latest("report"), "a report")
+        names(held)
+        self.assertTrue(self.client.call("remove_sample", id=held[0]).success)
+        names(held[1:])
+        self.node.kill()
+        self.client.start(self.node)
+        names(held[1:])
+        self.assertTrue(self.client.call("clear_samples").success)
+        names([])
+
     def test_a_plan_is_followed_also_after_the_node_was_killed(self):
         rospy.wait_for_service(NODE + "/plan_poses")
         plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)(cycle="joint", max_poses=4)

@@ -245,12 +245,6 @@ TEST(PanelModel, SamplesAreListedWorstFirstUntilTheyAreRemoved) {
   EXPECT_EQ(panel.samples()[0], expected);
   EXPECT_EQ(panel.samples()[2].quantity, "orientation");
   EXPECT_EQ(panel.samples()[2].verdict, "");
-
-  panel.noteRemoved(2);
-  ASSERT_EQ(panel.samples().size(), 2U);
-  EXPECT_EQ(panel.samples()[0].id, 3U);
-  panel.noteCleared();
-  EXPECT_TRUE(panel.samples().empty());
 }
 
 }  // namespace

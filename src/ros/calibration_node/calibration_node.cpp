@@ -47,6 +47,7 @@ CalibrationNode::CalibrationNode(const ros::NodeHandle& node,
   topics_.publishParameters(session_);
   if (const auto report = session_.lastReport()) {
     topics_.publishReport(topics_.stamped(reportToRos(*report, session_.grade())));
+    topics_.dropResiduals(session_.calibration().samples());
   }
   takeUpPlan();
   topics_.publishPlan(plan_.get());
@@ -142,6 +143,7 @@ bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
       plan_->countAnew(session_.calibration().samples());
       topics_.publishPlan(plan_.get());
     }
+    topics_.dropResiduals(session_.calibration().samples());
     publishStatus();
     return "Sample " + std::to_string(request.id) +
            " is out of use; run the cycles again to be rid of its effect.";
@@ -165,6 +167,7 @@ bool CalibrationNode::clearSamples(std_srvs::Trigger::Request& /*request*/,
     beginMotionAnew();
     plan_ = nullptr;
     topics_.publishPlan(nullptr);
+    topics_.dropResiduals({});
     publishStatus();
     return std::to_string(count) + " samples are out of use; they stay in the session database.";
   });

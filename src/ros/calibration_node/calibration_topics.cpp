@@ -1,6 +1,10 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include <spherical_actuator_calibration/CalibrationStatus.h>
 #include <spherical_actuator_calibration/PlanProgress.h>
@@ -68,6 +72,24 @@ void CalibrationTopics::publishParameters(const LiveSession& session) {
 void CalibrationTopics::publishReport(const msg::CalibrationReport& report) {
   last_report_ = report;
   publishLatched(report_, report);
+}
+
+void CalibrationTopics::dropResiduals(const std::vector<Sample>& in_use) {
+  // Those of a motion are of its windows.
+  if (!last_report_ || last_report_->cycle == msg::CalibrationReport::MOTION) {
+    return;
+  }
+  std::unordered_set<std::uint32_t> ids;
+  for (const Sample& sample : in_use) {
+    ids.insert(sample.id);
+  }
+  std::vector<msg::SampleResidual>& residuals = last_report_->residuals;
+  const auto dropped = std::remove_if(
+      residuals.begin(), residuals.end(), [&](const auto& one) { return ids.count(one.id) == 0; });
+  if (dropped != residuals.end()) {
+    residuals.erase(dropped, residuals.end());
+    publishLatched(report_, *last_report_);
+  }
 }
 
 void CalibrationTopics::publishStatus(const LiveSession& session,

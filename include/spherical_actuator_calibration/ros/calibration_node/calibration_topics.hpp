@@ -30,6 +30,9 @@ class CalibrationTopics {
   void publishSetup(const CalibratedDescription& start, const CalibrationConfig& config);
   void publishParameters(const LiveSession& session);
   void publishReport(const msg::CalibrationReport& report);
+  /// The last report once more, where it has residuals of samples that are not in use any more:
+  /// without these.
+  void dropResiduals(const std::vector<Sample>& in_use);
   /// Publishes the last report once more where its grade is another one now.
   void publishStatus(const LiveSession& session,
                      const SessionProgress& progress,
