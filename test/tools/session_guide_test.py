@@ -18,21 +18,8 @@ from spherical_actuator_calibration.session_guide.task import Task
 from spherical_actuator_calibration.session_guide.terminal import Terminal
 from spherical_actuator_calibration.srv import CapturePlannedResponse
 
-
 TOLERANCE = 0.05  # [rad] of one pose
 STATUS = SimpleNamespace(least_current=0.09)
-
-
-class ExcitedCoils(unittest.TestCase):
-    def test_are_those_that_carry_current_with_their_signs(self):
-        self.assertEqual(progress.excited_coils([0.001, -0.002, 0.0], 0.05), ())
-        self.assertEqual(progress.excited_coils([0.001, -0.05, 0.0], 0.05), (-2,))
-        self.assertEqual(progress.excited_coils([2.0, -1.99, 0.0], 0.05), (1, -2))
-        self.assertEqual(progress.excited_coils([], 0.05), ())
-
-    def test_in_words(self):
-        self.assertEqual(progress.in_words((3,)), "Coil 3")
-        self.assertEqual(progress.in_words((1, -4, 12)), "Coils +1 -4 +12")
 
 
 class KnownJoint(unittest.TestCase):

@@ -112,6 +112,9 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   fillCoverage(progress, message);
   message.current_threshold = estimation.current_threshold;
   message.least_current = leastExcitation(estimation.current_threshold);
+  const CurrentTolerance tolerance = currentTolerance(estimation.current_threshold);
+  message.current_tolerance = tolerance.absolute;
+  message.current_tolerance_share = tolerance.share;
   message.pose_tolerance = kPoseTolerance;
   for (const CycleRequest& request : progress.next_cycles) {
     message.next_cycles.push_back(cycleText(request));

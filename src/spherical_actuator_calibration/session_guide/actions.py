@@ -43,13 +43,11 @@ class _AtTheBench:
 
     def _progress(self, account):
         message = account.message(self._laboratory.readings.fresh())
-        message.carries = self._carries(message.coils)
+        message.carries = self._carry(message.coils, message.current)
         return message
 
-    def _carries(self, pattern):
-        """Whether the coils of a pattern carry current, of their sign, and no others."""
-        currents = self._laboratory.currents()
-        return bool(currents) and self._calibration.excited(currents) == tuple(sorted(pattern, key=abs))
+    def _carry(self, pattern, current):
+        return self._calibration.carry(self._laboratory.currents(), pattern, current)
 
 
 class SessionAction(_AtTheBench):
@@ -154,7 +152,7 @@ class ExciteAction(_AtTheBench):
         was_there = False
         while task.time() < begin + duration:
             task.pause(POLL)
-            is_there = self._carries(pattern)
+            is_there = self._carry(pattern, goal.current)
             if not is_there and (was_there or task.time() > begin + SLOW):
                 complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
                 raise RuntimeError(f"{in_words(pattern)}: not the current that was commanded: {complaint}.")

@@ -14,7 +14,7 @@ from spherical_actuator_calibration.srv import (
 )
 from std_srvs.srv import Trigger
 
-from .progress import Measured, Pose, excited_coils, service_of
+from .progress import Measured, Pose, are_carried, excited_coils, service_of
 from .task import Task
 
 SERVICES = {
@@ -135,10 +135,13 @@ class Calibration:
         service, coil = service_of(cycle)
         return self.call(service, coil=coil)
 
-    def excited(self, currents):
-        """The coils that currents [A] excite, see excited_coils; none before the first status."""
+    def carry(self, currents, pattern, current):
+        """Whether each coil carries what it is commanded: `current` [A] those of the pattern, with their signs, the others
+        none. Not before the first status."""
         status = self._latest[CalibrationStatus]
-        return excited_coils(currents, status.current_threshold) if status else ()
+        return status is not None and are_carried(
+            currents, pattern, current, status.current_tolerance, status.current_tolerance_share
+        )
 
     def measured(self):
         """Samples that are held."""
@@ -148,7 +151,7 @@ class Calibration:
         torque = sample.torque
         return Measured(
             tuple(sample.joint_position),
-            self.excited(sample.current),
+            excited_coils(sample.current, self.status().current_threshold),
             sample.validation,
             max(map(abs, sample.current), default=0.0),
             math.hypot(torque.x, torque.y, torque.z),

@@ -44,6 +44,19 @@ def excited_coils(currents, threshold):
     return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
 
 
+def are_carried(currents, pattern, current, tolerance, share):
+    """Whether measured currents [A] are those commanded: `current` of each coil of the pattern, with its sign, none of the
+    others. `tolerance` [A], or a share of the command where that is more: see CalibrationStatus."""
+    commanded = [0.0] * len(currents)
+    for coil in pattern:
+        if abs(coil) > len(currents):
+            return False
+        commanded[abs(coil) - 1] = math.copysign(current, coil)
+    return bool(currents) and all(
+        abs(measured - wanted) <= max(tolerance, share * abs(wanted)) for measured, wanted in zip(currents, commanded)
+    )
+
+
 def joint_stddev(joints):
     """[rad] of the axis or offset that is known worst, by the messages of the joints; 0 while one is not known."""
     worst = max(max(joint.offset_stddev, *joint.axis_stddev) for joint in joints)
