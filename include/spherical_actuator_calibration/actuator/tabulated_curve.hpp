@@ -8,7 +8,7 @@
 
 namespace sac {
 
-/// A torque curve in a tenth of the time, where it is asked for very often: h(κ) of
+/// A torque curve for those who ask very often, in less time: h(κ) of
 /// TorqueCurve::safe() by a cubic through its values and slopes at evenly spaced κ. h is right to
 /// 1e-8 of its largest value, to 1e-5 next to an angle where the curve changes its form. dh is the
 /// derivative of that h.
