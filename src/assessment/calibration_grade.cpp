@@ -12,8 +12,6 @@
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 
 namespace sac {
-namespace {}  // namespace
-
 /// Collects what speaks for and against one session.
 class CalibrationGrader::Examiner {
  public:

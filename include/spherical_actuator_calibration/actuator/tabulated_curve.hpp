@@ -8,10 +8,10 @@
 
 namespace sac {
 
-/// A torque curve for those who ask very often, in less time: h(κ) of
-/// TorqueCurve::safe() by a cubic through its values and slopes at evenly spaced κ. h is right to
-/// 1e-8 of its largest value, to 1e-5 next to an angle where the curve changes its form. dh is the
-/// derivative of that h.
+/// A torque curve for those who ask very often, in less time: h(κ) of TorqueCurve::safe() by a
+/// cubic through its values and slopes at evenly spaced κ (doc/method.md, Torque curve). h is right
+/// to 1e-8 of its largest value, to 1e-5 next to an angle where the curve changes its form. dh is
+/// the derivative of that h.
 class TabulatedCurve {
  public:
   explicit TabulatedCurve(const TorqueCurve& curve);
