@@ -154,7 +154,7 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   const bool too_late = newest_ && secondsBetween(from, *newest_) >
                                        duration + kPatience + options_.guard_before_motion;
   const State unfinished = too_late ? State::kRefused : State::kWaiting;
-  const std::optional<StampInterval>& dwell = detector_.present();
+  const std::optional<StampInterval> dwell = presentInTime();
   if (!dwell) {
     return {unfinished, std::nullopt, "The rotor moves: let it rest."};
   }
@@ -162,16 +162,14 @@ CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   const StampInterval span{begin, begin + ticksFromSeconds(duration)};
   const Stamp limit = span.end + ticksFromSeconds(options_.guard_before_motion);
   if (dwell->end < limit || !allPassed(limit)) {
+    const bool came_too_late = newest_behind_ && *newest_behind_ >= from;
     return {unfinished,
             std::nullopt,
-            "Rotor and currents were not steady for " + shortNumber(duration) + " s."};
+            came_too_late
+                ? "Measurements came too late to be used: a computer is too busy."
+                : "Rotor and currents were not steady for " + shortNumber(duration) + " s."};
   }
-  if (newest_behind_ && *newest_behind_ >= span.begin) {
-    return {State::kRefused,
-            std::nullopt,
-            "Measurements came too late to be used: a computer is too busy."};
-  }
-  return captured(span);
+  return captured(*dwell, span);
 }
 
 std::vector<Sample> SampleBuilder::takeSamples() {
@@ -205,6 +203,16 @@ std::string SampleBuilder::silentStream() const {
   return {};
 }
 
+// The present dwell. What came too late is missing here but not in a recording: the dwell counts
+// from after it.
+std::optional<StampInterval> SampleBuilder::presentInTime() const {
+  std::optional<StampInterval> dwell = detector_.present();
+  if (dwell && newest_behind_ && *newest_behind_ >= dwell->begin) {
+    dwell->begin = *newest_behind_ + 1;
+  }
+  return dwell;
+}
+
 Stamp SampleBuilder::settledSince(const StampInterval& dwell) const {
   const Stamp rest = dwell.begin + ticksFromSeconds(options_.settle_after_motion);
   const std::vector<CurrentSegment> segments =
@@ -227,11 +235,11 @@ bool SampleBuilder::allPassed(Stamp stamp) const {
 
 // What came after the guard is not looked at, though it may be there: how much of it is there is a
 // matter of chance.
-CaptureProgress SampleBuilder::captured(const StampInterval& span) const {
+CaptureProgress SampleBuilder::captured(const StampInterval& dwell,
+                                        const StampInterval& span) const {
   SampleBuilderReport report;
   CaptureProgress progress;
-  const StampInterval rest{detector_.present()->begin,
-                           span.end + ticksFromSeconds(options_.guard_before_motion)};
+  const StampInterval rest{dwell.begin, span.end + ticksFromSeconds(options_.guard_before_motion)};
   progress.sample = sampleOfSpan(buffers_, rest, span, options_, report);
   progress.state =
       progress.sample ? CaptureProgress::State::kDone : CaptureProgress::State::kRefused;

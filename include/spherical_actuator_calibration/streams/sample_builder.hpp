@@ -70,8 +70,9 @@ class SampleBuilder {
   void finish();
 
   /// One sample of the present dwell, averaged over `duration` seconds from stamp `from` on, or
-  /// from where rotor and currents have settled. It depends on the measurements up to its end and
-  /// `guard_before_motion` only, so that repeat() finds it again. Ask again while it waits; it
+  /// from where rotor and currents have settled. Where measurements of the dwell came too late, it
+  /// counts as a dwell that begins after them. The sample depends on the measurements up to its end
+  /// and `guard_before_motion` only, so that repeat() finds it again. Ask again while it waits; it
   /// waits no longer than the rotor may need to come to rest (kPatience) and refuses then. Changes
   /// nothing.
   CaptureProgress capture(Stamp from, double duration) const;
@@ -107,9 +108,10 @@ class SampleBuilder {
   void evaluateReadyDwells();
   bool isReady(const StampInterval& dwell) const;
   std::string silentStream() const;
+  std::optional<StampInterval> presentInTime() const;
   Stamp settledSince(const StampInterval& dwell) const;
   bool allPassed(Stamp stamp) const;
-  CaptureProgress captured(const StampInterval& span) const;
+  CaptureProgress captured(const StampInterval& dwell, const StampInterval& span) const;
   void evaluateFront();
   void takeRepeated(Stamp until, const std::optional<StampInterval>& dwell);
   Stamp oldestNeeded() const;
