@@ -12,7 +12,8 @@ import unittest
 
 from spherical_actuator_calibration.session_guide.revisions import revisions_told, sessions_beside
 from spherical_actuator_calibration.session_tables.export import APPLICATION, ExportError
-from spherical_actuator_calibration.session_tables.history import drift_between, histories_of, lines_of
+from spherical_actuator_calibration.parameter_drift import drifts_between
+from spherical_actuator_calibration.session_tables.history import histories_of, lines_of
 
 TABLES = """
 CREATE TABLE unit (name, serial, description, effects);
@@ -140,9 +141,14 @@ class History(unittest.TestCase):
             self.lines(sessions)
 
     def test_an_angle_drifts_the_short_way(self):
-        drift = drift_between({"a": (3.1415, 1e-3, "rad")}, {"a": (-3.1415, 1e-3, "rad")})
+        (drift,) = drifts_between({"a": (3.1415, 1e-3, "rad")}, {"a": (-3.1415, 1e-3, "rad")})
         self.assertLess(abs(drift.change), 1e-3)
-        self.assertIsNone(drift_between({}, {"a": (0.0, 1.0, "rad")}))
+        self.assertEqual(drifts_between({}, {"a": (0.0, 1.0, "rad")}), [])
+
+    def test_what_is_known_exactly_drifts_only_where_it_changed(self):
+        moved, same = drifts_between({"a": (1.0, 0.0, "1"), "b": (1.0, 0.0, "1")}, {"a": (1.5, 0.0, "1"), "b": (1.0, 0.0, "1")})
+        self.assertEqual((moved.name, moved.deviations), ("a", float("inf")))
+        self.assertEqual((same.name, same.deviations), ("b", 0.0))
 
 
 if __name__ == "__main__":

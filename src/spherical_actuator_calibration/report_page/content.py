@@ -2,9 +2,10 @@
 
 import math
 
+from ..parameter_drift import drifts_between
+from ..shown_numbers import change_of, plus_minus, signed, significant, with_unit
 from . import figures
 from .motion import told_by
-from .numbers import change_of, plus_minus, signed, significant, with_unit
 
 GRADES = {
     "good": "Good",
@@ -23,6 +24,11 @@ def cross_and_dot(one, other):
     """Vector product and scalar product of two vectors."""
     cross = [one[i - 2] * other[i - 1] - one[i - 1] * other[i - 2] for i in range(3)]
     return cross, sum(a * b for a, b in zip(one, other))
+
+
+def _identified(report):
+    """Of each identified parameter of a report.yaml value, standard deviation and unit."""
+    return {p["name"]: (p["value"], p["stddev"], p["unit"]) for p in report["parameters"] if p["identified"]}
 
 
 class Report:
@@ -126,24 +132,16 @@ class Report:
         """What changed since an earlier report of this unit: date, count, rows; None without one."""
         if self._previous is None or self._previous["serial"] != self._report["serial"]:
             return None
-        before = {item["name"]: item for item in self._previous["parameters"] if item["identified"]}
-        moved = []
-        for item in self._parameters:
-            other = before.get(item["name"])
-            if other and item["identified"]:
-                change = item["value"] - other["value"]
-                stddev = math.hypot(item["stddev"], other["stddev"])
-                moved.append((abs(change) / stddev if stddev > 0.0 else math.inf if change else 0.0, item, change))
-        moved.sort(key=lambda entry: (-entry[0], entry[1]["name"]))
+        drifts = drifts_between(_identified(self._previous), _identified(self._report))
         return {
             "date": self._previous["date"].replace("T", " ").replace("Z", " UTC"),
             "revision": self._previous.get("revision"),
-            "compared": len(moved),
-            "beyond": sum(ratio > 3.0 for ratio, _, _ in moved),
+            "compared": len(drifts),
+            "beyond": sum(drift.deviations > 3.0 for drift in drifts),
             "rows": [
-                {"name": item["name"], "change": signed(change, item["unit"]), "ratio": significant(ratio)}
-                for ratio, item, change in moved[:MOST_INFLUENTIAL]
-                if ratio > 0.0
+                {"name": drift.name, "change": signed(drift.change, drift.unit), "ratio": significant(drift.deviations)}
+                for drift in drifts[:MOST_INFLUENTIAL]
+                if drift.deviations > 0.0
             ],
         }
 

@@ -9,7 +9,7 @@ import math
 import matplotlib.ticker
 from matplotlib.patches import Rectangle
 
-from .numbers import shown_in, significant, with_unit
+from ..shown_numbers import shown_in, significant, with_unit
 from .picture import Figure
 
 BLUE = "#1d6fb8"

@@ -1,7 +1,7 @@
 """What the page tells of a motion: its windows, their residual torques, and what else than coils moves the rotor."""
 
+from ..shown_numbers import plus_minus, significant, with_unit
 from . import figures
-from .numbers import plus_minus, significant, with_unit
 
 INERTIA = "rotor_inertia/"
 # Where a parameter belongs, by the begin of its name.

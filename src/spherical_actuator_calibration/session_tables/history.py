@@ -4,6 +4,8 @@ import dataclasses
 import math
 import sqlite3
 
+from ..parameter_drift import Drift, drifts_between
+from ..shown_numbers import change_of
 from .export import ExportError, Session
 
 ERRORS = """
@@ -13,7 +15,6 @@ SELECT revisions.number, revisions.date, revisions.origin, cycles.error_measure,
 FROM revisions LEFT JOIN cycles ON revisions.cycle = cycles.id ORDER BY revisions.number
 """
 ERROR_UNITS = {"orientation": "rad", "torque": "N·m", "standardized": "1"}  # of each measure of errors
-SHOWN = {"orientation": (1e3, "mrad"), "torque": (1e3, "mN·m"), "standardized": (1.0, "")}  # of each measure of errors
 # What a damaged session gives instead of its rows.
 UNREADABLE = (ExportError, OSError, sqlite3.Error, LookupError, TypeError, ValueError, OverflowError)
 NUMBER = (int, float, type(None))
@@ -28,16 +29,6 @@ KINDS = {  # of what a revision holds
 }
 
 
-@dataclasses.dataclass(frozen=True)
-class Drift:
-    """What changed between two sessions: the parameter that went furthest for what is known of it."""
-
-    name: str
-    change: float  # in the unit of the parameter
-    unit: str
-    deviations: float  # the change by its standard deviation
-
-
 def revisions_of(session):
     """Rows of a Session by their number: number, date, origin, error_measure, samples_used, before, after."""
     return session.rows(ERRORS)
@@ -50,25 +41,13 @@ def identified(session):
     return {name: told for name, told in found.items() if told[1] is not None and math.isfinite(told[1])}
 
 
-def drift_between(before, after):
-    """Drift from one session's identified() to the next one's, which shares no sample with it; None without a common
-    parameter."""
-    drifts = []
-    for name in before.keys() & after.keys():
-        (old, old_stddev, _), (new, new_stddev, unit) = before[name], after[name]
-        change = math.remainder(new - old, math.tau) if unit == "rad" else new - old
-        stddev = math.hypot(old_stddev, new_stddev)
-        drifts.append(Drift(name, change, unit, abs(change) / stddev if stddev else math.inf))
-    return max(drifts, key=lambda drift: (drift.deviations, drift.name), default=None)
-
-
 def line_of(row):
     """A revision in one line."""
     text = f"{row['number']:4d}  {row['date']}  {row['origin']:<12}"
     if row["before"] is None or row["after"] is None:
         return text.rstrip()
-    factor, unit = SHOWN.get(row["error_measure"], (1.0, row["error_measure"]))
-    return f"{text}  {factor * row['before']:.4g} → {factor * row['after']:.4g} {unit}".rstrip() + f", {row['samples_used']} samples"
+    unit = ERROR_UNITS.get(row["error_measure"], row["error_measure"] or "")
+    return f"{text}  {change_of(row['before'], row['after'], unit)}, {row['samples_used']} samples"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,7 +56,7 @@ class SessionHistory:
 
     path: str
     revisions: list  # see revisions_of()
-    drift: Drift = None  # since the session before; None without a common parameter
+    drift: Drift = None  # that went furthest since the session before; None without a common parameter
 
 
 def sentence_of(drift):
@@ -110,7 +89,8 @@ def histories_of(paths):
     sessions.sort(key=lambda told: told[1][-1]["date"] if told[1] else "")
     histories, known = [], {}
     for path, revisions, parameters in sessions:
-        histories.append(SessionHistory(path, revisions, drift_between(known, parameters)))
+        furthest = next(iter(drifts_between(known, parameters)), None)
+        histories.append(SessionHistory(path, revisions, furthest))
         known = parameters or known
     return histories, unread
 
