@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
-#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -52,7 +52,7 @@ Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor) {
 }
 
 Eigen::Vector3d nearestTurns(const Eigen::Vector3d& angles, const Eigen::Vector3d& others) {
-  return {angles[0], angles[1], others[2] + std::remainder(angles[2] - others[2], 2.0 * kPi)};
+  return {angles[0], angles[1], others[2] + angleDifference(angles[2], others[2])};
 }
 
 }  // namespace sac

@@ -9,9 +9,9 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
-#include "spherical_actuator_calibration/base/pi.hpp"
 #include "urdf_elements.hpp"
 #include "xml_limits.hpp"
 
@@ -165,7 +165,7 @@ void requireNominal(const RobotDescription& robot, const JointAxis& nominal) {
                "robot description.");
   }
   // Modulo full turns: both offsets stand for the same rotation.
-  if (std::abs(std::remainder(joint.offset - nominal.offset, 2.0 * kPi)) > kAngleTolerance) {
+  if (std::abs(angleDifference(joint.offset, nominal.offset)) > kAngleTolerance) {
     robot.fail(nominal.name,
                "the rotation of its origin is not the nominal offset of the actuator description; "
                "give the nominal robot description.");

@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/calibration/sample_counts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
@@ -15,8 +17,11 @@ void PoseCount::add(const Eigen::Vector3d& joint_position) {
   if (isEnough()) {
     return;
   }
+  const auto is_near = [&](const Eigen::Vector3d& known, Eigen::Index k) {
+    return std::abs(angleDifference(known[k], joint_position[k])) < least_motion_;
+  };
   auto pose = std::find_if(poses_.begin(), poses_.end(), [&](const auto& known) {
-    return (known.first - joint_position).cwiseAbs().maxCoeff() < least_motion_;
+    return is_near(known.first, 0) && is_near(known.first, 1) && is_near(known.first, 2);
   });
   if (pose == poses_.end()) {
     pose = poses_.insert(poses_.end(), {joint_position, 0});

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 namespace sac {
@@ -15,7 +15,7 @@ constexpr double kSteepest = 1e3;
 
 /// Difference of two values; of angles the short way round.
 double difference(double a, double b, bool is_angle) {
-  return is_angle ? std::remainder(a - b, 2.0 * kPi) : a - b;
+  return is_angle ? angleDifference(a, b) : a - b;
 }
 
 /// Adds the derivative by `term`, times `sign`, to columns that hold all of its.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 
@@ -49,8 +49,8 @@ std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
 
 bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position) {
   const auto is_near = [&](Eigen::Index k) {
-    const double apart = sample.joint_position[k] - joint_position[k];
-    return std::abs(std::remainder(apart, 2.0 * kPi)) <= kPoseTolerance;
+    const double apart = angleDifference(sample.joint_position[k], joint_position[k]);
+    return std::abs(apart) <= kPoseTolerance;
   };
   return is_near(0) && is_near(1) && is_near(2);
 }

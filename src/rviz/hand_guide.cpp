@@ -12,6 +12,7 @@
 
 #include "excitation_limits.hpp"
 #include "named_button.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "steady_label.hpp"
@@ -212,12 +213,13 @@ std::string HandGuide::askFor(const msg::PoseProgress& pose, msg::CaptureGoal& g
     std::vector<double>& currents = goal.pose.patterns.emplace_back().current;
     currents.assign(model_.coils(), 0.0);
     for (const std::int32_t coil : pattern.coils) {
-      const auto number = static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(coil)));
-      if (number == 0 || number > currents.size()) {
+      const auto index =
+          indexOf(static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(coil))));
+      if (!index || *index >= currents.size()) {
         return "The plan is of another actuator: plan anew.";
       }
       // The goal's sign is that of the pattern as a whole.
-      currents[number - 1] = std::copysign(goal.current, static_cast<double>(coil));
+      currents[*index] = std::copysign(goal.current, static_cast<double>(coil));
     }
   }
   return "";

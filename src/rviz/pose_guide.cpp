@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -18,11 +19,6 @@ std::string inDegrees(double angle) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.1f°", std::abs(angle) / kOneDegree);
   return (angle < 0.0 ? "−" : "+") + std::string(text);
-}
-
-/// Of two angles [rad]; a full turn makes none.
-double difference(double a, double b) {
-  return std::remainder(a - b, 2.0 * kPi);
 }
 
 /// Turns about x, then y, then z [rad] of a unit quaternion.
@@ -109,7 +105,7 @@ bool PoseGuide::isThere(const msg::PoseProgress& pose) const {
   const std::array<double, 3> wanted = jointsOf(pose);
   return joints_ &&
          std::equal(wanted.begin(), wanted.end(), joints_->begin(), [this](double a, double b) {
-           return std::abs(difference(a, b)) <= tolerance_;
+           return std::abs(angleDifference(a, b)) <= tolerance_;
          });
 }
 
@@ -164,7 +160,7 @@ std::string PoseGuide::advice() const {
   const std::array<double, 3> wanted = jointsOf(pose);
   std::string turns;
   for (std::size_t k = 0; k < joints_->size(); ++k) {
-    const double left = difference(wanted[k], (*joints_)[k]);
+    const double left = angleDifference(wanted[k], (*joints_)[k]);
     if (std::abs(left) > tolerance_) {
       turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + inDegrees(left);
     }

@@ -112,6 +112,15 @@ TEST(CycleSelection, APlannedSessionGoesFromTheJointToTheRefinement) {
   EXPECT_EQ(textOf(nextOf(samples)), "joint,refine");
 }
 
+TEST(CycleSelection, AFullTurnIsNoOtherPose) {
+  std::vector<Sample> samples(8, orientationSample());
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].joint_position = {0.3, -0.2, n % 2 == 0 ? 3.13 : -3.13};
+  }
+  // Of one pose no more than three count.
+  EXPECT_EQ(SampleCounts(paperModel(), {}, samples).usefulOrientations(), 3U);
+}
+
 TEST(CycleSelection, PolesAndOtherCoilsFollowWhereOneCoilCanTellEveryPole) {
   std::vector<Sample> samples =
       joined(samplesWithCoils({1, 4, 4, 2, 2, 2, 2, 2, 2, 2, 2, 2}), orientationSamples(3));
