@@ -223,11 +223,18 @@ CalibrationRecord readCalibration(const YamlMap& map) {
 }
 
 /// What moves the rotor beside its coils.
-void readDynamics(const YamlMap& map, Actuator& actuator) {
+void readDynamics(const YamlMap& map, CalibratedDescription& description) {
+  Actuator& actuator = description.actuator;
+  const auto vector = [&](const char* key, const ValueRange& range) {
+    const std::vector<double> c = map.numbers(key, range, kJoints);
+    return Eigen::Vector3d(c[0], c[1], c[2]);
+  };
   if (map.has("rotor_unbalance")) {
-    const std::vector<double> c =
-        map.numbers("rotor_unbalance", ValueRange::finite("N*m"), kJoints);
-    actuator.unbalance << c[0], c[1], c[2];
+    actuator.unbalance = vector("rotor_unbalance", ValueRange::finite("N*m"));
+  }
+  if (map.has("rotor_unbalance_stddev")) {
+    description.stddevs.unbalance =
+        vector("rotor_unbalance_stddev", ValueRange::nonNegative("N*m"));
   }
   if (map.has("rotor_inertia")) {
     const YamlMap inertia = map.map("rotor_inertia");
@@ -269,7 +276,7 @@ CalibratedDescription readDescription(const YamlMap& file) {
     actuator.torque_curve = readTorqueCurve(map);
   }
   actuator.workspace = readWorkspace(map);
-  readDynamics(map, actuator);
+  readDynamics(map, description);
   actuator.orientation_map = readOrientationMap(map);
   try {
     validate(actuator);

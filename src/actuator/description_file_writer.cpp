@@ -186,9 +186,12 @@ std::string inertiaLine(const Eigen::Matrix3d& J) {
   return line.text();
 }
 
-void writeDynamics(YamlWriter& writer, const Actuator& actuator) {
-  if (!actuator.unbalance.isZero(0.0)) {
+void writeDynamics(YamlWriter& writer, const Actuator& actuator, const ParameterStddevs& stddevs) {
+  if (stddevs.unbalance || !actuator.unbalance.isZero(0.0)) {
     writer.entry(1, "rotor_unbalance", yamlNumbers(actuator.unbalance));
+  }
+  if (stddevs.unbalance) {
+    writer.entry(1, "rotor_unbalance_stddev", yamlNumbers(*stddevs.unbalance));
   }
   if (actuator.inertia) {
     writer.entry(1, "rotor_inertia", inertiaLine(*actuator.inertia));
@@ -224,7 +227,7 @@ std::string renderDescription(const CalibratedDescription& description, const st
   YamlLine workspace;
   workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));
   writer.entry(1, "workspace", workspace.text());
-  writeDynamics(writer, actuator);
+  writeDynamics(writer, actuator, description.stddevs);
   if (actuator.orientation_map) {
     writeOrientationMap(writer, *actuator.orientation_map);
   }

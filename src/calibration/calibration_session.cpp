@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "motion_cycle.hpp"
+#include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "start_state.hpp"
 
@@ -241,7 +243,24 @@ const WorkspaceUncertainty& CalibrationSession::expectedErrors() const {
 }
 
 Actuator CalibrationSession::actuator() const {
-  return model_.space().actuatorAt(state_.belief.x);
+  Actuator actuator = model_.space().actuatorAt(state_.belief.x);
+  const ToldDynamics dynamics = toldDynamics(reports_);
+  actuator.inertia = dynamics.inertia ? dynamics.inertia : actuator.inertia;
+  actuator.friction = dynamics.friction ? dynamics.friction : actuator.friction;
+  actuator.unbalance = dynamics.unbalance.value_or(actuator.unbalance);
+  return actuator;
+}
+
+ParameterStddevs CalibrationSession::stddevs() const {
+  ParameterStddevs stddevs = identifiedStddevs(model_.space(), state_);
+  const ToldDynamics dynamics = toldDynamics(reports_);
+  if (dynamics.unbalance) {
+    stddevs.unbalance = dynamics.unbalance_stddev;
+  }
+  if (!stddevs.unbalance) {
+    stddevs.unbalance = start_.stddevs.unbalance;
+  }
+  return stddevs;
 }
 
 const CycleReport* CalibrationSession::lastSuccess() const {

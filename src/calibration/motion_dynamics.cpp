@@ -1,7 +1,6 @@
 #include "motion_dynamics.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <string>
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
@@ -9,62 +8,64 @@
 namespace sac {
 namespace {
 
-/// What a motion told of a parameter; nothing where it did not.
-std::optional<double> told(const CycleReport& report, const std::string& name) {
+constexpr char kAxes[] = "xyz";
+
+/// What a motion told of a parameter; null where it did not.
+const ParameterEstimate* told(const CycleReport& report, const std::string& name) {
   for (const ParameterEstimate& estimate : report.estimates) {
     if (estimate.name == name && estimate.observable) {
-      return estimate.value;
+      return &estimate;
     }
   }
-  return std::nullopt;
+  return nullptr;
 }
 
-/// Of a reference that was held, the nominal value.
-std::optional<double> toldOrHeld(const CycleReport& report, const std::string& name) {
-  const std::optional<double> value = told(report, name);
-  if (value || name != "rotor_inertia/zz") {
-    return value;
+std::optional<Eigen::Matrix3d> toldInertia(const CycleReport& report) {
+  Eigen::Matrix3d inertia;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    for (Eigen::Index b = a; b < 3; ++b) {
+      const std::string name = std::string("rotor_inertia/") + kAxes[a] + kAxes[b];
+      const ParameterEstimate* const moment = told(report, name);
+      // A reference that is held has its nominal value.
+      const bool is_reference = a == 2;
+      if (moment == nullptr && !is_reference) {
+        return std::nullopt;
+      }
+      const double value = moment != nullptr ? moment->value : RigidRotor().inertia(2, 2);
+      inertia(a, b) = inertia(b, a) = value;
+    }
   }
-  return RigidRotor().inertia(2, 2);
+  return inertia;
 }
 
 }  // namespace
 
-void takeDynamics(const std::vector<CycleReport>& reports, Actuator& actuator) {
+ToldDynamics toldDynamics(const std::vector<CycleReport>& reports) {
   const auto motion = std::find_if(reports.rbegin(), reports.rend(), [](const CycleReport& report) {
     return report.cycle == Cycle::kMotion && report.success;
   });
   if (motion == reports.rend()) {
-    return;
+    return {};
   }
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  bool is_told = true;
-  constexpr char kAxes[] = "xyz";
-  for (Eigen::Index a = 0; a < 3; ++a) {
-    for (Eigen::Index b = a; b < 3; ++b) {
-      const std::string name = std::string("rotor_inertia/") + kAxes[a] + kAxes[b];
-      const std::optional<double> value = toldOrHeld(*motion, name);
-      is_told = is_told && value;
-      inertia(a, b) = inertia(b, a) = value.value_or(0.0);
-    }
-  }
-  if (is_told) {
-    actuator.inertia = inertia;
-  }
-  const std::optional<double> viscous = told(*motion, "viscous_friction");
-  const std::optional<double> coulomb = told(*motion, "coulomb_friction");
-  if (viscous && coulomb) {
-    actuator.friction = {*viscous, *coulomb};
+  ToldDynamics dynamics;
+  dynamics.inertia = toldInertia(*motion);
+  const ParameterEstimate* const viscous = told(*motion, "viscous_friction");
+  const ParameterEstimate* const coulomb = told(*motion, "coulomb_friction");
+  if (viscous != nullptr && coulomb != nullptr) {
+    dynamics.friction = {viscous->value, coulomb->value};
   }
   Eigen::Vector3d unbalance;
   for (Eigen::Index a = 0; a < 3; ++a) {
-    const std::optional<double> value = told(*motion, std::string("rotor_unbalance/") + kAxes[a]);
-    if (!value) {
-      return;
+    const ParameterEstimate* const moment =
+        told(*motion, std::string("rotor_unbalance/") + kAxes[a]);
+    if (moment == nullptr) {
+      return dynamics;
     }
-    unbalance[a] = *value;
+    unbalance[a] = moment->value;
+    dynamics.unbalance_stddev[a] = moment->stddev;
   }
-  actuator.unbalance = unbalance;
+  dynamics.unbalance = unbalance;
+  return dynamics;
 }
 
 }  // namespace sac

@@ -1,14 +1,26 @@
 #pragma once
 
+#include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 
 namespace sac {
 
-/// Puts inertia, friction and unbalance that the last motion of these cycles has told into a
-/// description, also where the cycles' model does not know them; nothing without such a motion.
-void takeDynamics(const std::vector<CycleReport>& reports, Actuator& actuator);
+/// What moves the rotor beside its coils, as a motion has told it: each only where all of it is
+/// told.
+struct ToldDynamics {
+  std::optional<Eigen::Matrix3d> inertia;                      ///< as in the Actuator
+  std::optional<RotorFriction> friction;                       ///< the same
+  std::optional<Eigen::Vector3d> unbalance;                    ///< the same
+  Eigen::Vector3d unbalance_stddev = Eigen::Vector3d::Zero();  ///< where that is told [N·m]
+};
+
+/// Of the last motion of these cycles, also where their model does not know it; nothing without one
+/// that succeeded.
+ToldDynamics toldDynamics(const std::vector<CycleReport>& reports);
 
 }  // namespace sac

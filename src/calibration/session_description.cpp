@@ -4,10 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/covariance_record.hpp"
-#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 
 namespace sac {
 namespace {
@@ -43,7 +41,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   const ParameterSpace& space = model_.space();
   const Actuator calibrated = actuator();
   const std::vector<ParameterEstimate> values = parameters();
-  const ParameterStddevs identified = identifiedStddevs(space, state_);
+  const ParameterStddevs identified = stddevs();
   const auto moved = [this](Eigen::Index first, Eigen::Index count) {
     return !state_.belief.x.segment(first, count).isZero(0.0);
   };
@@ -87,8 +85,10 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   }
   result.actuator.torque_curve = calibrated.torque_curve;
   result.actuator.unbalance = calibrated.unbalance;
+  result.stddevs.unbalance = identified.unbalance;
+  result.actuator.inertia = calibrated.inertia;
+  result.actuator.friction = calibrated.friction;
   result.actuator.orientation_map = calibrated.orientation_map;
-  takeDynamics(reports_, result.actuator);
   result.calibration = record(origin);
   return result;
 }

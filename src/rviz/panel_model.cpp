@@ -97,10 +97,9 @@ void PanelModel::receive(const diagnostic_msgs::DiagnosticArray& message,
   }
 }
 
-// Of a rotor without joints their parameters are all zero.
+// Without parameters it is not known.
 bool PanelModel::hasJoints() const {
-  const auto& axis = parameters_.joints[0].axis;
-  return parameters_.source.empty() || axis.x != 0.0 || axis.y != 0.0 || axis.z != 0.0;
+  return parameters_.source.empty() || parameters_.has_joints != 0;
 }
 
 std::string PanelModel::whyNoJointCycle() const {

@@ -52,6 +52,20 @@ TEST(IdentifiedStddevs, StandAtTheirValues) {
               1e-9);
 }
 
+TEST(IdentifiedStddevs, TellOfTheUnbalance) {
+  const ParameterSpace space = spaceWith({"rotor_unbalance"});
+  CalibrationState state = nominalState(space, {});
+  EXPECT_FALSE(identifiedStddevs(space, state).unbalance);
+  const Eigen::Index first = space.effect() + space.effects().first("rotor_unbalance");
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    identify(state, first + k, 1e-3 * static_cast<double>(k + 1));
+  }
+  const Eigen::VectorXd stddevs = space.reportedStddevs(state.belief.x, state.belief.covariance);
+  const auto unbalance = identifiedStddevs(space, state).unbalance;
+  ASSERT_TRUE(unbalance);
+  EXPECT_TRUE(unbalance->isApprox(stddevs.segment<3>(first), 1e-9));
+}
+
 TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {
   const ParameterSpace space = spaceWith({"strength_scale", "pole_gains", "coil_gains"});
   const EffectLayout& effects = space.effects();

@@ -64,11 +64,20 @@ TEST_F(MotionCycleTest, KeepsInertiaFrictionAndUnbalanceInTheDescription) {
   EXPECT_LT((*kept.actuator.inertia - moving_.rotor.inertia).cwiseAbs().maxCoeff(), 2e-6);
   EXPECT_LT((kept.actuator.unbalance - moving_.rotor.unbalance).cwiseAbs().maxCoeff(), 4e-5);
   EXPECT_NEAR(kept.actuator.friction->viscous, 0.0, 1e-4);
+  ASSERT_TRUE(kept.stddevs.unbalance);
+  EXPECT_GT(kept.stddevs.unbalance->minCoeff(), 0.0);
+  EXPECT_LT(kept.stddevs.unbalance->maxCoeff(), 2e-5);
+  // The same is in force.
+  EXPECT_EQ(session_.actuator().unbalance, kept.actuator.unbalance);
+  EXPECT_EQ(session_.stddevs().unbalance, kept.stddevs.unbalance);
   // Who calibrates on from there keeps them.
   const CalibratedDescription read = parseDescription(renderDescription(kept, "kept"), "kept");
-  const Actuator again = CalibrationSession(read, {}, CalibrationConfig{}).description({}).actuator;
+  const CalibrationSession next(read, {}, CalibrationConfig{});
+  const Actuator again = next.description({}).actuator;
   EXPECT_TRUE(again.inertia->isApprox(*kept.actuator.inertia, 1e-12));
   EXPECT_NEAR(again.friction->coulomb, kept.actuator.friction->coulomb, 1e-12);
+  ASSERT_TRUE(next.stddevs().unbalance);
+  EXPECT_TRUE(next.stddevs().unbalance->isApprox(*kept.stddevs.unbalance, 1e-6));
 }
 
 /// With the currents of some coils the other way round.

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 
 namespace sac {
@@ -33,6 +35,7 @@ struct ParameterStddevs {
   std::array<JointStddev, kJoints> joints;
   std::vector<AxisStddev> poles;
   std::vector<AxisStddev> coils;
+  std::optional<Eigen::Vector3d> unbalance = std::nullopt;  ///< [N·m]
 };
 
 /// A recording that a calibration rests on.

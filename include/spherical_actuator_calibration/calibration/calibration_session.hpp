@@ -113,8 +113,11 @@ class CalibrationSession {
   /// not. Found when it is first asked for, and kept until the parameters change.
   const WorkspaceUncertainty& expectedErrors() const;
 
-  /// Everything in force: geometry, corrections, torque law and orientation map.
+  /// Everything in force: geometry, corrections, torque law, orientation map, and what the last
+  /// motion has told of the rotor.
   Actuator actuator() const;
+  /// Standard deviations of its values; absent where a value is not identified.
+  ParameterStddevs stddevs() const;
 
   /// Judges the samples that were held out, or tells how windows of a motion judged it; where both
   /// have a part in what is in force, the worse of both verdicts. Nothing where none was held out.

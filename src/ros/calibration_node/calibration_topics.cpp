@@ -12,7 +12,6 @@
 
 #include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
-#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
@@ -60,9 +59,8 @@ void CalibrationTopics::publishSetup(const CalibratedDescription& start,
 }
 
 void CalibrationTopics::publishParameters(const LiveSession& session) {
-  const CalibrationSession& calibration = session.calibration();
-  msg::ActuatorParameters message = parametersToRos(
-      session.actuator(), identifiedStddevs(calibration.model().space(), calibration.state()));
+  msg::ActuatorParameters message =
+      parametersToRos(session.actuator(), session.calibration().stddevs());
   message.header = header();
   message.revision = session.revision().number;
   message.source = session.revision().source;

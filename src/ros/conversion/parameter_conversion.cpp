@@ -108,6 +108,7 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
   msg::ActuatorParameters message;
   message.actuator = actuator.name;
   message.serial = actuator.serial;
+  message.has_joints = static_cast<std::uint8_t>(actuator.has_joints);
   for (std::size_t k = 0; actuator.has_joints && k < kJoints; ++k) {
     const JointStddev& stddev = stddevs.joints[k];
     message.joints[k].axis = vectorToRos(actuator.joints[k].axis);
@@ -121,6 +122,8 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
     message.torque_curve = curveToRos(*actuator.torque_curve);
   }
   message.unbalance = vectorToRos(actuator.unbalance);
+  message.unbalance_stddev =
+      vectorToRos(stddevs.unbalance.value_or(Eigen::Vector3d::Constant(kUnknown)));
   if (actuator.orientation_map) {
     message.orientation_map = mapToRos(actuator.orientation_map->description());
   }

@@ -154,6 +154,7 @@ TEST(MsgConversion, ParametersTellTheActuator) {
   const msg::ActuatorParameters message = parametersToRos(actuator);
   EXPECT_EQ(message.actuator, actuator.name);
   EXPECT_EQ(message.serial, "unit-042");
+  EXPECT_TRUE(message.has_joints);
   EXPECT_EQ(vectorFromRos(message.joints[1].axis), actuator.joints[1].axis);
   EXPECT_EQ(message.joints[1].offset, 0.25);
   ASSERT_EQ(message.poles.size(), actuator.poles.size());
@@ -171,6 +172,7 @@ TEST(MsgConversion, ParametersTellHowWellEachIsIdentified) {
   stddevs.coils.resize(24);
   stddevs.poles[3] = {3e-4, 4e-4, 5e-4};
   stddevs.coils[9].azimuth = 6e-4;
+  stddevs.unbalance = Eigen::Vector3d(1e-5, 2e-5, 3e-5);
   const msg::ActuatorParameters message = parametersToRos(scenarios::paperNominal(), stddevs);
   EXPECT_EQ(message.joints[2].offset_stddev, 1e-4);
   EXPECT_EQ(message.joints[2].axis_stddev[0], 2e-4);
@@ -180,6 +182,8 @@ TEST(MsgConversion, ParametersTellHowWellEachIsIdentified) {
   EXPECT_EQ(message.poles[3].gain_stddev, 5e-4);
   EXPECT_EQ(message.coils[9].azimuth_stddev, 6e-4);
   EXPECT_TRUE(std::isinf(message.coils[9].polar_stddev));
+  EXPECT_EQ(vectorFromRos(message.unbalance_stddev), *stddevs.unbalance);
+  EXPECT_TRUE(std::isinf(parametersToRos(scenarios::paperNominal()).unbalance_stddev.y));
 }
 
 /// The paper's unit with everything that can be identified of one.
