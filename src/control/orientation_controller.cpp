@@ -182,6 +182,7 @@ void OrientationController::enable(Stamp now) {
   currents_flow_ = false;
   measured_sum_ = commanded_sum_ = 0.0;
   stop_reason_.clear();
+  is_lost_ = false;
   share_ = 1.0;
   limit_ = CurrentLimit::kNone;
   cut_ = {};
@@ -194,6 +195,7 @@ void OrientationController::disable() {
   }
   state_ = ControlState::kIdle;
   stop_reason_.clear();
+  is_lost_ = false;
   currents_.setZero();
   disturbance_.reset();
   takeParametersToCome();
@@ -224,6 +226,7 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   if (tracking_error_ > largest_error) {
     stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) +
          whyNotFollowing(now));
+    is_lost_ = true;
     return currents_;
   }
   observe(now, rotor);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
@@ -25,6 +26,8 @@ constexpr double kTotalShare = 0.7;   // of the limit, that the excitation takes
 constexpr int kAttempts = 10;         // to find an excitation
 constexpr double kWeaker = 0.75;      // from one attempt to the next
 constexpr double kLeastMeanShare = 2.0 / 3.0;  // of the excitation, that rehearsals must leave
+// Of the limit of the tracking error: other models are worse than those of rehearsals.
+constexpr double kMostOfError = 0.75;
 
 class MotionSource {
  public:
@@ -139,33 +142,67 @@ bool isGood(const Rehearsal& rehearsal) {
   return rehearsal.completed && rehearsal.mean_excitation_share >= kLeastMeanShare;
 }
 
-/// Weakens the excitation until all rehearsals are good.
-void rehearseAndWeaken(PlannedMotionResult& result,
-                       const Actuator& actuator,
-                       const MotionPlannerOptions& options,
-                       const std::function<void(const std::string&)>& progress) {
-  MotionPlan& plan = result.record.plan;
+std::string describe(const Rehearsal& rehearsal, double excitation) {
+  return format("%.3f A of excitation: %s; %.0f %% of it were left, the rotor was %.0f mrad off.",
+                excitation,
+                rehearsal.completed ? "too much is faded" : rehearsal.reason.c_str(),
+                100.0 * rehearsal.mean_excitation_share,
+                1e3 * rehearsal.largest_tracking_error);
+}
+
+/// How a motion goes with wrong models.
+struct RehearsedMotion {
+  std::vector<Rehearsal> rehearsals;  ///< up to the first that is not good
+  bool is_good = true;
+  double largest_error = 0.0;  ///< from the reference [rad]
+};
+
+RehearsedMotion rehearsed(const MotionPlan& plan,
+                          const Actuator& actuator,
+                          const MotionPlannerOptions& options) {
+  RehearsedMotion motion;
+  for (std::size_t n = 0; n < options.rehearsals && motion.is_good; ++n) {
+    const Rehearsal rehearsal = rehearseWithWrongModel(plan, actuator, options, n);
+    motion.is_good = isGood(rehearsal);
+    motion.largest_error = std::max(motion.largest_error, rehearsal.largest_tracking_error);
+    motion.rehearsals.push_back(rehearsal);
+  }
+  return motion;
+}
+
+/// The first of the motions that stays well within the limit of its error, else the one of the
+/// others that stays within by most; the excitation is weakened until there is one. Where a wrong
+/// model turns torques round that is of little use: there it takes another motion.
+void chooseByRehearsals(std::vector<MotionPlan> motions,
+                        const Actuator& actuator,
+                        const MotionPlannerOptions& options,
+                        const std::function<void(const std::string&)>& progress,
+                        PlannedMotionResult& result) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    result.rehearsals.clear();
-    bool are_good = true;
-    for (std::size_t n = 0; n < options.rehearsals && are_good; ++n) {
-      result.rehearsals.push_back(rehearseWithWrongModel(plan, actuator, options, n));
-      are_good = isGood(result.rehearsals.back());
+    double least_error = std::numeric_limits<double>::infinity();
+    for (const MotionPlan& plan : motions) {
+      RehearsedMotion motion = rehearsed(plan, actuator, options);
+      if (!motion.is_good) {
+        if (progress) {
+          progress(describe(motion.rehearsals.back(), result.excitation));
+        }
+        continue;
+      }
+      if (motion.largest_error < least_error) {
+        least_error = motion.largest_error;
+        result.record.plan = plan;
+        result.rehearsals = std::move(motion.rehearsals);
+      }
+      if (least_error <= kMostOfError * plan.limits.error) {
+        return;
+      }
     }
-    if (are_good) {
+    if (std::isfinite(least_error)) {
       return;
     }
-    const Rehearsal& worst = result.rehearsals.back();
-    if (progress) {
-      progress(
-          format("%.3f A of excitation: %s; %.0f %% of it were left, the rotor was %.0f mrad "
-                 "off at most.",
-                 result.excitation,
-                 worst.completed ? "too much is faded" : worst.reason.c_str(),
-                 100.0 * worst.mean_excitation_share,
-                 1e3 * worst.largest_tracking_error));
+    for (MotionPlan& plan : motions) {
+      scaleExcitation(plan, kWeaker);
     }
-    scaleExcitation(plan, kWeaker);
     result.excitation *= kWeaker;
   }
   throw DataError("No excitation is weak enough for a model that is wrong by " +
@@ -188,24 +225,27 @@ void validate(const MotionPlannerOptions& options) {
   validate(options.rehearsal.controller);
 }
 
-MotionPlan chooseMotion(const Actuator& actuator,
-                        const MotionPlannerOptions& options,
-                        const MotionScore& score) {
+std::vector<MotionPlan> drawMotions(const Actuator& actuator,
+                                    const MotionPlannerOptions& options,
+                                    const MotionScore& score) {
   validate(options);
   const double excitation = startExcitation(actuator, options);
   MotionSource source(actuator, options);
-  MotionPlan best;
-  double best_score = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, MotionPlan>> scored;
   for (std::size_t n = 0; n < options.candidates; ++n) {
-    const MotionPlan plan = source.next(excitation);
+    MotionPlan plan = source.next(excitation);
     validate(plan, actuator);
     const double value = score(plan);
-    if (n == 0 || value < best_score) {
-      best = plan;
-      best_score = value;
-    }
+    scored.emplace_back(value, std::move(plan));
   }
-  return best;
+  std::stable_sort(
+      scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<MotionPlan> motions;
+  motions.reserve(scored.size());
+  for (auto& [value, plan] : scored) {
+    motions.push_back(std::move(plan));
+  }
+  return motions;
 }
 
 PlannedMotionResult planMotion(const Actuator& actuator,
@@ -217,7 +257,7 @@ PlannedMotionResult planMotion(const Actuator& actuator,
   std::size_t seen = 0;
   PlannedMotionResult result;
   result.record.software = packageVersion();
-  result.record.plan = chooseMotion(actuator, options, [&](const MotionPlan& plan) {
+  const auto score = [&](const MotionPlan& plan) {
     const double worst =
         expectedStddevs(model, rotor, plan, options.sensors, kFewWindows).maxCoeff();
     if (progress) {
@@ -225,9 +265,9 @@ PlannedMotionResult planMotion(const Actuator& actuator,
           format("Candidate %zu: worst standard deviation about %.4f mrad.", ++seen, 1e3 * worst));
     }
     return worst;
-  });
+  };
   result.excitation = startExcitation(actuator, options);
-  rehearseAndWeaken(result, actuator, options, progress);
+  chooseByRehearsals(drawMotions(actuator, options, score), actuator, options, progress, result);
   // What rehearsals had to fade does not tell.
   MotionPlan faded = result.record.plan;
   double share = 1.0;

@@ -18,9 +18,11 @@ constexpr char kIntroduction[] =
     "Usage: plan_motion --actuator A.yaml --output PLAN.yaml [options]\n"
     "\n"
     "Plans a motion that calibrates the actuator: a smooth reference for its joints, and currents\n"
-    "in all coils whose torque cancels by the description. Several are drawn, the one that tells\n"
-    "most is rehearsed with wrong models, and the plan holds the standard deviation that each\n"
-    "parameter will reach. The orientation controller carries it out: run_motion PLAN.yaml.\n"
+    "in all coils whose torque cancels by the description. Several are drawn and rehearsed with\n"
+    "wrong models; of those that stay near their reference the one that tells most is planned. "
+    "The\n"
+    "plan holds the standard deviation that each parameter will reach. The orientation controller\n"
+    "carries it out: run_motion PLAN.yaml.\n"
     "Exit status: 0 the plan is written, 2 it is not (and the reason on the standard error).\n\n";
 
 struct PlanMotionOptions {
@@ -50,7 +52,7 @@ void addMotionOptions(CommandLine& line, MotionPlannerOptions& planner) {
 void addChoiceOptions(CommandLine& line, MotionPlannerOptions& planner) {
   line.beginGroup("Choice");
   line.add("candidates", planner.candidates, "N", "motions to choose from");
-  line.add("rehearsals", planner.rehearsals, "N", "of the chosen one");
+  line.add("rehearsals", planner.rehearsals, "N", "of a motion, each with another wrong model");
   line.add("model-error", planner.model_error, "RAD", "of every parameter in them, within +-");
   line.add("seed", planner.seed, "N", "of all that is drawn");
 }

@@ -210,6 +210,7 @@ TEST_F(MotionFollowingTest, StopsWhenItIsPushedAway) {
     rotor_->advance(1e-3, Eigen::VectorXd::Zero(24), {0.2, 0.0, 0.0});
   }
   expectStopped("does not follow");
+  EXPECT_TRUE(controller_->isLost());
 }
 
 TEST_F(MotionFollowingTest, StopsWhereTheSensorStandsStill) {

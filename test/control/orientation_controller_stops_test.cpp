@@ -84,6 +84,7 @@ TEST_F(OrientationControllerStops, StopsWhenMeasuredCurrentsComeNoMore) {
   EXPECT_EQ(controller_->state(), ControlState::kActive);
   run(0.1);
   expectStopped("no measured currents have come for 0.25 s");
+  EXPECT_FALSE(controller_->isLost());
   controller_->enable(now_);
   run(0.5);
   EXPECT_EQ(controller_->state(), ControlState::kActive);

@@ -53,7 +53,7 @@ TEST(MotionPlanner, NoExcitationBringsTheRotorOutOfTheWorkspace) {
   options.limits.total_current = 20.0;
   options.limits.square_current = 50.0;
   const MotionPlan plan =
-      chooseMotion(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; });
+      drawMotions(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; }).front();
   RehearsalOptions rehearsal = options.rehearsal;
   rehearsal.controller.total_current_limit = 20.0;
   double largest_error = 0.0;
@@ -72,14 +72,14 @@ TEST(MotionPlanner, TheSeedDecidesAndTheScoreChooses) {
   options.candidates = 5;
   int seen = 0;
   const auto third = [&seen](const MotionPlan& /*plan*/) { return ++seen == 3 ? 0.0 : 1.0; };
-  const MotionPlan plan = chooseMotion(actuator, options, third);
+  const MotionPlan plan = drawMotions(actuator, options, third).front();
   EXPECT_EQ(seen, 5);
   seen = 0;
-  const MotionPlan again = chooseMotion(actuator, options, third);
+  const MotionPlan again = drawMotions(actuator, options, third).front();
   EXPECT_EQ(renderMotionPlan({"", plan, {}}), renderMotionPlan({"", again, {}}));
   options.candidates = 1;
   seen = 0;
-  EXPECT_NE(renderMotionPlan({"", chooseMotion(actuator, options, third), {}}),
+  EXPECT_NE(renderMotionPlan({"", drawMotions(actuator, options, third).front(), {}}),
             renderMotionPlan({"", plan, {}}));
 }
 
@@ -89,7 +89,7 @@ TEST(MotionInformation, GrowsWithTimeAndCurrentAndFallsWithNoise) {
   MotionPlannerOptions options = quickOptions();
   const auto worst = [&](const MotionSensors& sensors) {
     const MotionPlan plan =
-        chooseMotion(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; });
+        drawMotions(actuator, options, [](const MotionPlan& /*plan*/) { return 0.0; }).front();
     return expectedStddevs(model, {}, plan, sensors, 2).maxCoeff();
   };
   options.excitation = 0.05;

@@ -10,6 +10,7 @@ import tempfile
 import unittest
 from unittest import mock
 
+LOST = 3  # status of run_motion
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 
 
@@ -54,7 +55,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.started.append(words)
         if words[0] == "calibrate_bag":
             pathlib.Path(words[words.index("--output") + 1]).touch()
-        return 1 if self.fails(words) else 0
+        return int(self.fails(words))
 
     def run_with(self, *arguments):
         """Its status, or the error; and what it says."""
@@ -102,13 +103,37 @@ class CalibrateByMotion(unittest.TestCase):
         error, said = self.run_with("--gently")
         self.assertEqual(error, "The motion failed.")
         self.assertIn(f"{self.folder}/gentle/recordings/1.bag {self.folder}/recordings/1.bag", said)
-        self.assertNotIn("--gently", said)
+        self.assertEqual(len(self.of_program("run_motion")), 2)
 
-    def test_tells_of_the_gentle_way_where_a_motion_fails(self):
-        self.fails = lambda words: words[0] == "run_motion"
+    def test_a_lost_rotor_moves_again_by_what_was_told_until_then(self):
+        self.fails = lambda words: LOST if words[0] == "run_motion" and "--parameters" not in words else 0
+        status, said = self.run_with("--fixture", "lab")
+        self.assertEqual(status, 0)
+        (plan,), (first, again), (alone, both) = map(self.of_program, ("plan_motion", "run_motion", "calibrate_bag"))
+        told = str(self.folder / "again" / "calibrated.yaml")
+        bags = [str(self.folder / "recordings" / "1.bag"), str(self.folder / "again" / "recordings" / "1.bag")]
+        self.assertEqual(first[1], again[1])
+        self.assertIn(first[1], plan)
+        self.assertEqual(alone[alone.index("--output") + 1], told)
+        self.assertEqual(alone[-1:], bags[:1])
+        self.assertEqual(again[again.index("--parameters") + 1], told)
+        self.assertEqual(both[-2:], bags)
+        self.assertEqual(both[both.index("--actuator") + 1], "A.yaml")
+        self.assertIn("did not follow", said)
+
+    def test_a_rotor_that_is_lost_twice_ends_it(self):
+        self.fails = lambda words: LOST if words[0] == "run_motion" else 0
+        error, said = self.run_with("--fixture", "lab")
+        self.assertIn("--gently", error)
+        self.assertEqual(len(self.of_program("run_motion")), 2)
+        self.assertIn(f"{self.folder}/again/recordings/1.bag {self.folder}/recordings/1.bag", said)
+
+    def test_a_lost_rotor_that_nothing_holds_is_left_alone(self):
+        self.fails = lambda words: LOST if words[0] == "run_motion" else 0
         error, said = self.run_with()
-        self.assertEqual(error, "The motion failed.")
-        self.assertIn("--gently", said)
+        self.assertIn("Bring it to rest", error)
+        self.assertEqual(len(self.of_program("run_motion")), 1)
+        self.assertIn(f"{self.folder}/recordings/1.bag", said)
 
     def test_begins_gently_without_a_plan_only(self):
         with self.assertRaises(SystemExit) as refused, mock.patch("sys.stderr"):

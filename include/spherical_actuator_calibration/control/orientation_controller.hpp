@@ -97,6 +97,8 @@ class OrientationController {
   const char* readings() const { return parameters_.has_joints ? "joint angles" : "orientations"; }
   /// Why it stopped, or nothing.
   const std::string& stopReason() const { return stop_reason_; }
+  /// Whether it stopped because the rotor was too far from its reference.
+  bool isLost() const { return is_lost_; }
   /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
   double torqueShare() const { return share_; }
   /// The least share since it was asked last, and the limit that allowed no more.
@@ -153,6 +155,7 @@ class OrientationController {
   double commanded_sum_ = 0.0;          ///< the same of those commanded
   ControlState state_ = ControlState::kIdle;
   std::string stop_reason_;
+  bool is_lost_ = false;
   Eigen::VectorXd currents_;
   double share_ = 1.0;
   CurrentLimit limit_ = CurrentLimit::kNone;  ///< of the last cycle

@@ -23,7 +23,7 @@ struct MotionPlannerOptions {
   /// allow.
   double excitation = 0.0;
   std::size_t candidates = 6;  ///< motions to choose from
-  std::size_t rehearsals = 3;  ///< of the chosen one, each with another wrong model
+  std::size_t rehearsals = 3;  ///< of a motion, each with another wrong model
   double model_error = 0.03;   ///< of every parameter in these, within ± [rad]
   std::uint64_t seed = 1;
   MotionSensors sensors;
@@ -36,11 +36,11 @@ void validate(const MotionPlannerOptions& options);
 /// How good a motion is: the smaller the better.
 using MotionScore = std::function<double(const MotionPlan&)>;
 
-/// Random motions within the limits, the best of them by the score. Throws ConfigError when the
+/// Random motions within the limits, the best by the score first. Throws ConfigError when the
 /// limits leave no motion.
-MotionPlan chooseMotion(const Actuator& actuator,
-                        const MotionPlannerOptions& options,
-                        const MotionScore& score);
+std::vector<MotionPlan> drawMotions(const Actuator& actuator,
+                                    const MotionPlannerOptions& options,
+                                    const MotionScore& score);
 
 struct PlannedMotionResult {
   MotionPlanRecord record;
@@ -50,8 +50,10 @@ struct PlannedMotionResult {
   double worst_stddev = 0.0;  ///< [rad]
 };
 
-/// Plans a motion: the most informative of the candidates, with an excitation that no rehearsal had
-/// to fade by more than a third, nor brings farther from its reference than the limits allow.
+/// Plans a motion: the most informative of the candidates that no rehearsal brought farther from
+/// its reference than by three quarters of the limit, else the one that comes least near to it. No
+/// rehearsal had to fade its excitation by more than a third; that is made weaker until there is
+/// such a motion.
 /// `progress` is told in words what is done. Throws DataError when no excitation is small enough,
 /// ConfigError when actuator or options are not valid.
 PlannedMotionResult planMotion(const Actuator& actuator,

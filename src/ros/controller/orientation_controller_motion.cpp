@@ -76,6 +76,7 @@ void OrientationControllerNode::tellMotion() {
     if (progress.phase == MotionPhase::kStopped) {
       message.message +=
           ": " + (controller_.stopReason().empty() ? "disabled" : controller_.stopReason());
+      message.is_lost = static_cast<std::uint8_t>(controller_.isLost());
     }
     message.elapsed = progress.elapsed;
     message.duration = progress.duration;

@@ -75,12 +75,12 @@ class CoilDrive:
             self._set("orientation_controller/enable", False, STOPPING)
 
     def stop_after(self, fixture, error):
-        """Likewise, and raises the RuntimeError that was the reason: what fails in stopping comes of that. Without a
+        """Likewise, and raises a RuntimeError as that which was the reason: what fails in stopping comes of that. Without a
         fixture nothing holds the rotor then."""
         with contextlib.suppress(RuntimeError):
             self.stop(fixture)
         held = "" if fixture else " Without currents nothing holds the rotor: it coasts or falls; keep away until it rests."
-        raise RuntimeError(f"{error}{held}") from error
+        raise type(error)(f"{error}{held}") from error
 
     def joints(self):
         """Joint angles [rad]; raises RuntimeError without fresh ones."""

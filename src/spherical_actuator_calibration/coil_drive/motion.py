@@ -11,6 +11,10 @@ SILENCE = 3.0  # [s] without a status: the controller has gone
 POLL = 0.05  # [s]
 
 
+class RotorLost(RuntimeError):
+    """The controller has stopped because the rotor was too far from its reference."""
+
+
 class Motion:
     """Begins a motion of the orientation controller, which must be enabled, and watches it to its end. Raises
     RuntimeError with the reason when it cannot go on."""
@@ -70,7 +74,7 @@ class Motion:
                         f"{self._controller} has ended, and was started anew: its commands have ended, and so have the currents."
                     )
                 else:
-                    raise RuntimeError(status.message)
+                    raise RotorLost(status.message) if status.is_lost else RuntimeError(status.message)
             if rospy.get_time() - self._time > SILENCE:
                 raise RuntimeError(f"{self._controller} is silent: its commands have ended, and so have the currents.")
             rospy.sleep(POLL)
