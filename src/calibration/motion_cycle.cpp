@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/motion/better_currents.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 #include "spherical_actuator_calibration/motion/silent_coils.hpp"
 #include "uneven_strengths.hpp"
@@ -260,7 +261,8 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   const std::vector<Eigen::Index> untold = coordinatesOfCoils(model.space(), silent);
   std::set_difference(
       asked.begin(), asked.end(), untold.begin(), untold.end(), std::back_inserter(problem.free));
-  const MotionEstimate found = estimateMotion(problem, config.estimation, MotionOptions());
+  const std::optional<MotionRecording> commanded = byCommands(recording);
+  const MotionEstimate found = estimateByBetterCurrents(commanded, config.estimation, problem);
   const std::string words = failure(problem, found, config.estimation);
   report.motion = found.summary;
   if (!words.empty()) {

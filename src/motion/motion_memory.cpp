@@ -17,9 +17,10 @@ std::size_t currentBytes(std::size_t coils) {
 }
 
 std::size_t bytesOf(const MotionStreams& streams) {
+  const std::size_t currents = streams.current_stamps.size() *
+                               currentBytes(static_cast<std::size_t>(streams.currents.cols()));
   return streams.joints.size() * kJointBytes + streams.orientations.size() * kOrientationBytes +
-         streams.current_stamps.size() *
-             currentBytes(static_cast<std::size_t>(streams.currents.cols()));
+         (streams.commanded ? 2 : 1) * currents;
 }
 
 /// Whether windows can be cut of it: dwells, and a fixture that turns a rotor without currents, are

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "command_response.hpp"
+#include "joint_track.hpp"
 #include "unwrapped_angle.hpp"
 
 namespace sac {
@@ -23,6 +24,27 @@ void append(const Eigen::VectorXd& current, std::vector<float>& currents) {
   for (const double one : current) {
     currents.push_back(static_cast<float>(one));
   }
+}
+
+/// Whether commands tell steps so well that nothing else needs to be tried: commands that come now
+/// sooner, now later, or that samples follow too seldom, may tell less than samples alone.
+bool tellsSteps(const CommandResponse& response, const MotionStreams& streams) {
+  constexpr double kSure = 0.02;  // of the time between two samples
+  const StampTimes times(streams.current_stamps.front(), streams.current_stamps);
+  return response.lateness_stddev < kSure * usualStep(times);
+}
+
+/// Puts what commands tell of the currents into the streams.
+void heed(const CommandStream& commands, MotionStreams& streams) {
+  MotionStreams::Currents sampled = streams.currents;
+  streams.response = takeMeans(commands, streams);
+  if (!streams.response || tellsSteps(*streams.response, streams)) {
+    return;
+  }
+  sampled.swap(streams.currents);
+  streams.commanded =
+      std::make_shared<CommandedCurrents>(CommandedCurrents{std::move(sampled), *streams.response});
+  streams.response.reset();
 }
 
 }  // namespace
@@ -102,7 +124,7 @@ void MotionRecorder::endSpan() {
     streams_.currents = matrixOf(currents_, streams_.current_stamps.size());
     currents_ = {};
     const CommandStream commands{command_stamps_, matrixOf(commands_, command_stamps_.size())};
-    streams_.response = takeMeans(commands, streams_);
+    heed(commands, streams_);
     recording_.spans.push_back(std::move(streams_));
   }
   streams_ = MotionStreams();

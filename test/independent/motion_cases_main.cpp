@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/motion/better_currents.hpp"
 #include "spherical_actuator_calibration/motion/live_motion.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 
@@ -150,7 +152,8 @@ void calibrate(const Actuator& nominal,
   for (Eigen::Index p = 0; p < model.space().size(); ++p) {
     problem.free.push_back(p);
   }
-  MotionEstimate found = estimateMotion(problem, {}, {});
+  const std::optional<MotionRecording> commanded = byCommands(recording);
+  MotionEstimate found = estimateByBetterCurrents(commanded, {}, problem);
   if (is_live) {
     followLive(problem, found);
   }
@@ -179,12 +182,10 @@ void calibrate(const Actuator& nominal,
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
   }
-  for (const MotionStreams& streams : recording.spans) {
-    if (streams.response) {
-      const CommandResponse& response = *streams.response;
-      std::printf(
-          "response %.9g %.9g %.3g\n", response.delay, response.lag, response.lateness_stddev);
-    }
+  if (summary.response) {
+    const CommandResponse& response = *summary.response;
+    std::printf(
+        "response %.9g %.9g %.3g\n", response.delay, response.lag, response.lateness_stddev);
   }
   printParameters(model.space(), estimate);
 }

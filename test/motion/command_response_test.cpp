@@ -168,9 +168,8 @@ TEST(CommandResponse, LeavesWhatIsBesideAHole) {
   EXPECT_LT((streams.currents - before.currents).cwiseAbs().maxCoeff(), 0.02F);
 }
 
-TEST(MotionRecorder, TakesWhatWasCommandedIntoTheCurrents) {
-  const MotionStreams measured = sampled(1e-3, 0.0);
-  const CommandStream commands = commanded();
+/// What a recorder makes of them.
+MotionRecording recorded(const MotionStreams& measured, const CommandStream& commands) {
   MotionRecorder recorder(3);
   recorder.add(JointMeasurement{measured.current_stamps.front(), Eigen::Vector3d::Zero()});
   for (std::size_t n = 0; n < commands.stamps.size(); ++n) {
@@ -185,11 +184,29 @@ TEST(MotionRecorder, TakesWhatWasCommandedIntoTheCurrents) {
     recorder.add(CurrentMeasurement{measured.current_stamps[n],
                                     measured.currents.row(row).transpose().cast<double>()});
   }
-  const MotionRecording recording = recorder.take();
+  return recorder.take();
+}
+
+TEST(MotionRecorder, KeepsBothWhereCommandsTellStepsNotWell) {
+  const MotionStreams measured = sampled(kHold, 1e-3);
+  const MotionRecording recording = recorded(measured, commanded());
+  ASSERT_EQ(recording.spans.size(), 1U);
+  const MotionStreams& streams = recording.spans[0];
+  EXPECT_FALSE(streams.response);
+  EXPECT_EQ(streams.currents, measured.currents);
+  ASSERT_TRUE(streams.commanded);
+  EXPECT_GT(streams.commanded->response.lateness_stddev, 3e-4);
+  EXPECT_EQ(streams.commanded->currents.rows(), measured.currents.rows());
+  EXPECT_NE(streams.commanded->currents, measured.currents);
+}
+
+TEST(MotionRecorder, TakesWhatWasCommandedIntoTheCurrents) {
+  const MotionRecording recording = recorded(sampled(1e-3, 0.0), commanded());
   ASSERT_EQ(recording.spans.size(), 1U);
   EXPECT_EQ(recording.dropped, 0U);
   ASSERT_TRUE(recording.spans[0].response);
   EXPECT_NEAR(recording.spans[0].response->delay, kLate, 2e-5);
+  EXPECT_FALSE(recording.spans[0].commanded);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,19 +20,30 @@ struct CommandResponse {
   double lateness_stddev = 0.0;
 };
 
+/// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
+using StreamCurrents = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Currents for their intervals, with the steps between samples that commands tell.
+struct CommandedCurrents {
+  StreamCurrents currents;
+  CommandResponse response;
+};
+
 /// Streams of one span of time, each with stamps that increase strictly.
 struct MotionStreams {
-  using Currents = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Currents = StreamCurrents;
 
   std::vector<Stamp> joint_stamps;
   /// Readings [rad], without the jumps of a sensor that wraps around.
   std::vector<Eigen::Vector3d> joints;
   std::vector<Stamp> current_stamps;
-  /// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
   Currents currents;
   /// Known: each current counts for its interval, with the steps between samples that commands
   /// tell. Nothing: currents are as they were sampled.
   std::optional<CommandResponse> response;
+  /// Where commands tell the steps, but not well: what they tell, beside the currents as sampled.
+  /// Which of both the rotor felt, its motion tells.
+  std::shared_ptr<const CommandedCurrents> commanded;
   std::vector<Stamp> orientation_stamps;
   std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
 };
