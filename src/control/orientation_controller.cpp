@@ -219,10 +219,9 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
   q_ = measured_->position + secondsBetween(measured_->stamp, now) * joint_velocity_;
   const RotorState rotor = rotorAt(q_);
   tracking_error_ = rotationLog(rotor.R_stator_rotor.transpose() * desired.R_stator_rotor).norm();
-  const bool is_on_its_way = isInMotion() && motion_->phase() != MotionPhase::kApproach;
   const double largest_error =
-      is_on_its_way ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
-                    : options_.largest_tracking_error;
+      isOnItsWay() ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
+                   : options_.largest_tracking_error;
   if (tracking_error_ > largest_error) {
     stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) +
          whyNotFollowing(now));
@@ -279,8 +278,7 @@ void OrientationController::observe(Stamp now, const RotorState& rotor) {
 // rotor by the errors of the model, which is what it is for: to make up for that would take from
 // the motion what was planned to be seen.
 Learning OrientationController::learning(Stamp now) const {
-  const bool is_on_its_way = isInMotion() && motion_->phase() != MotionPhase::kApproach;
-  if (is_on_its_way || secondsBetween(measured_->stamp, now) > kLatestLesson) {
+  if (isOnItsWay() || secondsBetween(measured_->stamp, now) > kLatestLesson) {
     return Learning::kNone;
   }
   return share_ < 1.0 ? Learning::kNoGrowth : Learning::kFree;

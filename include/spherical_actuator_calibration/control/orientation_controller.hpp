@@ -123,6 +123,7 @@ class OrientationController {
     return isInMotion() ? options_.motion_gains : options_.gains;
   }
   bool isInMotion() const { return motion_ && motion_->isRunning(); }
+  bool isOnItsWay() const { return isInMotion() && motion_->phase() != MotionPhase::kApproach; }
   const DesiredMotion& desiredMotion(Stamp now, double step);
   void approachMotion(double step);
   void observe(Stamp now, const RotorState& rotor);
