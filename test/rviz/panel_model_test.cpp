@@ -20,6 +20,7 @@ msg::ActuatorParameters parameters() {
   msg::ActuatorParameters message;
   message.source = "identified";
   message.revision = 7;
+  message.has_joints = 1;
   for (auto& joint : message.joints) {
     joint.offset_stddev = kUnknown;
     joint.axis_stddev = {kUnknown, kUnknown};
@@ -135,6 +136,7 @@ TEST(PanelModel, ARotorWithoutJointsHasNothingOfThem) {
   EXPECT_TRUE(panel.hasJoints());
   EXPECT_EQ(panel.whyNoJointCycle(), "");
   msg::ActuatorParameters levitated = parameters();
+  levitated.has_joints = 0;
   levitated.joints = {};
   panel.receive(levitated);
   EXPECT_FALSE(panel.hasJoints());
