@@ -1,6 +1,7 @@
 #include "spherical_actuator_calibration/study/motion_planner.hpp"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +44,25 @@ TEST(MotionPlanner, RehearsalsWithWrongModelsStayWithinAllLimits) {
   ASSERT_EQ(result.record.expected.size(), 73U);
   // Eight seconds tell of everything.
   EXPECT_LT(result.worst_stddev, 1e-3);
+}
+
+// Where a wrong model turns torques round, a weaker excitation does not help.
+TEST(MotionPlanner, TakesAnotherMotionBeforeAWeakerExcitation) {
+  MotionPlannerOptions options = quickOptions();
+  options.duration = 20.0;
+  options.candidates = 4;
+  options.rehearsals = 2;
+  options.model_error = 0.04;
+  options.excitation = 0.1;
+  options.seed = 4;
+  int failed = 0;
+  const PlannedMotionResult result =
+      planMotion(scenarios::paperNominal(), options, [&](const std::string& text) {
+        failed += text.find("does not follow") != std::string::npos ? 1 : 0;
+      });
+  EXPECT_GT(failed, 0);
+  EXPECT_LT(failed, 4);
+  EXPECT_EQ(result.excitation, options.excitation);
 }
 
 // Whatever is asked: what the guards leave of it stays in the workspace.
