@@ -44,11 +44,11 @@ GainGradients gainGradients(const ParameterSpace& space, const Eigen::VectorXd& 
   return gradients;
 }
 
-/// Standard deviations of the corrections of readings and of the unbalance: each entry has one
-/// coordinate, and is linear in it.
-void enterEffects(const ParameterSpace& space,
-                  const CalibrationState& state,
-                  ParameterStddevs& stddevs) {
+/// Standard deviations of the corrections of readings: each entry has one coordinate, and is linear
+/// in it.
+void enterCorrections(const ParameterSpace& space,
+                      const CalibrationState& state,
+                      std::array<JointStddev, kJoints>& stddevs) {
   const Actuator at = space.actuatorAt(state.belief.x);
   for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
     if (!state.identified[static_cast<std::size_t>(p)]) {
@@ -68,15 +68,31 @@ void enterEffects(const ParameterSpace& space,
     for (std::size_t k = 0; k < kJoints; ++k) {
       const ReadingCorrection& before = at.joints[k].correction;
       const ReadingCorrection& after = moved.joints[k].correction;
-      enter(before.linear, after.linear, stddevs.joints[k].linear);
-      enter(before.harmonics, after.harmonics, stddevs.joints[k].harmonics);
-    }
-    const Eigen::Vector3d change = moved.unbalance - at.unbalance;
-    if (!change.isZero(0.0)) {
-      stddevs.unbalance =
-          stddevs.unbalance.value_or(Eigen::Vector3d::Zero()) + stddev * change.cwiseAbs();
+      enter(before.linear, after.linear, stddevs[k].linear);
+      enter(before.harmonics, after.harmonics, stddevs[k].harmonics);
     }
   }
+}
+
+/// Likewise; nothing unless all of it is identified.
+std::optional<Eigen::Vector3d> unbalanceStddev(const ParameterSpace& space,
+                                               const CalibrationState& state) {
+  const Actuator at = space.actuatorAt(state.belief.x);
+  std::optional<Eigen::Vector3d> stddevs;
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    const Actuator moved =
+        space.actuatorAt(state.belief.x + Eigen::VectorXd::Unit(space.size(), p));
+    const Eigen::Vector3d change = moved.unbalance - at.unbalance;
+    if (change.isZero(0.0)) {
+      continue;
+    }
+    if (!state.identified[static_cast<std::size_t>(p)]) {
+      return std::nullopt;
+    }
+    const double stddev = std::sqrt(std::max(0.0, state.belief.covariance(p, p)));
+    stddevs = stddevs.value_or(Eigen::Vector3d::Zero()) + stddev * change.cwiseAbs();
+  }
+  return stddevs;
 }
 
 std::optional<double> gainStddev(const CalibrationState& state, const Gradient& gradient) {
@@ -110,7 +126,8 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
     const Eigen::Index joint = space.joint(k);
     result.joints[k] = {at(joint), at(joint + 1), at(joint + 2)};
   }
-  enterEffects(space, state, result);
+  enterCorrections(space, state, result.joints);
+  result.unbalance = unbalanceStddev(space, state);
   for (std::size_t i = 0; i < space.poles(); ++i) {
     const Eigen::Index pole = space.pole(i);
     result.poles.push_back({at(pole), at(pole + 1), gainStddev(state, gains.poles[i])});

@@ -58,6 +58,7 @@ TEST(IdentifiedStddevs, TellOfTheUnbalance) {
   EXPECT_FALSE(identifiedStddevs(space, state).unbalance);
   const Eigen::Index first = space.effect() + space.effects().first("rotor_unbalance");
   for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_FALSE(identifiedStddevs(space, state).unbalance) << "not all of it";
     identify(state, first + k, 1e-3 * static_cast<double>(k + 1));
   }
   const Eigen::VectorXd stddevs = space.reportedStddevs(state.belief.x, state.belief.covariance);
