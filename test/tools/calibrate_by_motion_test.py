@@ -41,6 +41,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.folder = pathlib.Path(folder.name) / "new"
         self.started = []  # programs with their arguments
         self.fails = lambda command: False
+        self.tells_nothing = False  # the recordings, of the parameters
         self.module = loaded()
         for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
             patch = mock.patch.object(self.module, name, fake)
@@ -53,7 +54,7 @@ class CalibrateByMotion(unittest.TestCase):
     def status_of(self, command, _look=None):
         words = [str(word) for word in command]
         self.started.append(words)
-        if words[0] == "calibrate_bag":
+        if words[0] == "calibrate_bag" and not self.tells_nothing:
             pathlib.Path(words[words.index("--output") + 1]).touch()
         return int(self.fails(words))
 
@@ -127,6 +128,14 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertIn("--gently", error)
         self.assertEqual(len(self.of_program("run_motion")), 2)
         self.assertIn(f"{self.folder}/again/recordings/1.bag {self.folder}/recordings/1.bag", said)
+
+    def test_a_loss_that_tells_nothing_is_the_end(self):
+        self.fails = lambda words: LOST if words[0] == "run_motion" else 0
+        self.tells_nothing = True
+        error, said = self.run_with("--fixture", "lab")
+        self.assertIn("no calibration to go on by", error)
+        self.assertEqual(len(self.of_program("run_motion")), 1)
+        self.assertIn(f"{self.folder}/recordings/1.bag", said)
 
     def test_a_lost_rotor_that_nothing_holds_is_left_alone(self):
         self.fails = lambda words: LOST if words[0] == "run_motion" else 0

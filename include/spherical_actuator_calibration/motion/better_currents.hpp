@@ -15,7 +15,7 @@ std::optional<MotionRecording> byCommands(const MotionRecording& recording);
 /// Estimates by the currents as they were sampled and, where there are such, as commands tell them.
 /// The latter count, for they tell the delay, unless windows fit them worse: commands that come now
 /// sooner, now later tell steps that there were not. `commanded` is byCommands() of the recording
-/// of the problem, which has the one that counts then, and outlives it.
+/// of the problem, which has the one that counts then, and outlives it (doc/motion.md, Commands).
 MotionEstimate estimateByBetterCurrents(const std::optional<MotionRecording>& commanded,
                                         const EstimationOptions& options,
                                         MotionProblem& problem);
