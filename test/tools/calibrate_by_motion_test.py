@@ -11,6 +11,9 @@ import unittest
 from unittest import mock
 
 LOST = 3  # status of run_motion
+COIL = {"polar": 0.2, "azimuth": 0.0}
+DRAWING = {"actuator": {"joints": [], "coils": [COIL]}}
+CALIBRATED = {"actuator": {"joints": [], "coils": [{**COIL, "stddev": {"polar": 1e-5, "azimuth": 1e-5}}]}}
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 
 
@@ -39,6 +42,7 @@ class CalibrateByMotion(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name) / "new"
+        self.description = CALIBRATED
         self.started = []  # programs with their arguments
         self.fails = lambda command: False
         self.tells_nothing = False  # the recordings, of the parameters
@@ -63,7 +67,7 @@ class CalibrateByMotion(unittest.TestCase):
         options = self.module.parse(["--actuator", "A.yaml", "--directory", str(self.folder), *arguments])
         terminal = mock.Mock()
         try:
-            result = self.module.run(options, terminal)
+            result = self.module.run(options, self.module.begins_gently(options, self.description), terminal)
         except RuntimeError as error:
             result = str(error)
         return result, " ".join(call.args[0] for call in terminal.say.call_args_list)
@@ -98,6 +102,47 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertEqual(both[-2:], bags)
         self.assertEqual(both[both.index("--actuator") + 1], "A.yaml")
         self.assertEqual(both[both.index("--output") + 1], str(self.folder / "calibrated.yaml"))
+
+    def test_begins_gently_by_a_drawing_where_something_can_hold_the_rotor(self):
+        def is_gentle(description, *arguments, is_terminal=False):
+            options = self.module.parse(["--actuator", "A.yaml", "--directory", str(self.folder), *arguments])
+            with mock.patch.object(self.module.sys, "stdin") as stdin:
+                stdin.isatty.return_value = is_terminal
+                return self.module.begins_gently(options, description)
+
+        self.assertTrue(is_gentle(DRAWING, "--fixture", "lab"))
+        self.assertTrue(is_gentle(DRAWING, is_terminal=True))
+        self.assertFalse(is_gentle(DRAWING))
+        self.assertFalse(is_gentle(CALIBRATED, "--fixture", "lab", is_terminal=True))
+        self.assertTrue(is_gentle(CALIBRATED, "--gently"))
+        self.assertFalse(is_gentle(DRAWING, "--fixture", "lab", "--no-gently"))
+        # What the motion is to be somebody has said.
+        self.assertFalse(is_gentle(DRAWING, "--fixture", "lab", "--plan", "P.yaml"))
+        for broken in (None, [], {"actuator": None}, {"actuator": {"coils": 3}}, {"actuator": {"coils": [3]}}):
+            self.assertTrue(is_gentle(broken, "--fixture", "lab"))
+
+    def test_a_hand_brings_the_rotor_back_between_two_motions(self):
+        with mock.patch.object(self.module.sys, "stdin") as stdin:
+            stdin.readline.side_effect = lambda: self.started.append(["Enter"])
+            status, said = self.run_with("--gently")
+        self.assertEqual(status, 0)
+        names = [words[0] for words in self.started]
+        self.assertEqual(
+            names, ["plan_motion", "run_motion", "calibrate_bag", "plan_motion", "Enter", "run_motion", "calibrate_bag"]
+        )
+        self.assertIn("press Enter", said)
+
+    def test_a_rotor_lost_in_the_gentle_motion_moves_again_so(self):
+        self.fails = lambda words: LOST if words[0] == "run_motion" and "--parameters" not in words else 0
+        status, _ = self.run_with("--gently", "--fixture", "lab")
+        self.assertEqual(status, 0)
+        gentle = self.folder / "gentle"
+        bags = [str(path / "recordings" / "1.bag") for path in (gentle, gentle / "again", self.folder)]
+        first, again, fast = self.of_program("run_motion")
+        self.assertEqual(first[1], again[1])
+        self.assertEqual(again[again.index("--parameters") + 1], str(gentle / "again" / "calibrated.yaml"))
+        self.assertEqual(fast[fast.index("--parameters") + 1], str(gentle / "calibrated.yaml"))
+        self.assertEqual([words[-n:] for n, words in enumerate(self.of_program("calibrate_bag"), 1)], [bags[:1], bags[:2], bags])
 
     def test_a_motion_that_fails_loses_nothing_that_was_recorded(self):
         self.fails = lambda words: words[0] == "run_motion" and "--parameters" in words
