@@ -62,6 +62,10 @@ bool MotionFollower::canBeJudged() const {
   return estimate().windows - estimate().left_out >= wanted + wanted / 5;
 }
 
+bool MotionFollower::isEnough() const {
+  return canBeJudged() && timeLeft() == 0.0;
+}
+
 std::vector<ParameterEstimate> MotionFollower::dynamics() const {
   const ParameterSpace& space = model_->space();
   const ParameterBelief& belief = estimate().belief;

@@ -96,6 +96,8 @@ TEST(MotionFollower, TellsHowLongItTakes) {
   MotionFollower coarser(scenarios::paperNominal(), CalibrationConfig(), 2.0 * worst(once));
   follow(streams, coarser);
   EXPECT_EQ(coarser.timeLeft(), 0.0);
+  // Nothing judges it yet.
+  EXPECT_FALSE(coarser.isEnough());
 }
 
 TEST(MotionFollower, TellsWhetherSomeWindowsCanJudge) {
@@ -103,16 +105,23 @@ TEST(MotionFollower, TellsWhetherSomeWindowsCanJudge) {
   MovingRotor moving;
   moving.truth = scenarios::perturbed(scenarios::paperNominal(), 0.02, 0.02, generator);
   moving.duration = 30.0;
-  MotionFollower follower(scenarios::paperNominal(), CalibrationConfig(), 1e-4);
+  constexpr double kSomewhatMore = 1.4e-8;  // than streams without noise tell at the end [rad]
+  MotionFollower follower(scenarios::paperNominal(), CalibrationConfig(), kSomewhatMore);
   std::size_t first = 0;  // with which it can
+  bool is_ever_enough = false;
+  bool is_ever_judged_only = false;
   follow(moving.record().spans.front(), follower, [&] {
     const LiveEstimate& estimate = follower.estimate();
     const bool suffices = estimate.windows - estimate.left_out >= 48;
     EXPECT_EQ(follower.canBeJudged(), suffices) << estimate.windows;
+    EXPECT_EQ(follower.isEnough(), suffices && worst(follower) <= follower.wantedStddev());
+    is_ever_enough |= follower.isEnough();
+    is_ever_judged_only |= suffices && !follower.isEnough();
     first = first == 0 && suffices ? estimate.windows : first;
   });
   // More than a calibration of the same windows wants: the recording may have fewer.
   EXPECT_GT(first, MotionOptions().least_windows_to_hold_out) << follower.estimate().windows;
+  EXPECT_TRUE(is_ever_enough && is_ever_judged_only) << worst(follower);
 }
 
 TEST(MotionFollower, SuitsActuatorsWithJointsAndTorqueModel) {

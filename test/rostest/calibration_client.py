@@ -18,6 +18,7 @@ from spherical_actuator_calibration.msg import (
     PlanProgress,
 )
 from spherical_actuator_calibration.srv import (
+    BeginMotion,
     Calibrate,
     Capture,
     ListSamples,
@@ -37,6 +38,7 @@ MOST_WAITING = 0.5  # share of its processor time that a node may wait for it
 SILENCE = 30.0  # [s] without anything new, after which what is missing is lost
 
 SERVICES = {
+    "begin_motion": BeginMotion,
     "calibrate_coil": Calibrate,
     "calibrate_joint": Calibrate,
     "calibrate_motion": Calibrate,

@@ -95,6 +95,24 @@ class LiveMotion(unittest.TestCase):
         self.assertLess(abs(inertia.value - free_motion.Machine().inertia[0, 0]), 6.0 * inertia.stddev)
         return progress
 
+    def expect_wishes(self):
+        """A motion begins with a wish that can be, or with that of the node."""
+        told = []
+        subscriber = rospy.Subscriber(f"{NAMESPACE}/motion_progress", MotionProgress, told.append)
+        self.addCleanup(subscriber.unregister)
+        wait_for(lambda: told, "the progress")
+        before = told[-1]
+        for wrong in (-1e-4, float("nan"), 2.0):
+            refused = self.client.call("begin_motion", wanted_stddev=wrong)
+            self.assertFalse(refused.success)
+            self.assertIn("wanted_stddev", refused.message)
+        self.assertEqual(told[-1].windows, before.windows)
+        for wish, wanted in ((5e-5, 5e-5), (0.0, WANTED)):
+            self.assertTrue(self.client.call("begin_motion", wanted_stddev=wish).success)
+            wait_for(lambda wanted=wanted: told[-1].wanted_stddev == wanted, "the wish")
+            self.assertEqual(told[-1].windows, 0)
+            self.assertFalse(told[-1].is_enough)
+
     def test_motion_gives_parameters_that_outlive_the_node(self):
         self.client.start(self.node)
         refused = self.client.call("calibrate_motion")
@@ -113,6 +131,7 @@ class LiveMotion(unittest.TestCase):
         self.expect_the_truth(answer.report)
         wait_for(lambda: self.client.revision() == 1, "the parameters")
         found = values_of(self.client.latest("parameters"))
+        self.expect_wishes()
         self.assertTrue(self.client.call("forget_motion").success)
         self.assertIn("No motion is recorded", self.client.call("calibrate_motion").message)
         self.node.kill()

@@ -43,6 +43,8 @@ class MotionFollower {
   /// Whether so many windows serve that the calibration holds some of them out, which judge it; a
   /// fifth more than it wants, since a recording begins and ends its windows elsewhere.
   bool canBeJudged() const;
+  /// Whether all is known as well as wanted, and can be judged.
+  bool isEnough() const;
   /// Inertia, unbalance, friction and delays.
   std::vector<ParameterEstimate> dynamics() const;
 

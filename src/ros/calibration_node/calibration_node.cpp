@@ -80,6 +80,7 @@ void CalibrationNode::advertiseServices() {
   advertise("calibrate_coil", &CalibrationNode::calibrateCoil);
   advertise("refine", &CalibrationNode::refine);
   advertise("calibrate_motion", &CalibrationNode::calibrateMotion);
+  advertise("begin_motion", &CalibrationNode::beginMotion);
   advertise("forget_motion", &CalibrationNode::forgetMotion);
   advertise("validate", &CalibrationNode::validate);
   advertise("diagnose", &CalibrationNode::explainSamples);
@@ -89,20 +90,6 @@ void CalibrationNode::advertiseServices() {
   advertise("reset", &CalibrationNode::reset);
   advertise("restore", &CalibrationNode::restore);
   advertise("save", &CalibrationNode::save);
-}
-
-template <typename Response, typename Action>
-void CalibrationNode::answer(Response& response, Action action) {
-  const std::lock_guard<std::mutex> lock(session_mutex_);
-  try {
-    response.message = action();
-    response.success = 1;
-  } catch (const std::exception& error) {
-    response.success = 0;
-    response.message = printable(error.what());
-    last_error_ = response.message;
-    ROS_ERROR_STREAM(last_error_);
-  }
 }
 
 bool CalibrationNode::capture(msg::Capture::Request& request, msg::Capture::Response& response) {

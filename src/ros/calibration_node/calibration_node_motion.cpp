@@ -1,6 +1,7 @@
 #include <cstddef>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,25 +25,35 @@ bool CalibrationNode::calibrateMotion(msg::Calibrate::Request& /*request*/,
 
 bool CalibrationNode::forgetMotion(std_srvs::Trigger::Request& /*request*/,
                                    std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(session_mutex_);
-  try {
+  answer(response, [&] {
     beginMotionAnew();
     publishStatus();
-    response.success = 1;
-    response.message = "The next motion begins anew.";
-  } catch (const std::exception& error) {
-    response.message = printable(error.what());
-    last_error_ = response.message;
-  }
+    return "The next motion begins anew.";
+  });
   return true;
 }
 
-void CalibrationNode::beginMotionAnew() {
+bool CalibrationNode::beginMotion(msg::BeginMotion::Request& request,
+                                  msg::BeginMotion::Response& response) {
+  answer(response, [&] {
+    std::optional<double> wanted;
+    if (request.wanted_stddev != 0.0) {
+      requireInRange("wanted_stddev", request.wanted_stddev, wantedStddevRange());
+      wanted = request.wanted_stddev;
+    }
+    beginMotionAnew(wanted);
+    publishStatus();
+    return "The next motion begins anew.";
+  });
+  return true;
+}
+
+void CalibrationNode::beginMotionAnew(std::optional<double> wanted_stddev) {
   session_.forgetMotion();
   stored_windows_.clear();
   waiting_windows_.clear();
   intake_.forgetMotion();
-  motion_.forget();
+  motion_.forget(wanted_stddev);
   windows_in_a_row_ = 0;
   is_in_motion_ = false;
 }
@@ -102,11 +113,10 @@ void CalibrationNode::noteMotion(std::size_t windows) {
 }
 
 std::string CalibrationNode::motionStep(const SessionProgress& progress) const {
-  constexpr std::size_t kEnough = 48;  // windows, so that some can be held out
   if (is_in_motion_) {
     return "A motion goes on: let it end, then call calibrate_motion.";
   }
-  if (motion_.windows() < kEnough || progress.samples > 0 || progress.isAllIdentified()) {
+  if (!motion_.canBeJudged() || progress.samples > 0 || progress.isAllIdentified()) {
     return {};
   }
   if (progress.refused) {

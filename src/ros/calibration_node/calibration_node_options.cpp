@@ -5,6 +5,10 @@
 
 namespace sac {
 
+ValueRange wantedStddevRange() {
+  return ValueRange::closed(1e-9, 1.0, "rad");
+}
+
 CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
   const YamlMap map = privateParameters(private_node);
   CalibrationNodeOptions options;
@@ -13,8 +17,8 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
   options.auto_capture = map.boolean("auto_capture", options.auto_capture);
   options.capture_duration =
       map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
-  options.motion_wanted_stddev = map.number(
-      "motion_wanted_stddev", ValueRange::closed(1e-9, 1.0), options.motion_wanted_stddev);
+  options.motion_wanted_stddev =
+      map.number("motion_wanted_stddev", wantedStddevRange(), options.motion_wanted_stddev);
   options.report_page = map.boolean("report_page", options.report_page);
   acceptDiagnosticPeriod(map);
   map.finish();

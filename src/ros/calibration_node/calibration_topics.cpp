@@ -123,6 +123,7 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.next_step = nextStep(calibration.model(), progress);
   if (calibration.model().hasTorqueModel()) {
     message.torque_linearity = describe(session.linearity());
+    message.linearity_is_told = session.linearity() ? 1 : 0;
   }
   publishLatched(status_, message);
   if (last_report_ && (last_report_->grade != message.grade ||

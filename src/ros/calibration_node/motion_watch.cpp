@@ -48,15 +48,16 @@ void MotionWatch::add(MotionSlice window) {
   }
 }
 
-void MotionWatch::forget() {
+void MotionWatch::forget(std::optional<double> wanted_stddev) {
   if (MotionFollower::suits(nominal_)) {
-    follower_ = std::make_unique<MotionFollower>(nominal_, config_, wanted_stddev_);
+    follower_ =
+        std::make_unique<MotionFollower>(nominal_, config_, wanted_stddev.value_or(wanted_stddev_));
     publish();
   }
 }
 
-std::size_t MotionWatch::windows() const {
-  return follower_ ? follower_->estimate().windows : 0;
+bool MotionWatch::canBeJudged() const {
+  return follower_ && follower_->canBeJudged();
 }
 
 void MotionWatch::publish() {
@@ -76,6 +77,7 @@ void MotionWatch::publish() {
   message.wanted_stddev = follower_->wantedStddev();
   message.time_left = follower_->timeLeft().value_or(kUnknown);
   message.can_be_judged = follower_->canBeJudged() ? 1 : 0;
+  message.is_enough = follower_->isEnough() ? 1 : 0;
   for (const ParameterEstimate& one : follower_->dynamics()) {
     message.dynamics.push_back(estimateToRos(one));
   }

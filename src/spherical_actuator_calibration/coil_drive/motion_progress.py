@@ -4,40 +4,29 @@ import math
 
 import rospy
 from spherical_actuator_calibration.msg import MotionProgress
-from std_srvs.srv import Trigger
+from spherical_actuator_calibration.srv import BeginMotion
 
 PATIENCE = 2.0  # [s] for a calibration node that may not be there
 EVERY = 5.0  # [s] of motion between sentences about it
 
 
-def time_left(progress, wanted):
-    """Of such motion until all is known as well as wanted [rad], where variances fall with the inverse of the time [s]."""
-    worst = max((group.stddev for group in progress.groups), default=math.inf)
-    return progress.duration * max(0.0, (worst / wanted) ** 2 - 1.0)
-
-
-def is_enough(progress, wanted):
-    """Whether all is known as well as wanted [rad], and some windows can judge it."""
-    worst = max((group.stddev for group in progress.groups), default=math.inf)
-    return bool(progress.told and progress.can_be_judged) and worst <= wanted
-
-
-def in_words(progress, wanted):
-    """One sentence: what is known of each group, and what is left to `wanted` [rad]."""
+def in_words(progress):
+    """One sentence: what is known of each group, and what is left to what is wanted."""
     known = ", ".join(f"{group.group} {1e3 * group.stddev:.3f}" for group in progress.groups)
     words = f"{progress.duration:.0f} s of motion: {known} mrad"
     if progress.left_out:
         words += f", {progress.left_out} of {progress.windows} windows left out"
-    left = [group.least_known for group in progress.groups if group.stddev > wanted]
+    left = [group.least_known for group in progress.groups if group.left]
+    wanted = f"{1e3 * progress.wanted_stddev:.3f} mrad"
     if not left:
-        return f"{words}; all within {1e3 * wanted:.3f} mrad."
-    seconds = math.ceil(time_left(progress, wanted))
-    return f"{words}; left to {1e3 * wanted:.3f} mrad: {', '.join(left)}, some {seconds} s more."
+        return f"{words}; all within {wanted}."
+    return f"{words}; left to {wanted}: {', '.join(left)}, some {math.ceil(progress.time_left)} s more."
 
 
 class ProgressWatch:
     """Listens to the calibration node while a motion goes on, and says now and then what it has told. With `wanted`
-    [rad], `enough()` is called once, when all is known as well as that; without, the node's own counts in words only."""
+    [rad], `enough()` is called once, when the node says that all is known as well as that; without, the node's own counts,
+    in words only."""
 
     def __init__(self, ns, say, wanted=None, enough=lambda: None):
         self._ns, self._say, self._wanted, self._enough = ns, say, wanted, enough
@@ -48,17 +37,17 @@ class ProgressWatch:
 
     def begin(self):
         """What was told of other motions does not count. RuntimeError where `wanted` needs a node that is not there."""
-        service = f"{self._ns}/calibration/forget_motion"
+        service = f"{self._ns}/calibration/begin_motion"
         try:
             rospy.wait_for_service(service, PATIENCE)
-            answer = rospy.ServiceProxy(service, Trigger)()
+            answer = rospy.ServiceProxy(service, BeginMotion)(self._wanted or 0.0)
         except (rospy.ServiceException, rospy.ROSException) as error:
             if self._wanted is not None:
                 raise RuntimeError(f"What is known while it moves the calibration node tells: {error}") from error
             self._say("No calibration node is running: how well parameters are known is told at the end.")
             return
         if not answer.success:
-            raise RuntimeError(f"The motion of before cannot be forgotten: {answer.message}")
+            raise RuntimeError(f"The calibration node begins no motion: {answer.message}")
         # What is latched is of after the service.
         self._subscriber = rospy.Subscriber(f"{self._ns}/motion_progress", MotionProgress, self.receive, queue_size=1)
 
@@ -71,11 +60,10 @@ class ProgressWatch:
         progress = self._progress
         if progress is None or not progress.told:
             return
-        wanted = progress.wanted_stddev if self._wanted is None else self._wanted
-        ends = self._wanted is not None and is_enough(progress, wanted) and not self._is_enough
+        ends = self._wanted is not None and progress.is_enough and not self._is_enough
         if ends or progress.duration >= self._told + EVERY:
             self._told = progress.duration
-            self._say(in_words(progress, wanted))
+            self._say(in_words(progress))
         if ends:
             self._is_enough = True
             self._enough()
@@ -90,7 +78,7 @@ class ProgressWatch:
         if progress is None or not progress.told:
             self._say("The motion ended before anything was known of it.")
             return False
-        if not is_enough(progress, self._wanted):
-            self._say(f"The motion ended before that was reached. {in_words(progress, self._wanted)}")
+        if not progress.is_enough:
+            self._say(f"The motion ended before that was reached. {in_words(progress)}")
             return False
         return True

@@ -14,15 +14,15 @@ class LinearityTest:
         self._account = account
         self._is_wanted = is_wanted
 
-    def captures(self, pose, measured):
+    def captures(self, pose):
         """How many it will take at a pose whose patterns are measured before; 0: it is not to be done there."""
-        if not self._is_open(measured) or pose.validation or not pose.excitations:
+        if not self._is_open() or pose.validation or not pose.excitations:
             return 0
         return len(SHARES) - any(len(pattern) == 1 for pattern in pose.excitations)
 
     def measure(self, pose, done):
         """At a pose whose patterns are measured, if no other has told it; calls done() after each capture."""
-        if not self.captures(pose, self._calibration.measured()):
+        if not self.captures(pose):
             return
         for _ in range(MOST_RESTS):
             missing = self._missing(pose)
@@ -35,14 +35,10 @@ class LinearityTest:
         if self._missing(pose):
             self._account.say("One coil could not be measured at three currents in one rest; the next pose is to show it.")
 
-    def _is_open(self, measured):
-        can_be_told = min(map(abs, SHARES)) * self._course.current >= self._calibration.status().least_current
-        return self._is_wanted and can_be_told and not self._is_held(measured)
-
-    def _is_held(self, measured):
-        """Whether some rest has one coil at all of the currents."""
-        alone = {(s.rest, abs(s.pattern[0])) for s in measured if s.rest and len(s.pattern) == 1}
-        return any(not self._lacking(coil, rest, measured) for rest, coil in alone)
+    def _is_open(self):
+        status = self._calibration.status()
+        can_be_told = min(map(abs, SHARES)) * self._course.current >= status.least_current
+        return self._is_wanted and can_be_told and not status.linearity_is_told
 
     def _lacking(self, coil, rest, measured):
         """Patterns of a coil, each with its current [A], that a rest lacks."""

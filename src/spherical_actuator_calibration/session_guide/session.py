@@ -122,10 +122,9 @@ class Session:
         return poses
 
     def _measure(self, poses):
-        measured = self._calibration.measured()
         captures = [len(patterns) for patterns in self._course.to_capture(poses)]
         open_poses = [pose for pose, count in zip(poses, captures) if count]
-        further = max((self._linearity.captures(pose, measured) for pose in open_poses), default=0)
+        further = max((self._linearity.captures(pose) for pose in open_poses), default=0)
         self._progress = Progress(sum(captures) + further, self._task.time)
         self._account.count(self._progress)
         for number, pose in enumerate(open_poses, 1):

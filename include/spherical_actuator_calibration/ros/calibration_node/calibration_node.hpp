@@ -4,12 +4,14 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/wall_timer.h>
+#include <spherical_actuator_calibration/BeginMotion.h>
 #include <spherical_actuator_calibration/Capture.h>
 #include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
@@ -28,6 +30,7 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_topics.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/motion_watch.hpp"
+#include "spherical_actuator_calibration/ros/calibration_node/service_answer.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 #include "spherical_actuator_calibration/storage/calibration_directory.hpp"
@@ -86,6 +89,7 @@ class CalibrationNode {
 
   // Motion (calibration_node_motion.cpp).
   bool calibrateMotion(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
+  bool beginMotion(msg::BeginMotion::Request& request, msg::BeginMotion::Response& response);
   bool forgetMotion(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void takeUpMotion();
   void followMotion();
@@ -94,8 +98,9 @@ class CalibrationNode {
   /// What to do about a motion next; nothing: there is none.
   std::string motionStep(const SessionProgress& progress) const;
   void storeWaitingWindows();
-  /// Precondition: session_mutex_ is held.
-  void beginMotionAnew();
+  /// Precondition: session_mutex_ is held. `wanted_stddev`: of the next one [rad]; nothing: the
+  /// configured one.
+  void beginMotionAnew(std::optional<double> wanted_stddev = {});
 
   // What does not fit, and why (calibration_node_diagnosis.cpp).
   bool explainSamples(msg::Diagnose::Request& request, msg::Diagnose::Response& response);
@@ -119,10 +124,11 @@ class CalibrationNode {
   RobotDescription robotDescription() const;
   void publishStatus();
   void diagnose(DiagnosticStatus& status);
-  /// Answers a service: `action` returns the message of success; what it throws becomes that of
-  /// failure.
+  /// Answers a service that touches the session: see answerService().
   template <typename Response, typename Action>
-  void answer(Response& response, Action action);
+  void answer(Response& response, Action action) {
+    answerService(session_mutex_, last_error_, response, action);
+  }
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;

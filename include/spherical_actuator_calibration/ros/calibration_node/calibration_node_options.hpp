@@ -4,6 +4,7 @@
 
 #include <ros/node_handle.h>
 
+#include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 
 namespace sac {
@@ -20,6 +21,9 @@ struct CalibrationNodeOptions {
   double motion_wanted_stddev = 1e-4;
   bool report_page = true;  ///< save also makes the page of the report, which takes seconds
 };
+
+/// Of motion_wanted_stddev, whoever states it.
+ValueRange wantedStddevRange();
 
 /// Reads the private parameters of a node. Throws ConfigError that names the key for anything
 /// unknown, of the wrong type or out of range.

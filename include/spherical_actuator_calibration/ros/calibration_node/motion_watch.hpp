@@ -23,10 +23,10 @@ class MotionWatch {
 
   /// One more window; none of an actuator whose motions tell nothing.
   void add(MotionSlice window);
-  /// The motion until now.
-  void forget();
-  /// That came since then.
-  std::size_t windows() const;
+  /// The motion until now. `wanted_stddev`: of the next one [rad]; nothing: as constructed.
+  void forget(std::optional<double> wanted_stddev = {});
+  /// Whether so many windows came since then that a calibration can be judged by some of them.
+  bool canBeJudged() const;
 
  private:
   void publish();
