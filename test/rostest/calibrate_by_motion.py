@@ -45,7 +45,7 @@ def plan():
 class CalibrateByMotion(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.make_lab(commands=False, seed=4)
+        cls.make_lab(released=True, commands=False, seed=4)
         path = pathlib.Path(cls.lab.config) / "lab_emulator.yaml"
         content = yaml.safe_load(path.read_text())
         content["friction"] = {"viscous": FRICTION}

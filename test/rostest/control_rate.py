@@ -41,7 +41,7 @@ class ControlRate(LabCase):
     def setUpClass(cls):
         cls.late_timers = share_of_late_timers()
         print(f"MEASURED {100.0 * cls.late_timers:.3f} % of the timers of the computer alone are late")
-        cls.make_lab(commands=False, seed=4, rate=RATE)
+        cls.make_lab(released=True, commands=False, seed=4, rate=RATE)
         cls.lab.change_emulator(friction={"viscous": FRICTION})
         cls.lab.use_coil_driver("coil_driver_one_request.yaml")  # a fourth of the work for driver and amplifier
         cls.lab.start()

@@ -23,6 +23,9 @@ from std_srvs.srv import SetBool, Trigger
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
+# [Hz] of the force/torque sensor and of the emulation, in a fixture: with noise to match it means as much as 1 kHz, and all
+# who listen take less than half of the processor's time.
+FIXTURE_RATE = 400.0
 PATIENT_BEATS = 80  # of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
 
 
@@ -44,13 +47,16 @@ def configuration_with_free_ports(folder):
 
 class EmulatedLab:
     """emulated_lab.launch on the master of the test; `folder` keeps its files. Without `commands` it is
-    somebody else who moves and excites. `unit`: name of a shipped description, with its URDF."""
+    somebody else who moves and excites. `unit`: name of a shipped description, with its URDF. A rotor that is to be
+    `released` needs the emulation at its full rate."""
 
-    def __init__(self, folder, commands=True, environment=None, unit="pm_spherical_8x24", **arguments):
+    def __init__(self, folder, commands=True, environment=None, unit="pm_spherical_8x24", released=False, **arguments):
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
         self.config = configuration_with_free_ports(folder)
+        if not released:
+            self._slow_down()
         shipped = pathlib.Path(rospy.get_param("~config"))
         self.actuator = yaml.safe_load((shipped / f"{unit}.yaml").read_text())["actuator"]
         self.coils = len(self.actuator["coils"])
@@ -93,6 +99,12 @@ class EmulatedLab:
         """Sections of the emulator's configuration, before the start."""
         path = pathlib.Path(self.config) / "lab_emulator.yaml"
         path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), **sections}))
+
+    def _slow_down(self):
+        sensor = yaml.safe_load((pathlib.Path(self.config) / "lab_emulator.yaml").read_text())["ft_sensor"]
+        share = (FIXTURE_RATE / sensor["rate"]) ** 0.5
+        noise = {key: share * sensor[key] for key in ("force_noise", "torque_noise")}
+        self.change_emulator(ft_sensor={**sensor, **noise, "rate": FIXTURE_RATE})
 
     def use_coil_driver(self, name):
         """Another of the shipped configurations, before the start."""

@@ -48,7 +48,7 @@ class MotionPlan(LabCase):
     @classmethod
     def setUpClass(cls):
         cls.refusal = ""
-        cls.make_lab(commands=False, seed=4)
+        cls.make_lab(released=True, commands=False, seed=4)
         cls.make_it_patient()
         cls.commands = Commands()
         cls.lab.start()

@@ -13,6 +13,8 @@ from viewed_lab import ViewedLabCase
 
 PLAN, MEASURE, HOLD_OUT, REFINE, VALIDATE, SAVE = "F2", "F3", "F5", "F7", "F8", "F9"
 PATIENCE = 60.0  # [s] for a plan; pressed again before, its key would stop it
+LOOK = 0.6  # [s] in which rviz, at few pictures a second, sees where the rotor is
+SILENCE = 10.0  # [s] without a sample, after which nothing is measured any more
 
 
 class PanelHandCase(ViewedLabCase):
@@ -69,6 +71,7 @@ class PanelHandCase(ViewedLabCase):
             if not pose:
                 return count
             self.lab.move(pose)
+            time.sleep(LOOK)
             self.measure(lambda wanted=pose: self.wanted() != wanted)
         return most
 
@@ -82,7 +85,7 @@ class PanelHandCase(ViewedLabCase):
                 return True
             if len(self.samples) != count[0]:
                 count[:] = [len(self.samples), time.monotonic()]
-            elif time.monotonic() - count[1] > 30.0:
+            elif time.monotonic() - count[1] > SILENCE:
                 count[1] = time.monotonic()
                 self.key(MEASURE)
             return False

@@ -26,7 +26,7 @@ LOAD = [0.003, -0.004, 0.002]  # [N.m] of the shipped emulator
 class ReleasedRotor(LabCase):
     @classmethod
     def setUpClass(cls):
-        cls.make_lab(commands=False, seed=4)
+        cls.make_lab(released=True, commands=False, seed=4)
         cls.lab.change_emulator(friction={"viscous": FRICTION})
         cls.true_orientation = None
         rospy.Subscriber(f"{NAMESPACE}/lab_emulator/true_orientation", QuaternionStamped, cls.keep)
