@@ -1,5 +1,7 @@
 #include "spherical_actuator_calibration/assessment/report_file.hpp"
 
+#include <cstddef>
+#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -7,6 +9,7 @@
 #include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_title.hpp"
@@ -342,6 +345,25 @@ std::string renderReport(const CalibrationSession& session,
   writeModelChoice(writer, fits);
   writeTorqueLinearity(writer, session);
   return writer.text();
+}
+
+// By its text: see writeVerdict().
+std::string gradeInReport(const std::string& path) {
+  constexpr std::size_t kHead = 4096;  // byte
+  constexpr char kKey[] = "\n  verdict: {grade: ";
+  if (!unreadableKind(path).empty()) {
+    return {};
+  }
+  std::string head(kHead, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t key = head.find(kKey);
+  if (key == std::string::npos) {
+    return {};
+  }
+  const std::size_t begin = key + sizeof kKey - 1;
+  return head.substr(begin, head.find(',', begin) - begin);
 }
 
 }  // namespace sac

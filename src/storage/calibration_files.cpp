@@ -1,9 +1,7 @@
 #include "spherical_actuator_calibration/storage/calibration_files.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -28,25 +26,6 @@ void writeOnce(const std::string& path, const std::string& content) {
 /// Whether a file is there with another content.
 bool isTaken(const std::string& path, const std::string& content) {
   return fs::exists(path) && readInputFile(path) != content;
-}
-
-/// Grade that a report tells in its first lines; empty where there is none.
-std::string gradeInReport(const std::string& path) {
-  constexpr std::size_t kHead = 4096;  // byte
-  constexpr char kKey[] = "\n  verdict: {grade: ";
-  if (!unreadableKind(path).empty()) {
-    return {};
-  }
-  std::string head(kHead, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  const std::size_t key = head.find(kKey);
-  if (key == std::string::npos) {
-    return {};
-  }
-  const std::size_t begin = key + sizeof kKey - 1;
-  return head.substr(begin, head.find(',', begin) - begin);
 }
 
 bool anyIdentified(const CalibrationState& state) {

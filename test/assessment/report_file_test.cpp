@@ -11,9 +11,11 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/assessment/calibration_grade.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_title.hpp"
 #include "support/scenarios.hpp"
 #include "support/source_dir.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace sac {
 namespace {
@@ -95,6 +97,16 @@ TEST(ReportFile, TellsVerdictRevisionAndNextSteps) {
   EXPECT_NE(report.find("  verdict: {grade: not_validated, sentence: "), std::string::npos);
   EXPECT_TRUE(anyHolds(blockOf(report, "next_steps"), "Hold out samples"));
   EXPECT_TRUE(blockOf(report, "validation").empty());
+}
+
+TEST(ReportFile, TellsItsGradeAlone) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("report.yaml");
+  EXPECT_EQ(gradeInReport(path), "");
+  folder.write("report.yaml", reportOf(calibratedSession(0)));
+  EXPECT_EQ(gradeInReport(path), gradeName(Grade::kNotValidated));
+  folder.write("report.yaml", "calibration_report:\n  verdict: 1\n");
+  EXPECT_EQ(gradeInReport(path), "");
 }
 
 TEST(ReportFile, NamesEverySampleWithItsPoseAndCoils) {

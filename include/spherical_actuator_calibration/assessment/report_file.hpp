@@ -18,4 +18,8 @@ std::string renderReport(const CalibrationSession& session,
                          const std::vector<std::string>& recording,
                          const std::vector<Diagnosis>& diagnoses = {});
 
+/// Name of the grade that such a file tells; empty where there is no file, or none of a grade. Only
+/// its begin is read: a report of many samples is large.
+std::string gradeInReport(const std::string& path);
+
 }  // namespace sac
