@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/study/model_error.hpp"
 #include "spherical_actuator_calibration/study/motion_planner.hpp"
 #include "tool_main.hpp"
 
@@ -30,6 +31,7 @@ struct PlanMotionOptions {
   std::string output_path;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
   std::optional<std::string> dimensions_path;
+  std::optional<double> model_error;  ///< nothing: as the description tells
   MotionPlannerOptions planner;
 };
 
@@ -49,11 +51,16 @@ void addMotionOptions(CommandLine& line, MotionPlannerOptions& planner) {
            "root mean square of each coil; 0: as much as the limits and the rehearsals allow");
 }
 
-void addChoiceOptions(CommandLine& line, MotionPlannerOptions& planner) {
+void addChoiceOptions(CommandLine& line, PlanMotionOptions& options) {
+  MotionPlannerOptions& planner = options.planner;
   line.beginGroup("Choice");
   line.add("candidates", planner.candidates, "N", "motions to choose from");
   line.add("rehearsals", planner.rehearsals, "N", "of a motion, each with another wrong model");
-  line.add("model-error", planner.model_error, "RAD", "of every parameter in them, within +-");
+  line.add("model-error",
+           options.model_error,
+           "RAD",
+           "of every parameter in them, within +-; else 30 mrad by a drawing, and four of the "
+           "largest standard deviations by a calibrated description, at least 5 mrad");
   line.add("seed", planner.seed, "N", "of all that is drawn");
 }
 
@@ -79,7 +86,7 @@ std::optional<PlanMotionOptions> parseOptions(int argc, char** argv) {
   line.addForce(options.overwrite);
   line.addInput("dimensions", options.dimensions_path, "YAML", "of the rotor, for its inertia");
   addMotionOptions(line, options.planner);
-  addChoiceOptions(line, options.planner);
+  addChoiceOptions(line, options);
   addSensorOptions(line, options.planner);
   line.beginGroup("Controller, as motion_gains in orientation_controller.yaml");
   line.add("proportional", gains.proportional, "1/S2", "gain");
@@ -92,7 +99,9 @@ std::optional<PlanMotionOptions> parseOptions(int argc, char** argv) {
 
 void writePlan(PlanMotionOptions& options) {
   requireNewFile(options.output_path, options.overwrite);
-  const Actuator actuator = loadDescription(options.actuator_path).actuator;
+  const CalibratedDescription description = loadDescription(options.actuator_path);
+  const Actuator& actuator = description.actuator;
+  options.planner.model_error = options.model_error.value_or(likelyModelError(description));
   if (!actuator.hasTorqueModel()) {
     throw ConfigError(options.actuator_path + " has no poles, coils or torque curve to move by.");
   }

@@ -115,6 +115,8 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertFalse(is_gentle(DRAWING))
         self.assertFalse(is_gentle(CALIBRATED, "--fixture", "lab", is_terminal=True))
         self.assertTrue(is_gentle(CALIBRATED, "--gently"))
+        partly = {"actuator": {"coils": [COIL, *CALIBRATED["actuator"]["coils"]]}}
+        self.assertTrue(is_gentle(partly, "--fixture", "lab"))
         self.assertFalse(is_gentle(DRAWING, "--fixture", "lab", "--no-gently"))
         # What the motion is to be somebody has said.
         self.assertFalse(is_gentle(DRAWING, "--fixture", "lab", "--plan", "P.yaml"))
