@@ -90,7 +90,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertEqual(first[first.index("--actuator") + 1], "A.yaml")
         # What the user says counts for both, and stands once.
         self.assertEqual([word for word in first if "--tilt" in word], ["--tilt=0.1"])
-        self.assertTrue({"--duration=20.0", "--rate=1.5", "--excitation=0.05", "--joint-rate=1000"} <= set(first))
+        self.assertTrue({"--duration=10.0", "--rate=1.5", "--excitation=0.05", "--joint-rate=1000"} <= set(first))
         self.assertNotIn("--parameters", slow)
         self.assertEqual(plan[plan.index("--actuator") + 1], gentle)
         self.assertTrue({"--duration=60.0", "--joint-rate=1000", "--tilt=0.1"} <= set(plan))

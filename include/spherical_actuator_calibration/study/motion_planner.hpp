@@ -22,9 +22,9 @@ struct MotionPlannerOptions {
   /// Root mean square of each coil's excitation [A]; 0: as much as total_current and the rehearsals
   /// allow.
   double excitation = 0.0;
-  std::size_t candidates = 6;  ///< motions to choose from
-  std::size_t rehearsals = 3;  ///< of a motion, each with another wrong model
-  double model_error = 0.03;   ///< of every parameter in these, within ± [rad]
+  std::size_t candidates = 12;  ///< motions to choose from
+  std::size_t rehearsals = 3;   ///< of a motion, each with another wrong model
+  double model_error = 0.03;    ///< of every parameter in these, within ± [rad]
   std::uint64_t seed = 1;
   MotionSensors sensors;
   RehearsalOptions rehearsal;
