@@ -27,7 +27,8 @@ constexpr char kIntroduction[] =
     "A rotor without joints has the tracker's unit quaternion qx qy qz qw in the place of q1 q2 "
     "q3,\n"
     "and no orientation to ask for.\n"
-    "in rad, A and N.m, the rotor frame; outcome is reached, limited or singular. What cannot be\n"
+    "All are in rad, A and N.m, torques in the rotor frame; outcome is reached, limited or\n"
+    "singular. What cannot be "
     "answered is \"error: the reason\".\n"
     "Exit status: 0 at the end of the input; 2 bad usage or unreadable description.\n\n";
 
