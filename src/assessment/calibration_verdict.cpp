@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
+#include "calibration_verdict.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
-#include "spherical_actuator_calibration/assessment/uncertainty_budget.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "uncertainty_budget.hpp"
 
 namespace sac {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <sstream>
 
+#include "calibration_verdict.hpp"
 #include "report_judgements.hpp"
-#include "spherical_actuator_calibration/assessment/calibration_verdict.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"

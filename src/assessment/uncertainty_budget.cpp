@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/assessment/uncertainty_budget.hpp"
+#include "uncertainty_budget.hpp"
 
 #include <algorithm>
 #include <cstddef>

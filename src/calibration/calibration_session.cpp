@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
+#include "identified_stddevs.hpp"
 #include "motion_cycle.hpp"
 #include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "start_state.hpp"
 

@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
+#include "covariance_record.hpp"
 
 #include <algorithm>
 #include <cmath>

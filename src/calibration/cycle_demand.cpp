@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
+#include "cycle_demand.hpp"
 
 namespace sac {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <iterator>
 
+#include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {

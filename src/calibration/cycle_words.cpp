@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "cycle_checks.hpp"
+#include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {

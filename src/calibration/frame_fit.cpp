@@ -7,12 +7,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "covariance_record.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 
 namespace sac {
 namespace {

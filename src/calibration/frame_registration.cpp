@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -197,7 +198,6 @@ class Registrar {
                                                static_cast<double>(poses_.size()));
     const double probability =
         options_.false_alarm_probability / static_cast<double>(poses_.size());
-    constexpr double kMedianOfThree = 2.366;  // of χ² with three degrees of freedom
     for (std::size_t rejected = 0; rejected < most && count() > kLeastRegistrationPoses;
          ++rejected) {
       const std::vector<double> gain = fit_.judge(solution_, used_, noise_scale_).gain;
@@ -208,7 +208,7 @@ class Registrar {
         }
       }
       // Noise that is larger than stated makes no pose an outlier.
-      const double scale = std::max(1.0, medianOf(of_used) / kMedianOfThree);
+      const double scale = std::max(1.0, medianOf(of_used) / kMedianOfChiSquare3);
       const auto worst = std::max_element(gain.begin(), gain.end());
       if (*worst <= scale * chiSquareLimit(kComponents, probability)) {
         return;

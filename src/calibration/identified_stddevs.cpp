@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/calibration/identified_stddevs.hpp"
+#include "identified_stddevs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,6 +4,7 @@
 
 #include "motion_cycle.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 
 namespace sac {
 
@@ -26,7 +27,7 @@ GroupUncertainty MotionFollower::group(const std::string& name,
                                        Eigen::Index first,
                                        Eigen::Index end,
                                        const Eigen::VectorXd& stddevs) const {
-  const auto own = stddevs.segment(first, end - first);
+  const Eigen::VectorXd own = stddevs.segment(first, end - first).unaryExpr(&definedStddev);
   Eigen::Index worst = 0;
   GroupUncertainty group;
   group.group = name;

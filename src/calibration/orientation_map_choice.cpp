@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
@@ -20,7 +21,6 @@ constexpr int kRegionDepth = 3;
 constexpr double kLeastGain = 10.0;         // [nats] for three amplitudes, noises and lengths
 constexpr double kLargestShare = 0.9;       // of the error without the map
 constexpr double kLeastSignificance = 2.0;  // standard deviations of the mean gain of a region
-constexpr double kInterval = 1.96;          // standard deviations of a 95 % interval
 constexpr double kMilli = 1e3;
 /// Of the stated noise, by which axes and corrections are fitted: a bend far beyond it is no reason
 /// to look for no map.
@@ -174,7 +174,8 @@ class RegionJudge {
       const double stddev = std::sqrt((uncertainty.variance + uncertainty.noise).mean());
       errors.axes += rotation.squaredNorm();
       errors.map += left.squaredNorm();
-      errors.inside += static_cast<std::size_t>((left.array().abs() < kInterval * stddev).count());
+      errors.inside +=
+          static_cast<std::size_t>((left.array().abs() < kTwoSided95 * stddev).count());
       ++errors.poses;
     }
     return errors;

@@ -5,10 +5,10 @@
 
 #include <Eigen/LU>
 
+#include "covariance_record.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 
 namespace sac {

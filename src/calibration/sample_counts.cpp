@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/base/angle_difference.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {

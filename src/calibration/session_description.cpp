@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 
 namespace sac {
 namespace {

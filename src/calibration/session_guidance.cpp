@@ -5,8 +5,8 @@
 #include <iterator>
 #include <optional>
 
+#include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
 
 namespace sac {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "spherical_actuator_calibration/calibration/cycle_demand.hpp"
+#include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
@@ -19,6 +19,11 @@ bool allOf(const std::vector<bool>& identified, Eigen::Index first, Eigen::Index
 }
 
 }  // namespace
+
+bool SessionProgress::hasTorques() const {
+  return std::any_of(
+      torque_samples.begin(), torque_samples.end(), [](std::uint32_t count) { return count > 0; });
+}
 
 bool SessionProgress::isAllIdentified() const {
   const auto is_identified = [](const Coverage& part) { return part.identified; };

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "covariance_record.hpp"
 #include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 
 namespace sac {
 namespace {

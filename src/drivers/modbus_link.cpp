@@ -13,8 +13,8 @@
 #include <sys/socket.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/drivers/tcp_frame.hpp"
 #include "spherical_actuator_calibration/drivers/transport_error.hpp"
+#include "tcp_frame.hpp"
 
 namespace sac {
 namespace {

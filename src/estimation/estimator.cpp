@@ -11,6 +11,7 @@
 #include "held_prior.hpp"
 #include "problem_check.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
@@ -194,11 +195,10 @@ double Estimator::outlierLimit() const {
 /// Marks as inactive what does not fit the present solution, and as active again what does. Returns
 /// whether the set changed.
 bool Estimator::rejectOutliers() {
-  constexpr double kMedianOfThree = 2.366;  // of the χ² distribution with three degrees of freedom
   const double median = medianOf(observations_.squares(solution_.x(), outlierLimit()));
   // Where the stated noise is too small for most observations, outliers stand out of the actual
   // scatter; the misfit itself is told by the reduced χ².
-  const double limit = outlierLimit() * std::max(1.0, median / kMedianOfThree);
+  const double limit = outlierLimit() * std::max(1.0, median / kMedianOfChiSquare3);
   const auto squares = observations_.squares(solution_.x(), limit);
   bool changed = false;
   for (std::size_t n = 0; n < squares.size(); ++n) {

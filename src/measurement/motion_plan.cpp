@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "spherical_actuator_calibration/actuator/unit_identity.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -47,13 +48,9 @@ void validate(const MotionLimits& limits, const Actuator& actuator) {
 }
 
 void requireActuator(const MotionPlan& plan, const Actuator& actuator) {
-  if (plan.actuator != actuator.name) {
-    throw ConfigError("The motion plan is for the actuator " + plan.actuator + ", not for " +
-                      actuator.name + ".");
-  }
-  if (!plan.serial.empty() && !actuator.serial.empty() && plan.serial != actuator.serial) {
-    throw ConfigError("The motion plan is for the unit " + plan.serial + ", not for " +
-                      actuator.serial + ".");
+  if (const auto other = otherUnit(actuator, plan.actuator, plan.serial)) {
+    throw ConfigError("The motion plan is for the " + other->kind + " " + other->its +
+                      ", not for " + other->own + ".");
   }
   if (plan.coils.size() != actuator.coils.size()) {
     throw ConfigError("The motion plan excites " + std::to_string(plan.coils.size()) +

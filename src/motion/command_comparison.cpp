@@ -6,6 +6,7 @@
 
 #include "joint_track.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 
 namespace sac {
 
@@ -61,7 +62,6 @@ double CommandComparison::unseen() const {
 }
 
 double CommandComparison::jitter() const {
-  constexpr double kMedianOfNormal = 0.6745;
   const double step = usualStep(command_times_);
   std::vector<double> apart;
   for (std::size_t n = 1; n < command_times_.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "tracker_term.hpp"
 
 namespace sac {
@@ -15,7 +16,6 @@ constexpr std::size_t kEnough = 20000;
 
 /// Standard deviation of what has this one's absolute values, by their median.
 double robustStddev(std::vector<double> magnitudes) {
-  constexpr double kMedianOfNormal = 0.6745;
   if (magnitudes.empty()) {
     return 0.0;
   }

@@ -1,6 +1,7 @@
 #include "pose_candidates.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -304,6 +305,12 @@ std::vector<PoseCandidate> drawCandidates(const PlanningProblem& problem,
     takeOutUnexcited(problem, options, coordinates, candidates);
   }
   return candidates;
+}
+
+bool areApart(const PoseCandidate& one, const PoseCandidate& other, double spacing) {
+  // The trace of R_otherᵀ R is 1 + 2 cos of the angle between them.
+  const double trace = other.R_stator_rotor.cwiseProduct(one.R_stator_rotor).sum();
+  return 0.5 * (trace - 1.0) <= std::cos(spacing);
 }
 
 }  // namespace sac

@@ -35,6 +35,9 @@ struct PoseCandidate {
   std::optional<WhitenedObservation> unexcited;  ///< what effects add whatever the currents are
 };
 
+/// Whether the orientations of two poses are at least `spacing` [rad] apart.
+bool areApart(const PoseCandidate& one, const PoseCandidate& other, double spacing);
+
 /// Coordinates that a plan is to determine: all for kRefine (without poles and coils where there is
 /// no torque model), else those of the cycle.
 std::vector<Eigen::Index> plannedCoordinates(const PlanningProblem& problem);

@@ -12,6 +12,7 @@
 #include "pose_candidates.hpp"
 #include "pose_selection.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
+#include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -273,16 +274,11 @@ class Planner {
     }
     const auto worst = std::max_element(
         plan.expected.begin(), plan.expected.end(), [](const auto& a, const auto& b) {
-          return definedStddev(a) < definedStddev(b);
+          return definedStddev(a.stddev) < definedStddev(b.stddev);
         });
     plan.worst_parameter = worst->name;
     plan.worst_stddev = worst->stddev;
     plan.reached_wanted = isAllObservable(plan) && plan.worst_stddev <= options_.wanted_stddev;
-  }
-
-  /// Zero of an azimuth on the polar axis, which poses cannot tell.
-  static double definedStddev(const ParameterEstimate& estimate) {
-    return estimate.stddev < kPi ? estimate.stddev : 0.0;
   }
 
   bool isObservable(Eigen::Index coordinate) const {

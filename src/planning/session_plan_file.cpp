@@ -7,10 +7,12 @@
 #include <system_error>
 #include <vector>
 
+#include "spherical_actuator_calibration/actuator/unit_identity.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/planning/session_plan_record.hpp"
@@ -216,20 +218,31 @@ SessionPlanRecord loadSessionPlan(const std::string& path) {
   return record;
 }
 
-SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator) {
-  if (record.actuator != actuator.name) {
-    throw ConfigError("The session plan is for the actuator " + record.actuator + ", not for " +
-                      actuator.name + ".");
+namespace {
+
+void requireInWorkspace(const PlannedPose& pose, const Actuator& actuator) {
+  constexpr double kRounding = 1e-9;  // [rad] of a file
+  const double tilt = pose.joint_position.head<2>().cwiseAbs().maxCoeff();
+  if (tilt > actuator.workspace.tilt_limit + kRounding) {
+    throw ConfigError("The session plan has a pose at a tilt of " + shortNumber(tilt) +
+                      " rad, beyond the workspace's tilt_limit of " +
+                      shortNumber(actuator.workspace.tilt_limit) + " rad.");
   }
-  if (!record.serial.empty() && !actuator.serial.empty() && record.serial != actuator.serial) {
-    throw ConfigError("The session plan is for the unit " + record.serial + ", not for " +
-                      actuator.serial + ".");
+}
+
+}  // namespace
+
+SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator) {
+  if (const auto other = otherUnit(actuator, record.actuator, record.serial)) {
+    throw ConfigError("The session plan is for the " + other->kind + " " + other->its +
+                      ", not for " + other->own + ".");
   }
   const auto coils = static_cast<Eigen::Index>(actuator.coils.size());
   SessionPlan session;
   for (const PlannedPose& pose : record.plan.poses) {
     PlannedDwell dwell;
     dwell.joint_position = pose.joint_position;
+    requireInWorkspace(pose, actuator);
     for (const CoilPattern& pattern : pose.excitations()) {
       Eigen::VectorXd currents = Eigen::VectorXd::Zero(coils);
       for (const SignedCoil& signed_coil : pattern) {

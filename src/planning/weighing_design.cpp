@@ -238,13 +238,9 @@ std::vector<std::size_t> WeighingDesign::promising(const Eigen::MatrixXd& covari
 }
 
 bool WeighingDesign::keepsDistance(std::size_t candidate) const {
-  const double largest_cosine = std::cos(task_.minimum_spacing);
-  const Eigen::Matrix3d& R = candidates_[candidate].R_stator_rotor;
-  return std::none_of(poses_.begin(), poses_.end(), [&](const DesignedPose& pose) {
-    const Eigen::Matrix3d& R_other = candidates_[pose.candidate].R_stator_rotor;
-    // The trace of R_otherᵀ R is 1 + 2 cos of the angle between them.
-    return pose.candidate == candidate ||
-           0.5 * (R_other.cwiseProduct(R).sum() - 1.0) > largest_cosine;
+  return std::all_of(poses_.begin(), poses_.end(), [&](const DesignedPose& pose) {
+    return pose.candidate != candidate &&
+           areApart(candidates_[pose.candidate], candidates_[candidate], task_.minimum_spacing);
   });
 }
 

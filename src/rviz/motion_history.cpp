@@ -81,8 +81,9 @@ std::string MotionHistory::words() const {
     return words + "All joints, poles and coils are known to " + wanted + ".";
   }
   words += "Left to " + wanted + ": " + left;
-  return last_.time_left < 0.0 ? words + "."
-                               : words + formatted(", some %.0f s more.", last_.time_left);
+  return last_.time_left < 0.0
+             ? words + "."
+             : words + formatted(", some %.0f s more.", std::ceil(last_.time_left));
 }
 
 std::vector<std::string> MotionHistory::dynamics() const {

@@ -80,9 +80,7 @@ void PoseGuide::receive(const sensor_msgs::JointState& message) {
   std::array<double, 3> joints = {};
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const auto named = std::find(message.name.begin(), message.name.end(), names_[k]);
-    const auto place = named == message.name.end()
-                           ? k
-                           : static_cast<std::size_t>(std::distance(message.name.begin(), named));
+    const auto place = static_cast<std::size_t>(std::distance(message.name.begin(), named));
     if (place >= message.position.size() || !std::isfinite(message.position[place])) {
       return;
     }

@@ -31,7 +31,7 @@ class PoseGuide {
 
   /// The plan in force, and what of it is measured, instead of what was so before.
   void receive(const msg::PlanProgress& message) { poses_ = message.poses; }
-  /// Joint angles [rad]: by their names, or the first three where there are none.
+  /// Joint angles [rad] by their names; a message that lacks one tells nothing.
   void receive(const sensor_msgs::JointState& message);
   /// Orientation of a rotor without joints; of another one it tells nothing here.
   void receive(const geometry_msgs::QuaternionStamped& message);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "spherical_actuator_calibration/base/median.hpp"
+
 namespace sac {
 namespace {
 
@@ -11,13 +13,6 @@ namespace {
 constexpr double kMadToStddev = 1.4826;
 /// The same for the mean absolute deviation: √(π/2).
 constexpr double kMeanDeviationToStddev = 1.2533;
-
-/// Upper median; reorders the values.
-double takeMedian(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double meanOf(const double* begin, const double* end) {
   return std::accumulate(begin, end, 0.0) / static_cast<double>(end - begin);
@@ -108,11 +103,11 @@ MeanEstimate RobustMean::estimate() {
 
 void RobustMean::markGlitches(const std::vector<double>& series) {
   scratch_ = series;
-  const double median = takeMedian(scratch_);
+  const double median = medianOf(scratch_);
   for (double& value : scratch_) {
     value = std::abs(value - median);
   }
-  double scale = kMadToStddev * takeMedian(scratch_);
+  double scale = kMadToStddev * medianOf(scratch_);
   if (scale == 0.0) {
     // More than half of the measurements are equal: a quantised sensor. The mean deviation keeps
     // the next quantum from looking like a glitch.

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -13,8 +14,6 @@
 
 namespace sac {
 namespace {
-
-constexpr double kTwoSided95 = 1.959964;
 
 ParameterGroup groupOf(ParameterKind kind) {
   switch (kind) {

@@ -7,14 +7,12 @@
 
 #include "spherical_actuator_calibration/assessment/sample_influence.hpp"
 #include "spherical_actuator_calibration/assessment/torque_linearity.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
 namespace sac {
 namespace {
-
-/// Half width of the 95 % interval of a normal distribution, in standard deviations.
-constexpr double kInterval95 = 1.959963984540054;
 
 /// Errors in thousandths of their unit, "[mrad]"; standardized ones as they are.
 std::string errorHistory(const CycleReport& report) {
@@ -133,7 +131,7 @@ std::string coverageLine(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (row.parameter.observable && row.truth) {
       ++identified;
-      covered += std::abs(errorOf(row)) <= kInterval95 * row.parameter.stddev ? 1 : 0;
+      covered += std::abs(errorOf(row)) <= kTwoSided95 * row.parameter.stddev ? 1 : 0;
     }
   }
   if (identified == 0) {

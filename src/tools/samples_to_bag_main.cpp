@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/measurement/sample_file.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
+#include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/recording/bag_closing.hpp"
 #include "tool_main.hpp"
 
@@ -60,12 +61,13 @@ void writeSamples(const Options& options,
   parameters.header.stamp = stamp;
   parameters.header.frame_id = "stator";
   parameters.source = "nominal";
-  bag.write(options.ns + "/parameters", stamp, parameters);
+  const std::string prefix = topicPrefix(options.ns);
+  bag.write(prefix + "parameters", stamp, parameters);
   for (const Sample& sample : samples) {
     msg::CalibrationSample message = sampleToRos(sample);
     message.header.stamp = stamp;
     message.header.frame_id = "stator";
-    bag.write(options.ns + "/samples", stamp, message);
+    bag.write(prefix + "samples", stamp, message);
     stamp += ros::Duration(kSampleSpacing);
   }
 }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "covariance_record.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
@@ -14,7 +15,6 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
-#include "spherical_actuator_calibration/calibration/covariance_record.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_judge.hpp"
 #include "support/scenarios.hpp"
 

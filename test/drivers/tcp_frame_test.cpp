@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/drivers/tcp_frame.hpp"
+#include "tcp_frame.hpp"
 
 #include <string>
 #include <vector>

@@ -84,5 +84,12 @@ TEST_F(SessionPlanFile, IsRefusedWhereACoilIsMissing) {
   EXPECT_THROW(sessionOf(record_, actuator_), ConfigError);
 }
 
+TEST_F(SessionPlanFile, IsRefusedBeyondTheWorkspace) {
+  record_.plan.poses[0].joint_position[1] = -actuator_.workspace.tilt_limit;
+  EXPECT_NO_THROW(sessionOf(record_, actuator_));
+  record_.plan.poses[0].joint_position[1] -= 1e-3;
+  EXPECT_THROW(sessionOf(record_, actuator_), ConfigError);
+}
+
 }  // namespace
 }  // namespace sac

@@ -60,6 +60,13 @@ TEST_F(PoseGuideTest, TellsWhichWayToTurnInDegrees) {
   EXPECT_FALSE(guide_.here());
 }
 
+TEST_F(PoseGuideTest, JointsOfOtherNamesTellNothing) {
+  sensor_msgs::JointState message = joints(0.0, 0.01, -0.8);
+  message.name[1] = "elbow";
+  guide_.receive(message);
+  EXPECT_EQ(guide_.advice(), "Pose 1 of 2: the joint angles are silent.");
+}
+
 TEST_F(PoseGuideTest, TellsWhatIsToBeMeasuredThere) {
   guide_.receive(joints(0.11, 0.0, -1.01));
   EXPECT_EQ(guide_.here(), 0U);

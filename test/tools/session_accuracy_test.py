@@ -29,6 +29,10 @@ class KnownParameters(unittest.TestCase):
         self.parameters.poles[0].polar_stddev = math.inf
         self.assertEqual(progress.worst_stddev(self.parameters), math.inf)
 
+    def test_an_azimuth_on_the_polar_axis_does_not_count(self):
+        self.parameters.coils[0].azimuth_stddev = math.pi
+        self.assertLess(progress.worst_stddev(self.parameters), 1e-2)
+
     def test_an_azimuth_counts_as_plans_and_motions_count_it(self):
         self.parameters.poles[0].polar = math.radians(60.0)
         self.parameters.poles[0].azimuth_stddev = 1e-3

@@ -65,6 +65,10 @@ class Plans(InAFolder):
             ('"+4"', '"4"', 'pose 2: "4" is no pattern'),
             ("[2, 4]", "[2, 5]", 'pose 1: "\\+5" names a coil beyond the 4'),
             ("[2, 4]", "2", "pose 1: coils or patterns"),
+            (", coils: [2, 4]", "", "pose 1: coils or patterns"),
+            ("+1 -3", "-3 +1", "coils ascend"),
+            ("+1 -3", "+3 -3", "coils ascend"),
+            ('"+4"', '"+2"', "not among the coils"),
             ("serial:", "serial", "plan.yaml"),
         ):
             with self.subTest(new), self.assertRaisesRegex(PlanError, part):

@@ -48,6 +48,9 @@ struct SessionProgress {
   bool good = false;                          ///< and nothing else speaks against it
   std::string plan_step;  ///< of the plan or the motion that is followed; empty: none
 
+  /// Whether samples excite a coil: motion, which tells the same, comes beside them only where it
+  /// is asked for.
+  bool hasTorques() const;
   /// Whether the joint, every pole and every coil is identified.
   bool isAllIdentified() const;
 };

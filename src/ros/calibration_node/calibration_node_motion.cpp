@@ -116,7 +116,7 @@ std::string CalibrationNode::motionStep(const SessionProgress& progress) const {
   if (is_in_motion_) {
     return "A motion goes on: let it end, then call calibrate_motion.";
   }
-  if (!motion_.canBeJudged() || progress.samples > 0 || progress.isAllIdentified()) {
+  if (!motion_.canBeJudged() || progress.hasTorques() || progress.isAllIdentified()) {
     return {};
   }
   if (progress.refused) {

@@ -107,18 +107,26 @@ void RecordedTopics::requireTypes(const BagFile& file) const {
       continue;
     }
     const TopicType& type = topicTypes()[static_cast<std::size_t>(found - names_.begin())];
-    if (topic.datatype != type.datatype) {
-      throw DataError(file.path + ": " + topic.name + " is recorded as " + topic.datatype +
-                      ", but must be " + type.datatype + ".");
-    }
     // Of the parameters only the beginning is read, which is the same in every release.
     const bool reads_all = found != names_.begin() + static_cast<int>(TopicRole::kParameters);
     const bool is_earlier =
         topic.name == name(TopicRole::kSamples) && topic.md5sum == kEarlierSampleMd5;
-    if (reads_all && topic.md5sum != type.md5sum && !is_earlier) {
-      throw DataError(file.path + ": " + topic.name + " was recorded with another version of " +
-                      type.datatype + "; convert it by `rosbag fix`.");
-    }
+    const bool is_readable = !reads_all || is_earlier;
+    requireMessageType(file, topic, type.datatype, is_readable ? topic.md5sum : type.md5sum);
+  }
+}
+
+void requireMessageType(const BagFile& file,
+                        const BagTopic& topic,
+                        const std::string& datatype,
+                        const std::string& md5sum) {
+  if (topic.datatype != datatype) {
+    throw DataError(file.path + ": " + topic.name + " is recorded as " + topic.datatype +
+                    ", but must be " + datatype + ".");
+  }
+  if (topic.md5sum != md5sum) {
+    throw DataError(file.path + ": " + topic.name + " was recorded with another version of " +
+                    datatype + "; convert it by `rosbag fix`.");
   }
 }
 

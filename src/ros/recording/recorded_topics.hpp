@@ -48,6 +48,13 @@ class RecordedTopics {
   std::array<std::string, kTopicRoles> names_;
 };
 
+/// Throws DataError, naming file, topic and type, when a topic has another type, or another version
+/// of it.
+void requireMessageType(const BagFile& file,
+                        const BagTopic& topic,
+                        const std::string& datatype,
+                        const std::string& md5sum);
+
 /// CalibrationSample as releases before 0.2 recorded it: without the last fields, so many bytes.
 inline constexpr char kEarlierSampleMd5[] = "98178712bd5d9155a3f4f20d78530a4b";
 inline constexpr std::size_t kLaterSampleBytes = 40;

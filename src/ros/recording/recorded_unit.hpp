@@ -5,6 +5,8 @@
 #include <ros/serialization.h>
 #include <std_msgs/Header.h>
 
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
+
 namespace sac {
 
 /// Whose recording it is: what ActuatorParameters begins with, in every release. What follows there
@@ -14,6 +16,11 @@ struct RecordedUnit {
   std::string actuator;
   std::string serial;
 };
+
+/// Throws DataError, naming the recording, where it is of another unit than an actuator.
+void requireSameUnit(const std::string& recording,
+                     const RecordedUnit& unit,
+                     const Actuator& actuator);
 
 }  // namespace sac
 

@@ -187,7 +187,7 @@ class Reader {
       case TopicRole::kSamples:
         return recorded_samples_.add(decodeSample(message));
       case TopicRole::kParameters:
-        return requireSameUnit(decoder_.decode(message.data, parameters_));
+        return takeUnit(decoder_.decode(message.data, parameters_));
     }
   }
 
@@ -214,19 +214,9 @@ class Reader {
     }
   }
 
-  void requireSameUnit(const RecordedUnit& parameters) {
-    if (!parameters.actuator.empty() && parameters.actuator != nominal_.name) {
-      throw DataError(reading_ + ": was recorded with the actuator " + parameters.actuator +
-                      ", but the description is of " + nominal_.name + ".");
-    }
-    if (parameters.serial.empty()) {
-      return;
-    }
-    recorded_serial_ = parameters.serial;
-    if (!nominal_.serial.empty() && parameters.serial != nominal_.serial) {
-      throw DataError(reading_ + ": was recorded with the unit " + parameters.serial +
-                      ", but the description is of " + nominal_.serial + ".");
-    }
+  void takeUnit(const RecordedUnit& unit) {
+    requireSameUnit(reading_, unit, nominal_);
+    recorded_serial_ = unit.serial.empty() ? recorded_serial_ : unit.serial;
   }
 
   void complete(const std::string& files) {

@@ -25,10 +25,10 @@ void requireTopic(const BagGroup& bags, const std::string& name) {
         continue;
       }
       is_recorded = true;
-      if (topic.md5sum != ros::message_traits::md5sum<Message>()) {
-        throw DataError(file->path + ": " + name + " is recorded as " + topic.datatype +
-                        ", but must be " + ros::message_traits::datatype<Message>() + ".");
-      }
+      requireMessageType(*file,
+                         topic,
+                         ros::message_traits::datatype<Message>(),
+                         ros::message_traits::md5sum<Message>());
     }
   }
   if (!is_recorded) {
@@ -73,15 +73,7 @@ class PoseReader {
       BagReader reader({file}, {topics_.name(TopicRole::kParameters)});
       BagMessage message;
       while (reader.next(message)) {
-        const RecordedUnit& unit = decoder_.decode(message.data, unit_);
-        const bool is_other_kind = !unit.actuator.empty() && unit.actuator != actuator_.name;
-        const bool is_other_unit =
-            !unit.serial.empty() && !actuator_.serial.empty() && unit.serial != actuator_.serial;
-        if (is_other_kind || is_other_unit) {
-          throw DataError(file->path + ": was recorded with the unit " + unit.actuator + " " +
-                          unit.serial + ", but the description is of " + actuator_.name + " " +
-                          actuator_.serial + ".");
-        }
+        requireSameUnit(file->path, decoder_.decode(message.data, unit_), actuator_);
       }
     }
   }

@@ -115,13 +115,15 @@ def _pose(place, pose, coils):
     joints = pose.get("joint_position") if isinstance(pose, dict) else None
     if not isinstance(joints, list) or len(joints) != 3 or not all(map(_is_number, joints)):
         raise PlanError(f"{place}: joint_position is not of three angles [rad].")
-    patterns = pose.get("patterns")
-    if patterns is None:
-        single = pose.get("coils", [])
-        patterns = [f"+{coil}" for coil in single] if isinstance(single, list) else None
-    if not isinstance(patterns, list):
+    single, patterns = pose.get("coils"), pose.get("patterns")
+    if not isinstance(single, list) or not isinstance(patterns, (list, type(None))):
         raise PlanError(f"{place}: coils or patterns are no list.")
-    return Pose(tuple(map(float, joints)), tuple(_pattern(place, pattern, coils) for pattern in patterns))
+    if patterns is None:
+        patterns = [f"+{coil}" for coil in single]
+    found = tuple(_pattern(place, pattern, coils) for pattern in patterns)
+    if any(abs(coil) not in single for pattern in found for coil in pattern):
+        raise PlanError(f"{place}: a pattern excites a coil that is not among the coils.")
+    return Pose(tuple(map(float, joints)), found)
 
 
 def _pattern(place, text, coils):
@@ -129,6 +131,8 @@ def _pattern(place, text, coils):
     if not words or not all(map(SIGNED_COIL.fullmatch, words)):
         raise PlanError(f'{place}: "{text}" is no pattern such as "+1 -4".')
     pattern = tuple(map(int, words))
+    if any(abs(one) >= abs(next_one) for one, next_one in zip(pattern, pattern[1:])):
+        raise PlanError(f'{place}: "{text}": coils ascend, each at most once.')
     if max(map(abs, pattern)) > coils:
         raise PlanError(f'{place}: "{text}" names a coil beyond the {coils} that there are.')
     return pattern

@@ -65,10 +65,10 @@ def joint_stddev(joints):
 
 def worst_stddev(parameters):
     """[rad] of the parameter of an ActuatorParameters that is known worst, as plans count it; infinite where one is not
-    known."""
-    joints = [max(joint.offset_stddev, *joint.axis_stddev) for joint in parameters.joints]
-    axes = [max(axis.polar_stddev, axis.azimuth_stddev) for axis in [*parameters.poles, *parameters.coils]]
-    return max(joints + axes)
+    known. An azimuth on the polar axis, which nothing can tell, is stated with half a turn, and does not count."""
+    stated = [stddev for joint in parameters.joints for stddev in (joint.offset_stddev, *joint.axis_stddev)]
+    stated += [s for axis in [*parameters.poles, *parameters.coils] for s in (axis.polar_stddev, axis.azimuth_stddev)]
+    return max(0.0 if math.pi <= stddev < math.inf else stddev for stddev in stated)
 
 
 def in_words(pattern):
