@@ -15,6 +15,10 @@ constexpr double kLongestApproach = 30.0;
 constexpr double kThere = 1e-3;
 /// Of a rotor that counts as resting [rad/s].
 constexpr double kResting = 0.1;
+/// By a model that is far off a rotor without friction may never rest, and is held all the same:
+/// after so long [s] it may begin with as much [rad/s].
+constexpr double kPatience = 10.0;
+constexpr double kRestless = 0.6;
 /// Shares of the limit of the tracking error between which the excitation fades.
 constexpr double kFadeBegin = 0.4;
 constexpr double kFadeEnd = 0.8;
@@ -64,7 +68,8 @@ std::string MotionRun::approach(double step,
                                 double reference_rate,
                                 double rotor_rate) {
   waited_ += step;
-  const bool is_there = distance < kThere && reference_rate < kThere && rotor_rate < kResting;
+  const double resting = waited_ < kPatience ? kResting : kRestless;
+  const bool is_there = distance < kThere && reference_rate < kThere && rotor_rate < resting;
   settled_ = is_there ? settled_ + step : 0.0;
   if (settled_ >= kSettling) {
     progress_.phase = MotionPhase::kMotion;

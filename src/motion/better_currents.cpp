@@ -1,7 +1,11 @@
 #include "spherical_actuator_calibration/motion/better_currents.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "joint_track.hpp"
+#include "stamp_times.hpp"
 
 namespace sac {
 namespace {
@@ -22,6 +26,15 @@ bool fitsAsWell(const MotionEstimate& other, const MotionEstimate& found) {
          other.summary.window_chi_square < kAsWell * found.summary.window_chi_square;
 }
 
+/// Steps that commands do not tell well come at a beat of the driver's own, which may be anywhere
+/// between two samples: residuals of the search know nothing of that.
+CommandResponse atLeastUncertain(CommandResponse response, const MotionStreams& streams) {
+  const StampTimes times(streams.current_stamps.front(), streams.current_stamps);
+  const double anywhere = usualStep(times) / std::sqrt(12.0);
+  response.lateness_stddev = std::max(response.lateness_stddev, anywhere);
+  return response;
+}
+
 }  // namespace
 
 std::optional<MotionRecording> byCommands(const MotionRecording& recording) {
@@ -35,7 +48,7 @@ std::optional<MotionRecording> byCommands(const MotionRecording& recording) {
   for (MotionStreams& streams : result.spans) {
     if (streams.commanded) {
       streams.currents = streams.commanded->currents;
-      streams.response = streams.commanded->response;
+      streams.response = atLeastUncertain(streams.commanded->response, streams);
       streams.commanded.reset();
     }
   }

@@ -36,6 +36,25 @@ MotionPlan examplePlan(double excitation) {
   return plan;
 }
 
+/// Seconds of an approach to the begin by a rotor of such a rate [rad/s], until it is left.
+double approachTime(double rotor_rate) {
+  constexpr double kStep = 0.01;
+  MotionRun run(examplePlan(0.0));
+  double time = 0.0;
+  while (run.phase() == MotionPhase::kApproach &&
+         run.approach(kStep, 0.0, 0.0, rotor_rate).empty()) {
+    time += kStep;
+  }
+  return time;
+}
+
+TEST(MotionApproach, WaitsForARotorThatRestsOrNearlyDoes) {
+  EXPECT_LT(approachTime(0.05), 1.0);
+  EXPECT_NEAR(approachTime(0.5), 10.5, 0.1);
+  // The control cannot hold it.
+  EXPECT_NEAR(approachTime(0.7), 30.0, 0.1);
+}
+
 /// The controller knows the drawing, the rotor is another.
 class MotionFollowingTest : public ::testing::Test {
  protected:

@@ -31,6 +31,9 @@ class Recording:
     def __init__(self, _ns, folder):
         self._bag = folder / "recordings" / "1.bag"
 
+    def wait_until_up(self):
+        """At once."""
+
     def close(self):
         self._bag.parent.mkdir()
         self._bag.touch()
@@ -45,6 +48,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.description = CALIBRATED
         self.started = []  # programs with their arguments
         self.fails = lambda command: False
+        self.grade = "good"
         self.tells_nothing = False  # the recordings, of the parameters
         self.module = loaded()
         for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
@@ -60,17 +64,21 @@ class CalibrateByMotion(unittest.TestCase):
         self.started.append(words)
         if words[0] == "calibrate_bag" and not self.tells_nothing:
             pathlib.Path(words[words.index("--output") + 1]).touch()
+            report = pathlib.Path(words[words.index("--report") + 1]) / "report.yaml"
+            report.parent.mkdir()
+            report.write_text(f"calibration_report: {{verdict: {{grade: {self.grade}}}}}")
         return int(self.fails(words))
 
     def run_with(self, *arguments):
-        """Its status, or the error; and what it says."""
+        """Its status, and what it says."""
         options = self.module.parse(["--actuator", "A.yaml", "--directory", str(self.folder), *arguments])
         terminal = mock.Mock()
-        try:
-            result = self.module.run(options, self.module.begins_gently(options, self.description), terminal)
-        except RuntimeError as error:
-            result = str(error)
-        return result, " ".join(call.args[0] for call in terminal.say.call_args_list)
+        status = self.module.carried_out(options, self.description, terminal)
+        return status, " ".join(call.args[0] for call in terminal.say.call_args_list)
+
+    def loses_first(self, rotors):
+        """As many motions lose the rotor, before one does not."""
+        self.fails = lambda words: LOST if words[0] == "run_motion" and len(self.of_program("run_motion")) <= rotors else 0
 
     def of_program(self, name):
         return [words for words in self.started if words[0] == name]
@@ -80,7 +88,8 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertEqual([words[0] for words in self.started], ["plan_motion", "run_motion", "calibrate_bag"])
         self.assertIn("--duration=60.0", self.started[0])
-        self.assertNotIn("--parameters", self.started[1])
+        # What is in force may be another one.
+        self.assertEqual(self.started[1][self.started[1].index("--parameters") + 1], "A.yaml")
 
     def test_begins_gently_and_goes_on_by_what_that_tells(self):
         status, _ = self.run_with("--gently", "--plan-option=--joint-rate=1000", "--plan-option=--tilt=0.1")
@@ -91,7 +100,7 @@ class CalibrateByMotion(unittest.TestCase):
         # What the user says counts for both, and stands once.
         self.assertEqual([word for word in first if "--tilt" in word], ["--tilt=0.1"])
         self.assertTrue({"--duration=10.0", "--rate=1.5", "--excitation=0.05", "--joint-rate=1000"} <= set(first))
-        self.assertNotIn("--parameters", slow)
+        self.assertEqual(slow[slow.index("--parameters") + 1], "A.yaml")
         self.assertEqual(plan[plan.index("--actuator") + 1], gentle)
         self.assertTrue({"--duration=60.0", "--joint-rate=1000", "--tilt=0.1"} <= set(plan))
         self.assertNotIn("--rate=1.5", plan)
@@ -135,7 +144,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertIn("press Enter", said)
 
     def test_a_rotor_lost_in_the_gentle_motion_moves_again_so(self):
-        self.fails = lambda words: LOST if words[0] == "run_motion" and "--parameters" not in words else 0
+        self.loses_first(1)
         status, _ = self.run_with("--gently", "--fixture", "lab")
         self.assertEqual(status, 0)
         gentle = self.folder / "gentle"
@@ -147,14 +156,16 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertEqual([words[-n:] for n, words in enumerate(self.of_program("calibrate_bag"), 1)], [bags[:1], bags[:2], bags])
 
     def test_a_motion_that_fails_loses_nothing_that_was_recorded(self):
-        self.fails = lambda words: words[0] == "run_motion" and "--parameters" in words
-        error, said = self.run_with("--gently")
-        self.assertEqual(error, "The motion failed.")
+        self.fails = lambda words: words[0] == "run_motion" and len(self.of_program("run_motion")) == 2
+        status, said = self.run_with("--gently")
+        self.assertEqual(status, 1)
+        self.assertIn("The motion failed.", said)
+        self.assertIn("rosrun spherical_actuator_calibration calibrate_bag", said)
         self.assertIn(f"{self.folder}/gentle/recordings/1.bag {self.folder}/recordings/1.bag", said)
         self.assertEqual(len(self.of_program("run_motion")), 2)
 
     def test_a_lost_rotor_moves_again_by_what_was_told_until_then(self):
-        self.fails = lambda words: LOST if words[0] == "run_motion" and "--parameters" not in words else 0
+        self.loses_first(1)
         status, said = self.run_with("--fixture", "lab")
         self.assertEqual(status, 0)
         (plan,), (first, again), (alone, both) = map(self.of_program, ("plan_motion", "run_motion", "calibrate_bag"))
@@ -171,25 +182,67 @@ class CalibrateByMotion(unittest.TestCase):
 
     def test_a_rotor_that_is_lost_twice_ends_it(self):
         self.fails = lambda words: LOST if words[0] == "run_motion" else 0
-        error, said = self.run_with("--fixture", "lab")
-        self.assertIn("--gently", error)
+        status, said = self.run_with("--fixture", "lab")
+        self.assertEqual(status, 1)
+        self.assertIn("--gently", said)
         self.assertEqual(len(self.of_program("run_motion")), 2)
         self.assertIn(f"{self.folder}/again/recordings/1.bag {self.folder}/recordings/1.bag", said)
 
     def test_a_loss_that_tells_nothing_is_the_end(self):
         self.fails = lambda words: LOST if words[0] == "run_motion" else 0
         self.tells_nothing = True
-        error, said = self.run_with("--fixture", "lab")
-        self.assertIn("no calibration to go on by", error)
+        status, said = self.run_with("--fixture", "lab")
+        self.assertEqual(status, 1)
+        self.assertIn("no calibration to go on by", said)
         self.assertEqual(len(self.of_program("run_motion")), 1)
         self.assertIn(f"{self.folder}/recordings/1.bag", said)
 
     def test_a_lost_rotor_that_nothing_holds_is_left_alone(self):
         self.fails = lambda words: LOST if words[0] == "run_motion" else 0
-        error, said = self.run_with()
-        self.assertIn("Bring it to rest", error)
+        status, said = self.run_with()
+        self.assertEqual(status, 1)
+        self.assertIn("Bring it to rest", said)
         self.assertEqual(len(self.of_program("run_motion")), 1)
         self.assertIn(f"{self.folder}/recordings/1.bag", said)
+
+    def test_a_drawing_does_not_replace_what_is_in_force(self):
+        self.description = DRAWING
+        self.run_with("--no-gently")
+        self.assertNotIn("--parameters", self.of_program("run_motion")[0])
+
+    def test_what_contradicts_is_no_success(self):
+        self.grade = "contradicted"
+        status, said = self.run_with()
+        self.assertEqual(status, 1)
+        self.assertIn("What was recorded can be calibrated from", said)
+
+    def test_an_interrupt_tells_what_was_recorded(self):
+        def interrupt(words):
+            if words[0] == "calibrate_bag":
+                raise KeyboardInterrupt
+            return 0
+
+        self.fails = interrupt
+        status, said = self.run_with()
+        self.assertEqual(status, 1)
+        self.assertIn("Interrupted.", said)
+        self.assertIn(f"{self.folder}/recordings/1.bag", said)
+
+    def test_an_interrupt_at_the_begin_ends_the_recording(self):
+        with mock.patch.object(Recording, "wait_until_up", side_effect=KeyboardInterrupt):
+            status, _ = self.run_with()
+        self.assertEqual(status, 1)
+        self.assertTrue((self.folder / "recordings" / "1.bag").exists())
+
+    def test_files_of_others_are_left_alone(self):
+        self.folder.mkdir()
+        (self.folder / "recordings").mkdir()
+        (self.folder / "recordings" / "1.bag").touch()
+        status, said = self.run_with()
+        self.assertEqual(status, 1)
+        self.assertIn("is not empty", said)
+        self.assertNotIn("What was recorded", said)
+        self.assertFalse(self.started)
 
     def test_begins_gently_without_a_plan_only(self):
         with self.assertRaises(SystemExit) as refused, mock.patch("sys.stderr"):
