@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/motion/better_currents.hpp"
 
+#include <cmath>
 #include <memory>
 #include <numeric>
 
@@ -61,6 +62,19 @@ TEST_F(BetterCurrents, AreThoseThatWereSampledWhereCommandsFitWorse) {
   EXPECT_EQ(problem_.recording, &recording_);
   EXPECT_FALSE(found.summary.response);
   EXPECT_LT(found.summary.window_chi_square, 1.3);
+}
+
+// A driver that writes at a beat of its own makes its steps anywhere between two samples.
+TEST_F(BetterCurrents, TellADelayNoBetterThanToTheTimeBetweenSamples) {
+  MotionStreams& streams = recording_.spans.front();
+  const double interval = secondsBetween(streams.current_stamps[0], streams.current_stamps[1]);
+  const auto told = [&](double lateness_stddev) {
+    streams.commanded = std::make_shared<CommandedCurrents>(
+        CommandedCurrents{streams.currents, {1e-3, 2e-3, lateness_stddev}});
+    return byCommands(recording_)->spans.front().response->lateness_stddev;
+  };
+  EXPECT_NEAR(told(1e-5), interval / std::sqrt(12.0), 0.01 * interval);
+  EXPECT_EQ(told(interval), interval);
 }
 
 TEST_F(BetterCurrents, AreThoseThatThereAre) {
