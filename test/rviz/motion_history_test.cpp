@@ -45,7 +45,7 @@ TEST(MotionHistory, KeepsWhatWasToldAfterEachWindow) {
   EXPECT_EQ(history.words(),
             "6.2 s of motion; misfit over noise, squared: 1.02. Left to 0.100 mrad: 4 of 9 joints "
             "(joints_least: 1.000 mrad), 4 of 9 poles (poles_least: 1.000 mrad), 4 of 9 coils "
-            "(coils_least: 1.000 mrad), some 7 s more.");
+            "(coils_least: 1.000 mrad), some 8 s more.");
 }
 
 TEST(MotionHistory, TellsWhenNothingIsLeft) {
