@@ -12,7 +12,6 @@
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
-#include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 
 namespace sac {
 namespace {
@@ -279,7 +278,7 @@ PlannedMotionResult planMotion(const Actuator& actuator,
   const Eigen::VectorXd stddevs = expectedStddevs(model, rotor, faded, options.sensors, 2);
   for (Eigen::Index p = 0; p < stddevs.size(); ++p) {
     result.record.expected.push_back({model.space().name(p), stddevs[p]});
-    if (definedStddev(stddevs[p]) > result.worst_stddev) {
+    if (stddevs[p] > result.worst_stddev) {
       result.worst_stddev = stddevs[p];
       result.worst_parameter = model.space().name(p);
     }
