@@ -157,7 +157,7 @@ void CoilDriver::observe(const AmplifierReading& reading, const BeatClock& clock
   supervisor_.observe(reading.currents, end - reading.duration, end);
   is_measured_ = true;
   result.measured = reading.currents;
-  result.reading_time = reading.duration;
+  result.measured_at = end - 0.5 * reading.duration;
 }
 
 void CoilDriver::forget() {

@@ -28,8 +28,8 @@ class CoilDriver {
     std::optional<Eigen::VectorXd> measured;  ///< currents [A]; nothing when they could not be read
     std::string zero_reason;  ///< why zero is set; empty while a command is followed
     bool fault = false;       ///< the device is the reason, not the want of commands
-    /// That reading the currents took, at the end of the beat [s].
-    double reading_time = 0.0;
+    /// The middle of the request that read the currents [s].
+    double measured_at = 0.0;
     /// Of a command when it was set for the first time, since its stamp [s].
     std::optional<double> command_age = std::nullopt;
   };

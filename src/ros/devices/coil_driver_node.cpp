@@ -199,7 +199,8 @@ void CoilDriverNode::beat() {
     const CoilDriver::Beat beat = driver_.beat(begin);
     const double end = steadySeconds();
     if (beat.measured) {
-      publish(*beat.measured, timeBefore(ros::Time::now(), 0.5 * beat.reading_time));
+      // What the beat did since it read them must not make the stamp late.
+      publish(*beat.measured, timeBefore(ros::Time::now(), steadySeconds() - beat.measured_at));
       timing_.add({begin, end, beat.command_age});
     } else {
       timing_.interrupt();
