@@ -10,6 +10,7 @@
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 /// Collects what speaks for and against one session.
@@ -152,8 +153,9 @@ class CalibrationGrader::Examiner {
   /// decides where joints and poles are.
   std::string confoundedRegistration(const std::vector<ParameterEstimate>& parameters) const {
     constexpr double kSignificant = 5.0;  // standard deviations
-    for (const auto& [found, other] : {std::pair{"torque_registration", "marker_registration"},
-                                       std::pair{"marker_registration", "torque_registration"}}) {
+    for (const auto& [found, other] :
+         {std::pair{effect_name::kTorqueRegistration, effect_name::kMarkerRegistration},
+          std::pair{effect_name::kMarkerRegistration, effect_name::kTorqueRegistration}}) {
       const EffectSelection& effects = session_.config().effects;
       if (!effects[found] || effects.stddev(found) > 0.0 || effects[other]) {
         continue;

@@ -14,12 +14,13 @@
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 namespace {
 
 constexpr std::int64_t kLargestCount = 1'000'000;
-constexpr char kHarmonics[] = "encoder_harmonics";  // of all joints, or a list of joints
+constexpr auto kHarmonics = effect_name::kEncoderHarmonics;  // of all joints, or a list of joints
 
 std::string wordOf(MapUse use) {
   switch (use) {
@@ -310,9 +311,12 @@ void validate(const CalibrationConfig& config) {
 
 void stateRegistration(CalibrationConfig& config, const RegistrationUncertainty& registration) {
   config.registration = registration;
-  config.effects.setStddev("tracker_registration", registration.stator_tracker.value_or(0.0));
-  config.effects.setStddev("marker_registration", registration.rotor_marker.value_or(0.0));
-  config.effects.setStddev("torque_registration", registration.rotor_ft_sensor.value_or(0.0));
+  config.effects.setStddev(effect_name::kTrackerRegistration,
+                           registration.stator_tracker.value_or(0.0));
+  config.effects.setStddev(effect_name::kMarkerRegistration,
+                           registration.rotor_marker.value_or(0.0));
+  config.effects.setStddev(effect_name::kTorqueRegistration,
+                           registration.rotor_ft_sensor.value_or(0.0));
 }
 
 CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& name) {

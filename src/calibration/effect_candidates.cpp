@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 namespace {
@@ -84,7 +85,9 @@ std::vector<EffectCandidate> effectCandidates(const FurtherColumns& columns) {
 
 std::vector<StepCandidate> stepCandidates(const FurtherColumns& columns) {
   std::vector<StepCandidate> candidates;
-  for (const char* name : {"marker_registration", "tracker_registration", "torque_registration"}) {
+  for (const char* name : {effect_name::kMarkerRegistration,
+                           effect_name::kTrackerRegistration,
+                           effect_name::kTorqueRegistration}) {
     const Eigen::Index first = columns.first(name);
     if (first >= 0) {
       candidates.push_back({name, first, 3});

@@ -13,6 +13,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/motion/better_currents.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 #include "spherical_actuator_calibration/motion/silent_coils.hpp"
@@ -103,7 +104,7 @@ bool hasStrengths(const ParameterSpace& space) {
 /// is when it is 0 itself. Nothing: neither.
 std::optional<double> strengthOrInertia(const ParameterSpace& space, Eigen::Index effect) {
   const PlacedEffect& placed = space.effects().at(effect);
-  if (placed.name == "rotor_inertia") {
+  if (placed.name == effect_name::kRotorInertia) {
     return effect - placed.first < 3 ? std::optional<double>(0.0) : std::nullopt;
   }
   const bool is_strength =

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 namespace {
@@ -24,7 +25,8 @@ std::optional<Eigen::Matrix3d> toldInertia(const CycleReport& report) {
   Eigen::Matrix3d inertia;
   for (Eigen::Index a = 0; a < 3; ++a) {
     for (Eigen::Index b = a; b < 3; ++b) {
-      const std::string name = std::string("rotor_inertia/") + kAxes[a] + kAxes[b];
+      const std::string name =
+          (std::string(effect_name::kRotorInertia) + "/") + kAxes[a] + kAxes[b];
       const ParameterEstimate* const moment = told(report, name);
       // A reference that is held has its nominal value.
       const bool is_reference = a == 2;
@@ -49,15 +51,15 @@ ToldDynamics toldDynamics(const std::vector<CycleReport>& reports) {
   }
   ToldDynamics dynamics;
   dynamics.inertia = toldInertia(*motion);
-  const ParameterEstimate* const viscous = told(*motion, "viscous_friction");
-  const ParameterEstimate* const coulomb = told(*motion, "coulomb_friction");
+  const ParameterEstimate* const viscous = told(*motion, effect_name::kViscousFriction);
+  const ParameterEstimate* const coulomb = told(*motion, effect_name::kCoulombFriction);
   if (viscous != nullptr && coulomb != nullptr) {
     dynamics.friction = {viscous->value, coulomb->value};
   }
   Eigen::Vector3d unbalance;
   for (Eigen::Index a = 0; a < 3; ++a) {
     const ParameterEstimate* const moment =
-        told(*motion, std::string("rotor_unbalance/") + kAxes[a]);
+        told(*motion, (std::string(effect_name::kRotorUnbalance) + "/") + kAxes[a]);
     if (moment == nullptr) {
       return dynamics;
     }

@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 #include "spherical_actuator_calibration/motion/silent_coils.hpp"
 #include "wider_space.hpp"
@@ -19,14 +20,12 @@
 namespace sac {
 namespace {
 
-constexpr char kCoilGains[] = "coil_gains";
-constexpr char kPoleGains[] = "pole_gains";
-
 /// Places of the gains of an effect, those of the second pole or coil on: all are relative to the
 /// first one, as motion tells only the ratio of strength and inertia.
 std::vector<Eigen::Index> gainsOf(const ParameterSpace& space, const std::string& effect) {
   const auto count =
-      static_cast<Eigen::Index>(effect == kCoilGains ? space.coils() : space.poles()) - 1;
+      static_cast<Eigen::Index>(effect == effect_name::kCoilGains ? space.coils() : space.poles()) -
+      1;
   std::vector<Eigen::Index> gains;
   for (const PlacedEffect& placed : space.effects().effects()) {
     for (Eigen::Index n = placed.size() - count; placed.name == effect && n < placed.size(); ++n) {
@@ -39,7 +38,8 @@ std::vector<Eigen::Index> gainsOf(const ParameterSpace& space, const std::string
 /// What a first pole has for itself is no question: others are relative to it.
 void fixFirst(const ParameterSpace& space, ParameterBelief& prior) {
   for (const PlacedEffect& placed : space.effects().effects()) {
-    if (placed.name == kPoleGains && placed.size() == static_cast<Eigen::Index>(space.poles())) {
+    if (placed.name == effect_name::kPoleGains &&
+        placed.size() == static_cast<Eigen::Index>(space.poles())) {
       prior.covariance.row(space.effect() + placed.first).setZero();
       prior.covariance.col(space.effect() + placed.first).setZero();
     }
@@ -103,7 +103,7 @@ MotionEstimate withGains(const MotionProblem& problem,
   for (const Eigen::Index p : problem.free) {
     free.push_back(places[static_cast<std::size_t>(p)]);
   }
-  for (const char* effect : {kCoilGains, kPoleGains}) {
+  for (const char* effect : {effect_name::kCoilGains, effect_name::kPoleGains}) {
     const std::vector<Eigen::Index> gains = gainsOf(space, effect);
     free.insert(free.end(), gains.begin(), gains.end());
   }
@@ -125,16 +125,16 @@ std::string unevenStrengths(const MotionProblem& problem,
                             const CalibrationConfig& config) {
   constexpr double kSignificance = 1e-5;
   EffectSelection selection = withMotionEffects(config.effects);
-  selection[kCoilGains] = true;
-  selection[kPoleGains] = true;
+  selection[effect_name::kCoilGains] = true;
+  selection[effect_name::kPoleGains] = true;
   const CalibrationModel wide(ParameterSpace(problem.model->space().nominal(), selection));
   const MotionEstimate found = withGains(problem, x, wide, silent, config);
   if (found.estimate.termination != Termination::kConverged) {
     return {};
   }
   const ParameterBelief& belief = found.estimate.belief;
-  const Differences coils = differencesOf(belief, gainsOf(wide.space(), kCoilGains));
-  const Differences poles = differencesOf(belief, gainsOf(wide.space(), kPoleGains));
+  const Differences coils = differencesOf(belief, gainsOf(wide.space(), effect_name::kCoilGains));
+  const Differences poles = differencesOf(belief, gainsOf(wide.space(), effect_name::kPoleGains));
   const bool are_coils = coils.probability <= poles.probability;
   const Differences& worst = are_coils ? coils : poles;
   if (worst.probability > kSignificance) {
@@ -149,7 +149,7 @@ std::string unevenStrengths(const MotionProblem& problem,
       static_cast<std::size_t>(numberOf(worst.number)),
       kPercent * worst.difference,
       kPercent * worst.stddev,
-      are_coils ? kCoilGains : kPoleGains,
+      are_coils ? effect_name::kCoilGains : effect_name::kPoleGains,
       are_coils ? "amplifiers" : "magnets");
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 namespace {
@@ -18,7 +19,7 @@ double usualSize(const std::string& effect, std::size_t poses) {
   const std::string gain = "/gain";
   const bool is_gain = effect.size() > gain.size() &&
                        effect.compare(effect.size() - gain.size(), gain.size(), gain) == 0;
-  const bool is_frame = effect == "torque_registration" && poses < kManyPoses;
+  const bool is_frame = effect == effect_name::kTorqueRegistration && poses < kManyPoses;
   return is_frame ? kFrame : (is_gain ? kStrength : 0.0);
 }
 

@@ -10,6 +10,7 @@
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "strength_screen.hpp"
@@ -36,7 +37,9 @@ struct Explanation {
   std::vector<ParameterEstimate> estimates;  ///< its own values
 
   /// A sensor that is turned has one name, however little it is.
-  std::string name() const { return cause == "torque_registration" ? "torque_frame" : cause; }
+  std::string name() const {
+    return cause == effect_name::kTorqueRegistration ? "torque_frame" : cause;
+  }
   /// Bayesian information criterion: what the samples tell, less what so much freedom gains.
   double score() const {
     const double values = kValuesOfObservation * static_cast<double>(fit.squared_misfits.size());
@@ -132,7 +135,7 @@ class Explainer {
       }
     }
     one.freedom = static_cast<double>(one.estimates.size());
-    if (one.cause == "pole_gains" || one.cause == "coil_gains") {
+    if (one.cause == effect_name::kPoleGains || one.cause == effect_name::kCoilGains) {
       tryStrengths(space, one, covariance);
     }
     tried_.push_back(std::move(one));
@@ -146,7 +149,7 @@ class Explainer {
     for (std::size_t n = 0; n < std::min(strengths.size(), kMostStrengths); ++n) {
       const auto [index, strength] = strengths[n];
       const double tolerance = config_.tolerance.effect;
-      if (all.cause == "pole_gains") {
+      if (all.cause == effect_name::kPoleGains) {
         tryFactor(poleGain(index, strength, tolerance), "pole_" + numberText(index) + "/gain");
       } else {
         tryFactor(coilGain(index, strength, tolerance), "coil_" + numberText(index) + "/gain");
@@ -268,11 +271,11 @@ class Explainer {
       values[n] = -one.estimates[static_cast<std::size_t>(n)].value;
     }
     std::string sentence;
-    if (one.cause == "torque_registration") {
+    if (one.cause == effect_name::kTorqueRegistration) {
       sentence = torqueRotation(values, 0.0).sentence(values);
-    } else if (one.cause == "marker_registration") {
+    } else if (one.cause == effect_name::kMarkerRegistration) {
       sentence = markerRotation(0.0).sentence(values);
-    } else if (one.cause == "tracker_registration") {
+    } else if (one.cause == effect_name::kTrackerRegistration) {
       sentence = trackerRotation(0.0).sentence(values);
     }
     return sentence.empty() ? "M" + model : capitalised(sentence) + " Or m" + model;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "predicted_torques.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "torque_hypotheses.hpp"
 
@@ -54,7 +55,7 @@ std::vector<std::pair<std::size_t, double>> outstandingStrengths(
     const Eigen::MatrixXd& covariance) {
   const Eigen::Index first = space.effect() + space.effects().first(effect);
   const Eigen::Index size = space.effects().at(first - space.effect()).size();
-  const std::size_t count = effect == "pole_gains" ? space.poles() : space.coils();
+  const std::size_t count = effect == effect_name::kPoleGains ? space.poles() : space.coils();
   // Where other strengths are modelled, the first coil is their reference and has none.
   const std::size_t first_index = count - static_cast<std::size_t>(size);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(size));
@@ -83,7 +84,7 @@ std::vector<ScreenedCandidate> screenStrengths(const WiringCase& described,
   if (allFit(fitted, config)) {
     return candidates;
   }
-  for (const char* effect : {"pole_gains", "coil_gains"}) {
+  for (const char* effect : {effect_name::kPoleGains, effect_name::kCoilGains}) {
     EffectSelection effects;
     effects[effect] = true;
     const ParameterSpace space(described.actuator, effects);
@@ -96,7 +97,7 @@ std::vector<ScreenedCandidate> screenStrengths(const WiringCase& described,
     for (std::size_t n = 0; n < std::min(kMostTried, strengths.size()); ++n) {
       const auto [index, strength] = strengths[n];
       const double tolerance = config.tolerance.effect;
-      const bool is_pole = std::string(effect) == "pole_gains";
+      const bool is_pole = std::string(effect) == effect_name::kPoleGains;
       candidates.push_back(
           {{is_pole ? poleGain(index, strength, tolerance) : coilGain(index, strength, tolerance)},
            fit.log_posterior - base.log_posterior});

@@ -2,23 +2,24 @@
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
 
 MotionPlaces::MotionPlaces(const ParameterSpace& space) {
   for (const PlacedEffect& placed : space.effects().effects()) {
     const Eigen::Index place = space.effect() + placed.first;
-    if (placed.name == "rotor_inertia") {
+    if (placed.name == effect_name::kRotorInertia) {
       inertia = place;
-    } else if (placed.name == "viscous_friction") {
+    } else if (placed.name == effect_name::kViscousFriction) {
       viscous = place;
-    } else if (placed.name == "coulomb_friction") {
+    } else if (placed.name == effect_name::kCoulombFriction) {
       coulomb = place;
-    } else if (placed.name == "current_delay") {
+    } else if (placed.name == effect_name::kCurrentDelay) {
       current_delay = place;
-    } else if (placed.name == "current_dispersion") {
+    } else if (placed.name == effect_name::kCurrentDispersion) {
       current_dispersion = place;
-    } else if (placed.name == "tracker_delay") {
+    } else if (placed.name == effect_name::kTrackerDelay) {
       tracker_delay = place;
     }
   }

@@ -5,6 +5,7 @@
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
 namespace sac {
@@ -13,7 +14,7 @@ namespace {
 /// The effect that models a cause: the strength of one pole or coil is among those of all.
 std::string effectOf(const std::string& cause) {
   if (cause == "torque_frame") {
-    return "torque_registration";
+    return effect_name::kTorqueRegistration;
   }
   const std::string family = cause.substr(0, cause.find(':'));
   return family == "pole_gain" || family == "coil_gain" ? family + "s" : cause;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -13,7 +14,7 @@ namespace sac::effects {
 /// like an offset: the usual size of harmonics keeps what the samples leave open at zero.
 class EncoderHarmonics final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "encoder_harmonics";
+  static constexpr auto kName = effect_name::kEncoderHarmonics;
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kEverything;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -9,7 +10,7 @@ namespace sac::effects {
 /// the rotor's frame.
 class MarkerRegistration final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "marker_registration";
+  static constexpr auto kName = effect_name::kMarkerRegistration;
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kOrientations;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kTracker;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -8,7 +9,7 @@ namespace sac::effects {
 /// By how much later than the currents act they are stamped, by the clock of the joints.
 class CurrentDelay final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "current_delay";
+  static constexpr auto kName = effect_name::kCurrentDelay;
   static constexpr auto kUnit = "s";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
@@ -22,7 +23,7 @@ class CurrentDelay final : public LaboratoryEffect {
 /// adds half its square.
 class CurrentDispersion final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "current_dispersion";
+  static constexpr auto kName = effect_name::kCurrentDispersion;
   static constexpr auto kUnit = "s²";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
@@ -34,7 +35,7 @@ class CurrentDispersion final : public LaboratoryEffect {
 /// By how much later than it was measured an orientation is stamped, by the clock of the joints.
 class TrackerDelay final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "tracker_delay";
+  static constexpr auto kName = effect_name::kTrackerDelay;
   static constexpr auto kUnit = "s";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kTracker;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 #include "strength_reference.hpp"
@@ -11,7 +12,7 @@ namespace sac::effects {
 /// first pole has none: it is the reference of strength.
 class PoleGains final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "pole_gains";
+  static constexpr auto kName = effect_name::kPoleGains;
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

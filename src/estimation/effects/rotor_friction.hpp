@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -8,7 +9,7 @@ namespace sac::effects {
 /// b of the torque −b ω of friction on a rotor that turns with ω.
 class ViscousFriction final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "viscous_friction";
+  static constexpr auto kName = effect_name::kViscousFriction;
   static constexpr auto kUnit = "N·m·s/rad";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;
@@ -20,7 +21,7 @@ class ViscousFriction final : public LaboratoryEffect {
 /// c of −c ω/√(ω² + v²), with a small speed v.
 class CoulombFriction final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "coulomb_friction";
+  static constexpr auto kName = effect_name::kCoulombFriction;
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -10,7 +11,7 @@ namespace sac::effects {
 /// close: momentum is linear in it.
 class RotorInertia final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "rotor_inertia";
+  static constexpr auto kName = effect_name::kRotorInertia;
   static constexpr auto kUnit = "kg·m²";
   static constexpr ActsOn kActsOn = ActsOn::kMotion;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

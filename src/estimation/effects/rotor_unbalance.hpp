@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -9,7 +10,7 @@ namespace sac::effects {
 /// c of T = c × Rᵀ(−z): weight of the rotor times its centre of gravity, rotor frame.
 class RotorUnbalance final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "rotor_unbalance";
+  static constexpr auto kName = effect_name::kRotorUnbalance;
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kLoad;

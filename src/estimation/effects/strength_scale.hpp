@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -8,7 +9,7 @@ namespace sac::effects {
 /// Common relative change of all pole–coil torques, as by the temperature of the magnets.
 class StrengthScale final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "strength_scale";
+  static constexpr auto kName = effect_name::kStrengthScale;
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

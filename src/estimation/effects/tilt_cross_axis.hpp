@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -8,7 +9,7 @@ namespace sac::effects {
 /// 2×2 matrix times (q₁, q₂) added to (q₁, q₂): scale and cross-axis of the tilt sensor.
 class TiltCrossAxis final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "tilt_cross_axis";
+  static constexpr auto kName = effect_name::kTiltCrossAxis;
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kEverything;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -8,7 +9,7 @@ namespace sac::effects {
 /// Constant torque of the force/torque sensor, rotor frame.
 class TorqueBias final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "torque_bias";
+  static constexpr auto kName = effect_name::kTorqueBias;
   static constexpr auto kUnit = "N·m";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kTorqueSensor;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -11,7 +12,7 @@ namespace sac::effects {
 /// for each other.
 class TorqueCurveChange final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "torque_curve";
+  static constexpr auto kName = effect_name::kTorqueCurve;
   static constexpr auto kUnit = "1";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kActuator;

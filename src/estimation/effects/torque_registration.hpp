@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/effect_selection.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effect.hpp"
 
@@ -9,7 +10,7 @@ namespace sac::effects {
 /// torques follow the rotor's frame as the tracker sees it.
 class TorqueRegistration final : public LaboratoryEffect {
  public:
-  static constexpr auto kName = "torque_registration";
+  static constexpr auto kName = effect_name::kTorqueRegistration;
   static constexpr auto kUnit = "rad";
   static constexpr ActsOn kActsOn = ActsOn::kTorques;
   static constexpr BelongsTo kBelongsTo = BelongsTo::kTorqueSensor;
