@@ -220,37 +220,71 @@ SessionPlanRecord loadSessionPlan(const std::string& path) {
 
 namespace {
 
+void requireUnit(const SessionPlanRecord& record, const Actuator& actuator) {
+  if (const auto other = otherUnit(actuator, record.actuator, record.serial)) {
+    throw ConfigError("it is for the " + other->kind + " " + other->its + ", not for " +
+                      other->own + ".");
+  }
+}
+
 void requireInWorkspace(const PlannedPose& pose, const Actuator& actuator) {
   constexpr double kRounding = 1e-9;  // [rad] of a file
   const double tilt = pose.joint_position.head<2>().cwiseAbs().maxCoeff();
   if (tilt > actuator.workspace.tilt_limit + kRounding) {
-    throw ConfigError("The session plan has a pose at a tilt of " + shortNumber(tilt) +
-                      " rad, beyond the workspace's tilt_limit of " +
+    throw ConfigError("a tilt of " + shortNumber(tilt) +
+                      " rad is beyond the workspace's tilt_limit of " +
                       shortNumber(actuator.workspace.tilt_limit) + " rad.");
+  }
+}
+
+void requireCoils(const PlannedPose& pose, std::size_t coils) {
+  for (const CoilPattern& pattern : pose.excitations()) {
+    for (const SignedCoil& coil : pattern) {
+      if (coil.coil >= coils) {
+        throw ConfigError("it excites coil " + std::to_string(numberOf(coil.coil)) + " of the " +
+                          std::to_string(coils) + " that there are.");
+      }
+    }
+  }
+}
+
+void requireSuits(const SessionPlanRecord& record, const Actuator& actuator) {
+  requireUnit(record, actuator);
+  if (record.plan.poses.empty()) {
+    throw ConfigError("it has no pose.");
+  }
+  for (std::size_t n = 0; n < record.plan.poses.size(); ++n) {
+    try {
+      requireInWorkspace(record.plan.poses[n], actuator);
+      requireCoils(record.plan.poses[n], actuator.coils.size());
+    } catch (const ConfigError& error) {
+      throw ConfigError("pose " + std::to_string(numberOf(n)) + ": " + error.what());
+    }
   }
 }
 
 }  // namespace
 
-SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator) {
-  if (const auto other = otherUnit(actuator, record.actuator, record.serial)) {
-    throw ConfigError("The session plan is for the " + other->kind + " " + other->its +
-                      ", not for " + other->own + ".");
+SessionPlanRecord loadSessionPlanFor(const Actuator& actuator, const std::string& path) {
+  const SessionPlanRecord record = loadSessionPlan(path);
+  try {
+    requireSuits(record, actuator);
+  } catch (const ConfigError& error) {
+    throw ConfigError(path + ": " + error.what());
   }
+  return record;
+}
+
+SessionPlan loadPlannedSession(const std::string& path, const Actuator& actuator) {
+  const SessionPlanRecord record = loadSessionPlanFor(actuator, path);
   const auto coils = static_cast<Eigen::Index>(actuator.coils.size());
   SessionPlan session;
   for (const PlannedPose& pose : record.plan.poses) {
     PlannedDwell dwell;
     dwell.joint_position = pose.joint_position;
-    requireInWorkspace(pose, actuator);
     for (const CoilPattern& pattern : pose.excitations()) {
       Eigen::VectorXd currents = Eigen::VectorXd::Zero(coils);
       for (const SignedCoil& signed_coil : pattern) {
-        if (signed_coil.coil >= actuator.coils.size()) {
-          throw ConfigError("The session plan excites coil " +
-                            std::to_string(numberOf(signed_coil.coil)) +
-                            ", but coils count from 1 to " + std::to_string(coils) + ".");
-        }
         currents[static_cast<Eigen::Index>(signed_coil.coil)] = signed_coil.sign * record.current;
       }
       dwell.patterns.push_back(currents);
@@ -258,10 +292,6 @@ SessionPlan sessionOf(const SessionPlanRecord& record, const Actuator& actuator)
     session.dwells.push_back(dwell);
   }
   return session;
-}
-
-SessionPlan loadPlannedSession(const std::string& path, const Actuator& actuator) {
-  return sessionOf(loadSessionPlan(path), actuator);
 }
 
 }  // namespace sac

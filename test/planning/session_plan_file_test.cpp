@@ -33,6 +33,22 @@ class SessionPlanFile : public ::testing::Test {
     return loadSessionPlan(folder_.path("plan.yaml"));
   }
 
+  /// Carried out by the actuator.
+  SessionPlan session() {
+    writeFileAtomically(
+        folder_.path("plan.yaml"), renderSessionPlan(record_), OverwritePolicy::kReplace);
+    return loadPlannedSession(folder_.path("plan.yaml"), actuator_);
+  }
+
+  void expectRefusal(const std::string& part) {
+    try {
+      session();
+      ADD_FAILURE() << part;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(std::string(error.what()), folder_.path("plan.yaml") + ": " + part);
+    }
+  }
+
   /// The file's text with one part replaced.
   std::string textWith(const std::string& part, const std::string& other) const {
     std::string text = renderSessionPlan(record_);
@@ -55,7 +71,7 @@ TEST_F(SessionPlanFile, GivesBackPatternsAndBound) {
 }
 
 TEST_F(SessionPlanFile, IsCarriedOutWithItsSigns) {
-  const SessionPlan session = sessionOf(record_, actuator_);
+  const SessionPlan session = this->session();
   ASSERT_EQ(session.dwells.size(), 2U);
   ASSERT_EQ(session.dwells[0].patterns.size(), 2U);
   const Eigen::VectorXd& first = session.dwells[0].patterns[0];
@@ -80,15 +96,30 @@ TEST_F(SessionPlanFile, NamesThePatternThatIsNone) {
 }
 
 TEST_F(SessionPlanFile, IsRefusedWhereACoilIsMissing) {
-  record_.plan.poses[0].patterns[1][1].coil = 24;
-  EXPECT_THROW(sessionOf(record_, actuator_), ConfigError);
+  record_.plan.poses[1].coils[1] = 24;
+  expectRefusal("pose 2: it excites coil 25 of the 24 that there are.");
 }
 
 TEST_F(SessionPlanFile, IsRefusedBeyondTheWorkspace) {
   record_.plan.poses[0].joint_position[1] = -actuator_.workspace.tilt_limit;
-  EXPECT_NO_THROW(sessionOf(record_, actuator_));
-  record_.plan.poses[0].joint_position[1] -= 1e-3;
-  EXPECT_THROW(sessionOf(record_, actuator_), ConfigError);
+  EXPECT_NO_THROW(session());
+  record_.plan.poses[0].joint_position[1] = -0.625;
+  expectRefusal("pose 1: a tilt of 0.625 rad is beyond the workspace's tilt_limit of 0.6 rad.");
+}
+
+TEST_F(SessionPlanFile, IsRefusedOfAnotherUnit) {
+  record_.serial = "A8";
+  actuator_.serial = "A7";
+  expectRefusal("it is for the unit A8, not for A7.");
+  record_.serial.clear();
+  EXPECT_NO_THROW(session());
+  record_.actuator = "cube";
+  expectRefusal("it is for the actuator cube, not for " + actuator_.name + ".");
+}
+
+TEST_F(SessionPlanFile, IsRefusedWithoutPoses) {
+  record_.plan.poses.clear();
+  expectRefusal("it has no pose.");
 }
 
 }  // namespace

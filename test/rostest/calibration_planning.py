@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""The services plan_poses and missing_patterns of the calibration node."""
+"""The services plan_poses, load_plan and missing_patterns of the calibration node."""
 
+import pathlib
 import sys
 import tempfile
 import unittest
 
 import rospy
 import rostest
-from calibration_client import NODE, PACKAGE, CalibrationClient, CalibrationNode, wait_for
+from calibration_client import NODE, PACKAGE, CalibrationClient, CalibrationNode, run_tool, wait_for
 from spherical_actuator_calibration.msg import CoilPattern, PosePatterns
 from spherical_actuator_calibration.srv import PlanPoses
 
@@ -18,6 +19,7 @@ class Planning(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
+        self.folder = folder.name
         self.client = CalibrationClient()
         self.node = CalibrationNode(folder.name + "/calibration")
         self.addCleanup(self.node.stop)
@@ -93,6 +95,22 @@ class Planning(unittest.TestCase):
             wanted = [[n if i > 0.0 else -n for n, i in enumerate(each.current, 1) if i] for each in planned.patterns]
             self.assertEqual([list(pattern.coils) for pattern in there.pose.patterns], wanted)
             self.assertEqual(there.missing, there.pose.patterns)
+
+    def test_follows_a_plan_of_a_file(self):
+        path = pathlib.Path(self.folder) / "plan.yaml"
+        description = pathlib.Path(rospy.get_param("~config")) / "pm_spherical_8x24.yaml"
+        run_tool("plan_session", actuator=description, output=path, poses=4, candidates=60, patterns="weighing")
+        answer = self.client.call("load_plan", path=str(path))
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual((len(answer.poses), answer.current), (4, 2.0))
+        wait_for(lambda: len(self.client.latest("plan_progress").poses) == 4, "the plan")
+        path.write_text(path.read_text(encoding="utf-8").replace("joint_position", "position", 1), encoding="utf-8")
+        for unusable in (path, self.folder + "/none.yaml", description, "/dev/zero", ""):
+            answer = self.client.call("load_plan", path=str(unusable))
+            self.assertFalse(answer.success)
+            self.assertIn(str(unusable), answer.message)
+            self.assertEqual(answer.poses, [])
+        self.assertEqual(len(self.client.latest("plan_progress").poses), 4)
 
     def test_refuses_what_it_cannot_plan(self):
         for request, word in (

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Poses that a guided session takes from files: plans, and sessions of long ago."""
+"""Poses that a guided session takes from sessions of long ago, and goes on with."""
 
 import contextlib
 import pathlib
@@ -10,7 +10,7 @@ import unittest
 from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.options import Options
-from spherical_actuator_calibration.session_guide.plans import PlanError, read_plan, read_session
+from spherical_actuator_calibration.session_guide.plans import PlanError, read_session
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.session import Session
 from spherical_actuator_calibration.session_guide.task import Task
@@ -22,64 +22,14 @@ ACTUATOR = {
     "joints": [{"name": f"joint_{n}"} for n in (1, 2, 3)],
     "coils": [{}] * 4,
 }
-PLAN = """session_plan:
-  actuator: "sphere"
-  serial: "A7"
-  assumed:
-    current: 1.5
-  poses:
-    - {joint_position: [0.1, -0.2, 3.0], coils: [2, 4]}
-    - {joint_position: [0.0, 0.5, 0.0], coils: [1, 3, 4], patterns: ["+1 -3", "+4"]}
-    - {joint_position: [0.0, 0.0, 0.0], coils: []}
-"""
 
 
-class InAFolder(unittest.TestCase):
+class Sessions(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-
-class Plans(InAFolder):
-    def read(self, text):
-        path = self.folder / "plan.yaml"
-        path.write_text(text)
-        return read_plan(str(path), ACTUATOR)
-
-    def test_gives_poses_patterns_and_current(self):
-        plan = self.read(PLAN)
-        self.assertEqual(plan.current, 1.5)
-        self.assertEqual(plan.poses[0].joints, (0.1, -0.2, 3.0))
-        self.assertEqual([pose.excitations for pose in plan.poses], [((2,), (4,)), ((1, -3), (4,)), ()])
-
-    def test_names_what_is_wrong(self):
-        for old, new, part in (
-            ("session_plan:", "plan:", "session_plan is missing"),
-            ('"sphere"', '"cube"', "for the actuator cube, not for sphere"),
-            ('serial: "A7"', 'serial: "A8"', "serial number A8"),
-            ("1.5", "-1", "assumed/current"),
-            ("-0.2, 3.0", "3.0", "pose 1: joint_position"),
-            ("-0.2", ".nan", "pose 1: joint_position"),
-            ("0.5, 0.0", "0.6, 0.0", "pose 2 is beyond"),
-            ('"+4"', '"4"', 'pose 2: "4" is no pattern'),
-            ("[2, 4]", "[2, 5]", 'pose 1: "\\+5" names a coil beyond the 4'),
-            ("[2, 4]", "2", "pose 1: coils or patterns"),
-            (", coils: [2, 4]", "", "pose 1: coils or patterns"),
-            ("+1 -3", "-3 +1", "coils ascend"),
-            ("+1 -3", "+3 -3", "coils ascend"),
-            ('"+4"', '"+2"', "not among the coils"),
-            ("serial:", "serial", "plan.yaml"),
-        ):
-            with self.subTest(new), self.assertRaisesRegex(PlanError, part):
-                self.read(PLAN.replace(old, new, 1))
-
-    def test_a_file_that_is_not_there(self):
-        with self.assertRaisesRegex(PlanError, "none.yaml"):
-            read_plan(str(self.folder / "none.yaml"), ACTUATOR)
-
-
-class Sessions(InAFolder):
     def stored(self, samples, name="sphere"):
         """A database of (joint angles, currents, held out, removed)."""
         path = str(self.folder / "session.db")

@@ -86,6 +86,7 @@ void CalibrationNode::advertiseServices() {
   advertise("diagnose", &CalibrationNode::explainSamples);
   advertise("check", &CalibrationNode::checkParameters);
   advertise("plan_poses", &CalibrationNode::planPoses);
+  advertise("load_plan", &CalibrationNode::loadPlan);
   advertise("missing_patterns", &CalibrationNode::missingPatterns);
   advertise("reset", &CalibrationNode::reset);
   advertise("restore", &CalibrationNode::restore);

@@ -15,6 +15,8 @@
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/planning/pose_planner.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_file.hpp"
+#include "spherical_actuator_calibration/planning/session_plan_record.hpp"
 #include "spherical_actuator_calibration/planning/time_budget.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
@@ -168,19 +170,35 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    StoredPlan poses;
-    for (const PlannedPose& pose : plan.poses) {
-      poses.push_back({pose.joint_position, pose.excitations(), request.validation != 0});
-    }
-    session_.setPlan(poses);
-    followPlan(poses);
-    topics_.publishPlan(plan_.get());
-    publishStatus();
+    adopt(plan, request.validation != 0);
   } catch (const std::exception& error) {
     response.success = 0;
     response.message = printable(error.what());
   }
   return true;
+}
+
+bool CalibrationNode::loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response) {
+  answer(response, [&] {
+    const Actuator& nominal = session_.calibration().model().space().nominal();
+    const SessionPlanRecord record = loadSessionPlanFor(nominal, request.path);
+    response.current = record.current;
+    response.poses = posesToRos(record.plan, record.current, nominal.coils.size());
+    adopt(record.plan, false);
+    return std::to_string(record.plan.poses.size()) + " poses of " + request.path + " are planned.";
+  });
+  return true;
+}
+
+void CalibrationNode::adopt(const PosePlan& plan, bool validation) {
+  StoredPlan poses;
+  for (const PlannedPose& pose : plan.poses) {
+    poses.push_back({pose.joint_position, pose.excitations(), validation});
+  }
+  session_.setPlan(poses);
+  followPlan(poses);
+  topics_.publishPlan(plan_.get());
+  publishStatus();
 }
 
 }  // namespace sac

@@ -31,12 +31,10 @@ PosePlanOptions planOptionsFromRos(const msg::PlanPoses::Request& request) {
   return options;
 }
 
-msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::size_t coils) {
-  msg::PlanPoses::Response message;
-  message.success = static_cast<std::uint8_t>(plan.success);
-  message.message = plan.message;
+std::vector<msg::PlannedPose> posesToRos(const PosePlan& plan, double current, std::size_t coils) {
+  std::vector<msg::PlannedPose> poses;
   for (const PlannedPose& pose : plan.poses) {
-    msg::PlannedPose& item = message.poses.emplace_back();
+    msg::PlannedPose& item = poses.emplace_back();
     for (std::size_t k = 0; k < kJoints; ++k) {
       item.joint_position[k] = pose.joint_position[static_cast<Eigen::Index>(k)];
     }
@@ -51,6 +49,14 @@ msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::si
       }
     }
   }
+  return poses;
+}
+
+msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::size_t coils) {
+  msg::PlanPoses::Response message;
+  message.success = static_cast<std::uint8_t>(plan.success);
+  message.message = plan.message;
+  message.poses = posesToRos(plan, current, coils);
   message.stddev_bound = plan.stddev_bound.value_or(0.0);
   std::transform(plan.expected.begin(),
                  plan.expected.end(),

@@ -9,11 +9,13 @@ from spherical_actuator_calibration.srv import (
     Capture,
     CapturePlanned,
     ListSamples,
+    LoadPlan,
     MissingPatterns,
     PlanPoses,
 )
 from std_srvs.srv import Trigger
 
+from .plans import Plan, PlanError
 from .progress import Measured, Pose, are_carried, excited_coils, service_of
 from .task import Task
 
@@ -24,6 +26,7 @@ SERVICES = {
     "capture": Capture,
     "capture_planned": CapturePlanned,
     "list_samples": ListSamples,
+    "load_plan": LoadPlan,
     "missing_patterns": MissingPatterns,
     "plan_poses": PlanPoses,
     "refine": Calibrate,
@@ -180,13 +183,25 @@ class Calibration:
         )
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)
-        return [Pose(tuple(p.joint_position), excitations_of(p)) for p in answer.poses], answer.message
+        return poses_from(answer.poses), answer.message
+
+    def load_plan(self, path):
+        """The Plan of plan_session in a file, which the node follows then. Raises PlanError."""
+        answer = self.call("load_plan", path=path)
+        if not answer.success:
+            raise PlanError(answer.message)
+        return Plan(tuple(poses_from(answer.poses)), answer.current)
 
 
 def message_of(pose):
     """The PosePatterns of a Pose."""
     patterns = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations]
     return PosePatterns(joint_position=list(pose.joints), patterns=patterns, validation=pose.validation)
+
+
+def poses_from(planned):
+    """Poses of PlannedPoses, in their order."""
+    return [Pose(tuple(pose.joint_position), excitations_of(pose)) for pose in planned]
 
 
 def excitations_of(planned):

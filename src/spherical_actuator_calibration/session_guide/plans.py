@@ -1,17 +1,12 @@
-"""Poses from files: a plan of plan_session, or an earlier session."""
+"""Poses that a session takes from a file, and those of an earlier session."""
 
 import dataclasses
-import math
-import re
 import sqlite3
 import statistics
 
 from ..session_tables.export import ExportError
 from ..session_tables.export import Session as StoredSession
-from ..text_files import LARGEST_CONFIGURATION, TextFileError, read_yaml
 from .progress import Pose, excited_coils, poses_of
-
-SIGNED_COIL = re.compile(r"[+-][1-9]\d{0,5}")
 
 
 class PlanError(ValueError):
@@ -24,32 +19,6 @@ class Plan:
 
     poses: tuple
     current: float
-
-
-def read_plan(path, actuator):
-    """A plan of plan_session for an actuator, given as its description. Raises PlanError."""
-    try:
-        content = read_yaml(path, LARGEST_CONFIGURATION)
-    except (OSError, TextFileError) as error:
-        raise PlanError(str(error)) from error
-    plan = content.get("session_plan") if isinstance(content, dict) else None
-    if not isinstance(plan, dict):
-        raise PlanError(f"{path}: this is no plan of plan_session: the key session_plan is missing.")
-    _require_unit(path, actuator, plan.get("actuator"), plan.get("serial"))
-    assumed = plan.get("assumed")
-    current = assumed.get("current") if isinstance(assumed, dict) else None
-    if not _is_number(current) or current <= 0.0:
-        raise PlanError(f"{path}: assumed/current is no current [A].")
-    poses = plan.get("poses")
-    if not isinstance(poses, list) or not poses:
-        raise PlanError(f"{path}: poses is no list of poses.")
-    coils = len(actuator.get("coils", []))
-    tilt = actuator["workspace"]["tilt_limit"]
-    found = tuple(_pose(f"{path}: pose {number}", pose, coils) for number, pose in enumerate(poses, 1))
-    for number, pose in enumerate(found, 1):
-        if max(abs(pose.joints[0]), abs(pose.joints[1])) > tilt + 1e-9:
-            raise PlanError(f"{path}: pose {number} is beyond the workspace's tilt_limit of {tilt} rad.")
-    return Plan(found, float(current))
 
 
 def read_session(path, actuator, threshold, tolerance):
@@ -109,34 +78,3 @@ def _require_unit(path, actuator, name, serial):
     own = actuator.get("serial", "")
     if serial and own and serial != own:
         raise PlanError(f"{path}: it is for the serial number {serial}, not for {own}.")
-
-
-def _pose(place, pose, coils):
-    joints = pose.get("joint_position") if isinstance(pose, dict) else None
-    if not isinstance(joints, list) or len(joints) != 3 or not all(map(_is_number, joints)):
-        raise PlanError(f"{place}: joint_position is not of three angles [rad].")
-    single, patterns = pose.get("coils"), pose.get("patterns")
-    if not isinstance(single, list) or not isinstance(patterns, (list, type(None))):
-        raise PlanError(f"{place}: coils or patterns are no list.")
-    if patterns is None:
-        patterns = [f"+{coil}" for coil in single]
-    found = tuple(_pattern(place, pattern, coils) for pattern in patterns)
-    if any(abs(coil) not in single for pattern in found for coil in pattern):
-        raise PlanError(f"{place}: a pattern excites a coil that is not among the coils.")
-    return Pose(tuple(map(float, joints)), found)
-
-
-def _pattern(place, text, coils):
-    words = text.split() if isinstance(text, str) else []
-    if not words or not all(map(SIGNED_COIL.fullmatch, words)):
-        raise PlanError(f'{place}: "{text}" is no pattern such as "+1 -4".')
-    pattern = tuple(map(int, words))
-    if any(abs(one) >= abs(next_one) for one, next_one in zip(pattern, pattern[1:])):
-        raise PlanError(f'{place}: "{text}": coils ascend, each at most once.')
-    if max(map(abs, pattern)) > coils:
-        raise PlanError(f'{place}: "{text}" names a coil beyond the {coils} that there are.')
-    return pattern
-
-
-def _is_number(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

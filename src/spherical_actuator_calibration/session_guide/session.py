@@ -5,7 +5,7 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 from . import progress
 from .linearity import LinearityTest
 from .open_plan import begun
-from .plans import read_plan, read_session
+from .plans import read_session
 from .pose_course import PoseCourse
 from .progress import Progress
 
@@ -27,7 +27,6 @@ class Session:
         self._course = PoseCourse(calibration, laboratory, options, task, account)
         self._linearity = LinearityTest(calibration, self._course, account, not options.skip_linearity)
         self._coils = len(actuator.get("coils", []))
-        self._plan_file = read_plan(options.plan, actuator) if options.plan else None
         self._progress = None
 
     def run(self):
@@ -88,17 +87,17 @@ class Session:
         return sum(not pose.validation for pose in done)
 
     def _poses_of_files(self):
-        plan = self._plan_file
-        if self._options.repeat:
-            threshold = self._calibration.status().current_threshold
-            tolerance = self._calibration.pose_tolerance()
-            plan = read_session(self._options.repeat, self._actuator, threshold, tolerance)
-        if plan is None:
-            return ()
-        self._course.current = plan.current
         source = self._options.plan or self._options.repeat
+        if not source:
+            return ()
+        plan = self._calibration.load_plan(source) if self._options.plan else self._earlier_session(source)
+        self._course.current = plan.current
         self._account.say(f"{len(plan.poses)} poses of {source}, coils at {plan.current:g} A.")
         return plan.poses
+
+    def _earlier_session(self, path):
+        threshold = self._calibration.status().current_threshold
+        return read_session(path, self._actuator, threshold, self._calibration.pose_tolerance())
 
     def _interrupted(self):
         """Poses of the last plan that were begun, and that the currents of this session can complete."""

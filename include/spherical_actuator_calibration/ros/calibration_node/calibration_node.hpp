@@ -16,6 +16,7 @@
 #include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
 #include <spherical_actuator_calibration/ListSamples.h>
+#include <spherical_actuator_calibration/LoadPlan.h>
 #include <spherical_actuator_calibration/MissingPatterns.h>
 #include <spherical_actuator_calibration/RemoveSample.h>
 #include <spherical_actuator_calibration/Restore.h>
@@ -40,6 +41,7 @@
 namespace sac {
 
 class PlanProgress;
+struct PosePlan;
 
 /// The calibration of one unit while it is measured: takes samples on request or by itself, runs
 /// the cycles, keeps everything in the session database, and publishes the parameters in force.
@@ -77,6 +79,9 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  bool loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response);
+  /// Keeps a plan and follows it; the caller holds the session.
+  void adopt(const PosePlan& plan, bool validation);
   bool missingPatterns(msg::MissingPatterns::Request& request,
                        msg::MissingPatterns::Response& response);
   /// What of a plan is left to be measured.

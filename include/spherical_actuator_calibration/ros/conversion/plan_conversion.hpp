@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -14,7 +15,10 @@ struct PosePlanOptions;
 /// ConfigError when it names patterns that there are not.
 PosePlanOptions planOptionsFromRos(const msg::PlanPoses::Request& request);
 
-/// Answer of the service plan_poses. `current`: of an excited coil [A]; `coils`: of the actuator.
+/// Poses of a plan. `current`: of an excited coil [A]; `coils`: of the actuator.
+std::vector<msg::PlannedPose> posesToRos(const PosePlan& plan, double current, std::size_t coils);
+
+/// Answer of the service plan_poses; arguments as of posesToRos().
 msg::PlanPoses::Response planToRos(const PosePlan& plan, double current, std::size_t coils);
 
 }  // namespace sac
