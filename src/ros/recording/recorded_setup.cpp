@@ -9,6 +9,7 @@
 
 #include "bag_files.hpp"
 #include "bag_reader.hpp"
+#include "damaged_recording.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/message_decoder.hpp"
@@ -73,15 +74,7 @@ std::optional<RecordedText> recordedText(const OpenRecordings& recordings,
     }
     const std::string place = file->path + ": " + topic;
     requireString(*found, place);
-    try {
-      readTexts(*file, topic, place, texts);
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      // rosbag and the message classes report damage by several exceptions.
-      throw DataError(place + ": the recording is damaged (" + error.what() +
-                      "); copy it again, or rescue what is in it by `rosbag reindex`.");
-    }
+    readUndamaged(place, [&] { readTexts(*file, topic, place, texts); });
   }
   return texts.empty() ? std::nullopt : std::optional(texts.front());
 }

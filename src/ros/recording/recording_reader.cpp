@@ -8,6 +8,7 @@
 
 #include "bag_files.hpp"
 #include "bag_reader.hpp"
+#include "damaged_recording.hpp"
 #include "recorded_samples.hpp"
 #include "recorded_topics.hpp"
 #include "recorded_unit.hpp"
@@ -67,7 +68,7 @@ class Reader {
                         (options_.motion == MotionUse::kWithoutTorques &&
                          !topics_.isRecorded(group, TopicRole::kTorque)));
     streams_.keepSamples(!from_samples);
-    guarded(group, [&] { readMessages(group, rolesToRead(from_samples), step); });
+    readUndamaged(pathsOf(group), [&] { readMessages(group, rolesToRead(from_samples), step); });
     streams_.finish();
     append(streams_.takeSamples());
     append(recorded_samples_.takeSamples());
@@ -92,7 +93,7 @@ class Reader {
       return {};
     }
     RecordedSamples recorded(nominal_, options_.frames);
-    guarded(group, [&] {
+    readUndamaged(pathsOf(group), [&] {
       BagReader reader(group, {topics_.name(TopicRole::kSamples)});
       BagMessage message;
       while (reader.next(message)) {
@@ -112,20 +113,6 @@ class Reader {
                                       " samples that were taken live are made again of the streams "
                                       "(of every rest: --from dwells).");
     return samples;
-  }
-
-  // rosbag and the message classes report damage by several exceptions, some of them of the
-  // standard library.
-  template <typename Action>
-  static void guarded(const BagGroup& group, const Action& action) {
-    try {
-      action();
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw DataError(pathsOf(group) + ": the recording is damaged (" + error.what() +
-                      "); copy it again, or rescue what is in it by `rosbag reindex`.");
-    }
   }
 
   std::vector<TopicRole> rolesToRead(bool from_samples) const {
@@ -203,7 +190,7 @@ class Reader {
   /// Before anything else: a recording of another unit must not be told to lack coils.
   void checkIdentity(const BagGroup& bags) {
     for (BagFile* file : bags) {
-      guarded({file}, [&] {
+      readUndamaged(file->path, [&] {
         BagReader reader({file}, {topics_.name(TopicRole::kParameters)});
         BagMessage message;
         while (reader.next(message)) {

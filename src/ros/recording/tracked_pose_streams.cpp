@@ -6,6 +6,7 @@
 
 #include "bag_files.hpp"
 #include "bag_reader.hpp"
+#include "damaged_recording.hpp"
 #include "recorded_topics.hpp"
 #include "recorded_unit.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -53,16 +54,10 @@ class PoseReader {
     for (const BagGroup& group : groupBags(bags, topics_.prefix())) {
       requireTopic<sensor_msgs::JointState>(group, joint_states_);
       requireTopic<geometry_msgs::PoseStamped>(group, tracker_poses_);
-      try {
+      readUndamaged(pathsOf(group), [&] {
         readUnit(group);
         readGroup(group, progress);
-      } catch (const Error&) {
-        throw;
-      } catch (const std::exception& error) {
-        // Damage is told by several exceptions, some of them of the standard library.
-        throw DataError(pathsOf(group) + ": the recording is damaged (" + error.what() +
-                        "); copy it again, or rescue what is in it by `rosbag reindex`.");
-      }
+      });
     }
     return {streams_.takePoses(), streams_.notes()};
   }
