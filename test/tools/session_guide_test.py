@@ -15,7 +15,7 @@ from spherical_actuator_calibration.session_guide.options import OptionError, Op
 from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
 from spherical_actuator_calibration.session_guide.task import Task
-from spherical_actuator_calibration.session_guide.terminal import Terminal
+from spherical_actuator_calibration.terminal import Terminal
 from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 TOLERANCE = 0.05  # [rad] of one pose

@@ -6,7 +6,7 @@ import threading
 from spherical_actuator_calibration.msg import MeasurementProgress
 from spherical_actuator_calibration.text_files import printable
 
-from .narrator import Narrator
+from ..narrator import Narrator
 from .task import Task
 
 KEPT = 20  # sentences that each message repeats

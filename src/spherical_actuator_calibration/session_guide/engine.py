@@ -13,7 +13,7 @@ from .calibration import Calibration
 from .job import Job, client_of
 from .laboratory import Laboratory
 from .revisions import Revisions
-from .terminal import Terminal
+from ..terminal import Terminal
 
 ENDING = 1.0  # [s] for goals under way to be answered at the end
 

@@ -10,7 +10,7 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 from spherical_actuator_calibration.text_files import printable
 
 from . import progress
-from .terminal import Terminal
+from ..terminal import Terminal
 
 MEASURING = (MeasurementProgress.TURNING, MeasurementProgress.EXCITING, MeasurementProgress.CAPTURING)
 FULL = math.radians(45.0)  # [rad] that fill the bar of a joint
