@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "motion_cycle.hpp"
+#include "motion_words.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 
@@ -65,6 +66,10 @@ bool MotionFollower::canBeJudged() const {
 
 bool MotionFollower::isEnough() const {
   return canBeJudged() && timeLeft() == 0.0;
+}
+
+std::string MotionFollower::inWords() const {
+  return motionInWords(estimate(), groups(), wanted_stddev_, timeLeft());
 }
 
 std::vector<ParameterEstimate> MotionFollower::dynamics() const {

@@ -16,8 +16,8 @@ namespace {
 constexpr Eigen::Index kReadings = 3;  // the first of the shared errors
 
 /// Rows of one stream: whitened residuals and what they lose to shared errors.
-struct Stream {
-  explicit Stream(Eigen::Index size) : sum(size) {}
+struct StreamMisfits {
+  explicit StreamMisfits(Eigen::Index size) : sum(size) {}
 
   InformationSum sum;
   double values = 0.0;  ///< less what shared errors take up
@@ -43,9 +43,9 @@ class NoiseSums {
     addAll();
   }
 
-  const Stream& orientations() const { return orientations_; }
-  const Stream& torques() const { return torques_; }
-  const Stream& readings() const { return readings_; }
+  const StreamMisfits& orientations() const { return orientations_; }
+  const StreamMisfits& torques() const { return torques_; }
+  const StreamMisfits& readings() const { return readings_; }
 
  private:
   void addAll() {
@@ -64,7 +64,7 @@ class NoiseSums {
     }
   }
 
-  Stream& streamOf(std::size_t n) {
+  StreamMisfits& streamOf(std::size_t n) {
     return problem_.observations[n].quantity == Quantity::kOrientation ? orientations_ : torques_;
   }
 
@@ -137,7 +137,7 @@ class NoiseSums {
         column += row.whitened.jacobian.col(static_cast<Eigen::Index>(own++));
       }
     }
-    Stream& stream = streamOf(row.observation);
+    StreamMisfits& stream = streamOf(row.observation);
     stream.sum.add(rest);
     stream.values += 3.0 - (row.loading * left * row.loading.transpose()).trace();
   }
@@ -148,9 +148,9 @@ class NoiseSums {
   ModelPoint point_;
   SharedErrorModel shared_;
   ChosenCoordinates all_;
-  Stream orientations_;
-  Stream torques_;
-  Stream readings_;
+  StreamMisfits orientations_;
+  StreamMisfits torques_;
+  StreamMisfits readings_;
   // Storage that is reused.
   LinearizedObservation linear_;
   WhitenedObservation whitened_;
@@ -166,7 +166,7 @@ std::vector<StreamNoise> streamNoise(const EstimationProblem& problem,
   // By the noise as stated.
   const Eigen::MatrixXd covariance =
       estimate.belief.covariance / (estimate.covariance_scale * estimate.covariance_scale);
-  const auto of = [&](const char* name, const Stream& stream) {
+  const auto of = [&](const char* name, const StreamMisfits& stream) {
     return StreamNoise{name,
                        stream.sum.squaredMisfit(),
                        stream.values - stream.sum.information().cwiseProduct(covariance).sum()};

@@ -2,22 +2,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
-namespace {
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
-
 void MotionHistory::receive(const msg::MotionProgress& message) {
   // Another motion, or a motion of another unit.
   const bool begins_anew =
@@ -57,40 +46,20 @@ void MotionHistory::thin() {
 }
 
 std::string MotionHistory::words() const {
-  if (last_.windows == 0) {
-    return "No motion yet: let the rotor follow a plan, by run_motion or calibrate_by_motion.";
+  if (last_.message.empty()) {
+    return "The node calibration tells of no motion.";
   }
-  if (last_.told == 0) {
-    return formatted("%u windows of motion: the first estimate is to come.", last_.windows);
-  }
-  std::string words = formatted("%.1f s of motion", last_.duration);
-  if (last_.left_out > 0) {
-    words += formatted(", %u of %u windows left out", last_.left_out, last_.windows);
-  }
-  words += formatted("; misfit over noise, squared: %.2f. ", last_.reduced_chi_square);
-  std::string left;
-  for (const msg::GroupUncertainty& group : last_.groups) {
-    if (group.left > 0) {
-      left += formatted("%s%u of %u ", left.empty() ? "" : ", ", group.left, group.parameters) +
-              printable(group.group) + " (" + printable(group.least_known) +
-              formatted(": %.3f mrad)", kMilli * group.stddev);
-    }
-  }
-  const std::string wanted = formatted("%.3f mrad", kMilli * last_.wanted_stddev);
-  if (left.empty()) {
-    return words + "All joints, poles and coils are known to " + wanted + ".";
-  }
-  words += "Left to " + wanted + ": " + left;
-  return last_.time_left < 0.0
-             ? words + "."
-             : words + formatted(", some %.0f s more.", std::ceil(last_.time_left));
+  const std::string words = printable(last_.message);
+  return last_.told == 0
+             ? words
+             : words + format(" Misfit over noise, squared: %.2f.", last_.reduced_chi_square);
 }
 
 std::vector<std::string> MotionHistory::dynamics() const {
   std::vector<std::string> lines;
   for (const msg::ParameterEstimate& one : last_.dynamics) {
     if (one.observable != 0) {
-      lines.push_back(printable(one.name) + formatted(" = %.4g ± %.1g ", one.value, one.stddev) +
+      lines.push_back(printable(one.name) + format(" = %.4g ± %.1g ", one.value, one.stddev) +
                       printable(one.unit));
     }
   }

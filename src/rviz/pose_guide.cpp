@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <iterator>
 
@@ -11,14 +10,13 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
 
 std::string inDegrees(double angle) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f°", std::abs(angle) / kOneDegree);
-  return (angle < 0.0 ? "−" : "+") + std::string(text);
+  return (angle < 0.0 ? "−" : "+") + format("%.1f°", std::abs(angle) / kOneDegree);
 }
 
 /// Turns about x, then y, then z [rad] of a unit quaternion.

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
@@ -23,9 +23,7 @@ std::string coilsInWords(const MeasurementProgress& progress) {
 }
 
 std::string inAmperes(double current) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3f A", current);
-  return text;
+  return format("%.3f A", current);
 }
 
 /// "1.998 A, the others at most 0.004 A." of measured currents [A]; `coils` as in a message.

@@ -45,6 +45,8 @@ class MotionFollower {
   bool canBeJudged() const;
   /// Whether all is known as well as wanted, and can be judged.
   bool isEnough() const;
+  /// What is known, and what is left to what is wanted, in a sentence.
+  std::string inWords() const;
   /// Inertia, unbalance, friction and delays.
   std::vector<ParameterEstimate> dynamics() const;
 

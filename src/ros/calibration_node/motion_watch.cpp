@@ -78,6 +78,7 @@ void MotionWatch::publish() {
   message.time_left = follower_->timeLeft().value_or(kUnknown);
   message.can_be_judged = follower_->canBeJudged() ? 1 : 0;
   message.is_enough = follower_->isEnough() ? 1 : 0;
+  message.message = follower_->inWords();
   for (const ParameterEstimate& one : follower_->dynamics()) {
     message.dynamics.push_back(estimateToRos(one));
   }

@@ -1,6 +1,4 @@
-"""How well a motion that goes on has told the parameters, in words, and whether that is enough."""
-
-import math
+"""How well a motion that goes on has told the parameters, and whether that is enough."""
 
 import rospy
 from spherical_actuator_calibration.msg import MotionProgress
@@ -8,19 +6,6 @@ from spherical_actuator_calibration.srv import BeginMotion
 
 PATIENCE = 2.0  # [s] for a calibration node that may not be there
 EVERY = 5.0  # [s] of motion between sentences about it
-
-
-def in_words(progress):
-    """One sentence: what is known of each group, and what is left to what is wanted."""
-    known = ", ".join(f"{group.group} {1e3 * group.stddev:.3f}" for group in progress.groups)
-    words = f"{progress.duration:.0f} s of motion: {known} mrad"
-    if progress.left_out:
-        words += f", {progress.left_out} of {progress.windows} windows left out"
-    left = [group.least_known for group in progress.groups if group.left]
-    wanted = f"{1e3 * progress.wanted_stddev:.3f} mrad"
-    if not left:
-        return f"{words}; all within {wanted}."
-    return f"{words}; left to {wanted}: {', '.join(left)}, some {math.ceil(progress.time_left)} s more."
 
 
 class ProgressWatch:
@@ -63,7 +48,7 @@ class ProgressWatch:
         ends = self._wanted is not None and progress.is_enough and not self._is_enough
         if ends or progress.duration >= self._told + EVERY:
             self._told = progress.duration
-            self._say(in_words(progress))
+            self._say(progress.message)
         if ends:
             self._is_enough = True
             self._enough()
@@ -79,6 +64,6 @@ class ProgressWatch:
             self._say("The motion ended before anything was known of it.")
             return False
         if not progress.is_enough:
-            self._say(f"The motion ended before that was reached. {in_words(progress)}")
+            self._say(f"The motion ended before that was reached. {progress.message}")
             return False
         return True

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "spherical_actuator_calibration/calibration/motion_follower.hpp"
+
+namespace sac {
+
+/// What a motion that goes on has told, and what is left to what is wanted, in a sentence.
+/// `groups` and `time_left` as MotionFollower has them, `wanted_stddev` in rad.
+std::string motionInWords(const LiveEstimate& estimate,
+                          const std::vector<GroupUncertainty>& groups,
+                          double wanted_stddev,
+                          std::optional<double> time_left);
+
+}  // namespace sac
