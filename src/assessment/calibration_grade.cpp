@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
@@ -152,7 +153,6 @@ class CalibrationGrader::Examiner {
   /// force/torque sensor by opposite angles looks the same in all samples; which of both it was
   /// decides where joints and poles are.
   std::string confoundedRegistration(const std::vector<ParameterEstimate>& parameters) const {
-    constexpr double kSignificant = 5.0;  // standard deviations
     for (const auto& [found, other] :
          {std::pair{effect_name::kTorqueRegistration, effect_name::kMarkerRegistration},
           std::pair{effect_name::kMarkerRegistration, effect_name::kTorqueRegistration}}) {

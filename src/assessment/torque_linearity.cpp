@@ -127,7 +127,7 @@ class LinearityFit {
     found.probability = chiSquareProbability(found.degrees_of_freedom, proportional);
     const int left = freedom() - (tells_asymmetry ? 2 : 1);
     found.law_probability = chiSquareProbability(left, bent);
-    // As in every cycle, a misfit widens what is told.
+    // So few torques cannot show that a misfit is more than noise brings: any widens.
     const double widened = std::sqrt(std::max(1.0, bent / left));
     found.deviation = {x_[kDeviation], widened * stddevs[kDeviation]};
     if (tells_asymmetry) {

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
+#include "spherical_actuator_calibration/estimation/participation.hpp"
 #include "spherical_actuator_calibration/estimation/workspace_uncertainty.hpp"
 
 namespace sac {

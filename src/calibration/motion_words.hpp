@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "spherical_actuator_calibration/calibration/motion_follower.hpp"
+#include "spherical_actuator_calibration/calibration/group_uncertainty.hpp"
+#include "spherical_actuator_calibration/motion/live_estimate.hpp"
 
 namespace sac {
 

@@ -12,6 +12,7 @@
 #include "moved_hypotheses.hpp"
 #include "orientation_hypotheses.hpp"
 #include "posterior_fit.hpp"
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 #include "strength_screen.hpp"
@@ -351,7 +352,6 @@ class Diagnostician {
 
   /// Whether a strength is other than 1 beyond what the samples leave open.
   bool isSure(const Judged& candidate) const {
-    constexpr double kSignificant = 5.0;  // standard deviations
     return candidate.parts.size() != 1 || !candidate.parts.front().is_strength ||
            std::abs(candidate.fit.values[0] - 1.0) > kSignificant * valueStddev(candidate, 0);
   }

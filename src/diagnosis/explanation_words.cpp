@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
@@ -41,7 +42,6 @@ std::string numberText(std::size_t index) {
 }
 
 bool isSignificant(const ParameterEstimate& estimate) {
-  constexpr double kSignificant = 5.0;  // standard deviations
   return estimate.stddev > 0.0 && apart(estimate) > kSignificant * estimate.stddev;
 }
 

@@ -13,6 +13,8 @@
 namespace sac {
 namespace {
 
+constexpr double kAlike = 0.08;  // of factors: the same unit
+
 /// `change`: what becomes of one sample with torque.
 template <typename Change>
 Hypothesis ofTorques(const std::string& cause, const std::string& sentence, Change change) {
@@ -59,7 +61,6 @@ std::string torqueUnitName(double factor) {
                                            {0.1129848, "lbf in"},
                                            {1.355818, "lbf ft"},
                                            {7.061552e-3, "ozf in"}}};
-  constexpr double kAlike = 0.08;
   for (const Unit& unit : kUnits) {
     if (std::abs(factor / unit.factor - 1.0) < kAlike) {
       return format("%s, not N m", unit.name);
@@ -175,7 +176,6 @@ Hypothesis currentUnit(double first_guess, double tolerance) {
   };
   result.sentence = [](const Eigen::VectorXd& values) {
     const double factor = std::exp(values[0]);
-    constexpr double kAlike = 0.08;
     const std::string what =
         std::abs(factor * 1e3 - 1.0) < kAlike
             ? "the coil currents are milliamperes, not amperes"

@@ -8,14 +8,12 @@
 #include <Eigen/LU>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
 namespace {
-
-/// Tilts beyond it make the second one undefined [rad].
-constexpr double kLargestTilt = 1.5;
 
 std::vector<RegisterRequest> requestsFor(const JointSensorOptions& options) {
   std::vector<RegisterRequest> requests;
@@ -200,7 +198,7 @@ Eigen::Vector2d inclinationsOf(const Eigen::Vector2d& q) {
 
 std::optional<Eigen::Vector2d> jointsOf(const Eigen::Vector2d& inclinations) {
   const double q1 = inclinations[0];
-  if (!(std::abs(q1) <= kLargestTilt) || !(std::abs(inclinations[1]) <= kLargestTilt)) {
+  if (!(std::abs(q1) <= kGimbalLock) || !(std::abs(inclinations[1]) <= kGimbalLock)) {
     return std::nullopt;
   }
   const double sine = std::sin(inclinations[1]) / std::cos(q1);

@@ -29,7 +29,6 @@ FreeRotor::FreeRotor(const Actuator& truth,
       friction_(friction) {
   validate(rotor);
   validate(friction);
-  constexpr double kGimbalLock = 1.5;
   requireInRange("mechanical_stop", stop_tilt, ValueRange::open(0.0, kGimbalLock, "rad"));
   release(q_);
 }

@@ -10,8 +10,8 @@
 
 #include "observability.hpp"
 #include "observed_information.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/misfit.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -75,7 +75,6 @@ class Conclusion {
 };
 
 void Conclusion::judgeMisfit() {
-  constexpr double kSignificance = 1e-3;
   chi_square_ = observations_.chiSquare(solution_.x());
   const double chi_square = chi_square_ + priorMisfit();
   const auto unknowns = static_cast<int>(solution_.estimated.size());
@@ -88,9 +87,7 @@ void Conclusion::judgeMisfit() {
   }
   const double freedom = result_.degrees_of_freedom;
   result_.reduced_chi_square = chi_square / freedom;
-  if (chi_square > chiSquareLimit(freedom, kSignificance)) {
-    result_.covariance_scale = std::sqrt(result_.reduced_chi_square);
-  }
+  result_.covariance_scale = std::sqrt(misfitVariance(chi_square, freedom));
 }
 
 /// Squared misfit of what was known before, which is one more observation.

@@ -6,6 +6,7 @@
 #include "extreme_eigenvalue.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
+#include "spherical_actuator_calibration/estimation/participation.hpp"
 
 namespace sac {
 
@@ -17,7 +18,6 @@ bool leavesNothingOpen(const Eigen::MatrixXd& information, double limit) {
 }
 
 Observability judgeInformation(const Eigen::MatrixXd& information, double limit) {
-  constexpr double kParticipation = 0.01;
   Observability result;
   const Eigen::Index n = information.rows();
   if (n == 0) {
@@ -35,12 +35,7 @@ Observability judgeInformation(const Eigen::MatrixXd& information, double limit)
     // The vectors cost several times the values, and most sessions leave nothing open.
     result.open_directions = symmetricEigen(information).vectors.leftCols(open);
   }
-  const Eigen::VectorXd participation = result.open_directions.rowwise().squaredNorm();
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (participation[k] > kParticipation) {
-      result.weak.push_back(k);
-    }
-  }
+  result.weak = coordinatesOf(result.open_directions);
   if (open < n) {
     result.identified_condition_number = std::sqrt(values[n - 1] / values[open]);
   }

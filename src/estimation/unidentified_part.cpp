@@ -58,17 +58,6 @@ class OpenCoordinates {
 
 }  // namespace
 
-std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions) {
-  constexpr double kParticipation = 0.01;
-  std::vector<Eigen::Index> result;
-  for (Eigen::Index p = 0; p < directions.rows(); ++p) {
-    if (directions.row(p).squaredNorm() > kParticipation) {
-      result.push_back(p);
-    }
-  }
-  return result;
-}
-
 UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
                                   const std::vector<Eigen::Index>& free,
                                   const ParameterSpace& space,

@@ -42,41 +42,59 @@ class Stretch {
   double bends_ = 0.0;
 };
 
-}  // namespace
-
-void CurrentSteps::add(const MotionStreams& streams) {
+/// Visits each change from a sample to the next with the time that it took [s]; `pass` says that
+/// there is a gap instead.
+template <typename Visit, typename Pass>
+void eachChange(const MotionStreams& streams, const Visit& visit, const Pass& pass) {
   constexpr double kGap = 2.0;  // usual intervals
-  if (streams.current_stamps.size() < 3) {
-    return;
-  }
-  if (streams.response) {
-    const auto samples = static_cast<double>(streams.current_stamps.size());
-    told_ += samples * streams.response->lateness_stddev * streams.response->lateness_stddev;
-    told_samples_ += samples;
-    return;
-  }
   const std::vector<Stamp>& stamps = streams.current_stamps;
-  const auto interval = [&](std::size_t n) { return secondsBetween(stamps[n - 1], stamps[n]); };
   const double longest = kGap * usualStep(StampTimes(stamps.front(), stamps));
-  Stretch stretch;
   Eigen::RowVectorXd change;
-  Eigen::RowVectorXd before;
-  Eigen::RowVectorXd before_that;
   for (std::size_t n = 1; n < stamps.size(); ++n) {
-    if (interval(n) > longest) {
-      before.resize(0);
-      before_that.resize(0);
+    const double interval = secondsBetween(stamps[n - 1], stamps[n]);
+    if (interval > longest) {
+      pass();
       continue;
     }
     const auto row = static_cast<Eigen::Index>(n);
     change = (streams.currents.row(row) - streams.currents.row(row - 1)).cast<double>();
+    visit(change, interval);
+  }
+}
+
+}  // namespace
+
+void CurrentSteps::add(const MotionStreams& streams) {
+  if (streams.current_stamps.size() < 3) {
+    return;
+  }
+  if (streams.response) {
+    double changes = 0.0;
+    eachChange(
+        streams,
+        [&](const Eigen::RowVectorXd& change, double /*interval*/) {
+          changes += change.squaredNorm();
+        },
+        [] {});
+    told_changes_ += changes;
+    told_ += changes * streams.response->lateness_stddev;
+    return;
+  }
+  addSampled(streams);
+}
+
+void CurrentSteps::addSampled(const MotionStreams& streams) {
+  Stretch stretch;
+  Eigen::RowVectorXd before;
+  Eigen::RowVectorXd before_that;
+  const auto take = [&](const Eigen::RowVectorXd& change, double interval) {
     if (before_that.size() > 0) {
       stretch.add(change, before);
       changes_ += change.squaredNorm();
       next_ += change.dot(before);
       second_ += change.dot(before_that);
       values_ += static_cast<double>(change.size());
-      duration_ += interval(n);
+      duration_ += interval;
       intervals_ += 1.0;
     }
     if (stretch.isFull()) {
@@ -85,14 +103,21 @@ void CurrentSteps::add(const MotionStreams& streams) {
       stretch = {};
     }
     before_that.swap(before);
-    before.swap(change);
-  }
+    before = change;
+  };
+  eachChange(streams, take, [&] {
+    before.resize(0);
+    before_that.resize(0);
+  });
 }
 
+// What currents tell of their delay grows with the square of their changes: by that the estimate is
+// a mean of what each span alone would give, and at most as far off as the mean of their
+// deviations.
 double CurrentSteps::delayStddev(double noise) const {
-  const double samples = told_samples_ + intervals_;
   const double sampled = sampledStddev(noise);
-  return samples > 0.0 ? std::sqrt((told_ + intervals_ * sampled * sampled) / samples) : 0.0;
+  const double changes = told_changes_ + changes_;
+  return changes > 0.0 ? (told_ + changes_ * sampled) / changes : sampled;
 }
 
 double CurrentSteps::sampledStddev(double noise) const {

@@ -20,10 +20,12 @@ class CurrentSteps {
   double widen(const ParameterSpace& space, double noise, ParameterBelief& belief) const;
 
  private:
+  void addSampled(const MotionStreams& streams);
   double sampledStddev(double noise) const;
 
-  double told_ = 0.0;          ///< sum of variances, sample by sample, where commands tell steps
-  double told_samples_ = 0.0;  ///< in it
+  // Where commands tell steps.
+  double told_changes_ = 0.0;  ///< sum of squared differences from one sample to the next
+  double told_ = 0.0;          ///< of the same, times the standard deviation
   // Of the others.
   double changes_ = 0.0;  ///< sum of squared differences from one sample to the next
   double next_ = 0.0;     ///< of their products with the ones before

@@ -49,7 +49,8 @@ class LiveMotionWork {
   Eigen::MatrixXd orientingColumns(const Eigen::MatrixXd& of_free) const;
   void tell(const Eigen::MatrixXd& inverse);
   void tellWithHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own);
-  double chiSquare() const;
+  double squares() const;
+  double freedom() const;
   double orientationChiSquare() const;
   void countServing();
 

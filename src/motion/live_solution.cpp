@@ -7,7 +7,7 @@
 
 #include "factor_inverse.hpp"
 #include "live_motion_work.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/misfit.hpp"
 
 namespace sac {
 
@@ -33,13 +33,16 @@ void LiveMotionWork::solve() {
   tell(inverseOfSquare(factor.matrixLLT()));
 }
 
-double LiveMotionWork::chiSquare() const {
-  const std::size_t serving = estimate_.windows - estimate_.left_out;
-  const double freedom = 3.0 * options_.test_functions * static_cast<double>(serving) -
-                         static_cast<double>(free_.size());
+double LiveMotionWork::squares() const {
   InformationSum here = balance_;
   here.moveBy(x_ - anchor_);
-  return freedom > 0.0 ? here.squaredMisfit() / freedom : 0.0;
+  return here.squaredMisfit();
+}
+
+double LiveMotionWork::freedom() const {
+  const std::size_t serving = estimate_.windows - estimate_.left_out;
+  return 3.0 * options_.test_functions * static_cast<double>(serving) -
+         static_cast<double>(free_.size());
 }
 
 /// Reduced, of the tracker's means over the windows that are kept.
@@ -81,13 +84,11 @@ Eigen::MatrixXd LiveMotionWork::orientingColumns(const Eigen::MatrixXd& of_free)
 /// What is known now, with noise as large as both kinds of residuals say. `inverse`: of the
 /// information of what is free.
 void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
-  constexpr double kSignificance = 1e-3;
   countServing();
-  estimate_.chi_square = chiSquare();
-  const double freedom =
-      3.0 * options_.test_functions * static_cast<double>(estimate_.windows - estimate_.left_out);
-  const bool is_misfit = estimate_.chi_square * freedom > chiSquareLimit(freedom, kSignificance);
-  const double windows = is_misfit ? estimate_.chi_square : 1.0;
+  const double squares = this->squares();
+  const double freedom = this->freedom();
+  estimate_.chi_square = freedom > 0.0 ? squares / freedom : 0.0;
+  const double windows = misfitVariance(squares, freedom);
   const double orientations = std::max(1.0, orientationChiSquare());
   Eigen::MatrixXd own = windows * inverse;
   if (orientations != windows) {

@@ -13,8 +13,9 @@
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/misfit.hpp"
 #include "steady_torque.hpp"
 
 namespace sac {
@@ -111,9 +112,8 @@ bool Estimator::solveFinely() {
 
 /// Whether the misfit of what serves is that of noise.
 bool Estimator::fits() const {
-  constexpr double kSignificance = 1e-3;
   const double freedom = windowFreedom();
-  return freedom > 0.0 && windowSquares() <= chiSquareLimit(freedom, kSignificance);
+  return freedom > 0.0 && !isMisfit(windowSquares(), freedom);
 }
 
 /// Without the windows over which something small held the rotor for long, where the others then
@@ -153,7 +153,6 @@ bool Estimator::leavePushed() {
 }
 
 void Estimator::judgeMisfit() {
-  constexpr double kSignificance = 1e-3;
   Estimate& estimate = result_.estimate;
   const double freedom = windowFreedom();
   estimate.covariance_scale = 1.0;
@@ -167,9 +166,7 @@ void Estimator::judgeMisfit() {
   result_.orientations = terms_.orientations().misfit(descent_.x(), joints);
   result_.summary.orientation_chi_square = result_.orientations.reduced();
   estimate.reduced_chi_square = squares / freedom;
-  if (squares > chiSquareLimit(freedom, kSignificance)) {
-    estimate.covariance_scale = std::sqrt(squares / freedom);
-  }
+  estimate.covariance_scale = std::sqrt(misfitVariance(squares, freedom));
 }
 
 /// N⁻¹ (Σ s² N) N⁻¹ with a scale s for each kind of terms, and what held coordinates add.

@@ -15,15 +15,18 @@
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
 #include "spherical_actuator_calibration/control/motion_run.hpp"
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
+#include "spherical_actuator_calibration/motion/motion_options.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kWindow = 0.25;  // [s]
-constexpr int kSamples = 50;      // of a window
+// What a calibration by motion makes of it.
+constexpr MotionOptions kOptions;
+constexpr double kWindow = kOptions.window;
+constexpr int kTests = kOptions.test_functions;
+constexpr double kFrictionTransition = kOptions.friction_speed;
+constexpr int kSamples = 50;  // of a window
 constexpr double kStep = kWindow / kSamples;
-constexpr int kTests = 6;                     // test functions of a window
-constexpr double kFrictionTransition = 0.05;  // [rad/s]
 
 // Unknowns of the laboratory behind the coordinates of the model.
 constexpr Eigen::Index kInertia = 0;

@@ -27,7 +27,7 @@ TEST_F(MotionWords, NameWhatIsLeft) {
   EXPECT_EQ(words(95.6),
             "12 s of motion: joints 0.050, poles 0.200, coils 0.300 mrad; left to 0.100 mrad: 1 "
             "of 16 poles (pole_2/polar), 30 of 48 coils (coil_7/azimuth), some 96 s more.");
-  EXPECT_EQ(words().substr(words().size() - 17), " (coil_7/azimuth).");
+  EXPECT_EQ(words().substr(words().size() - 18), " (coil_7/azimuth).");
 }
 
 TEST_F(MotionWords, TellThatNothingIsLeft) {

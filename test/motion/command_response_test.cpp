@@ -107,7 +107,7 @@ TEST(CommandResponse, MakesSamplesTellWhatStepsBetweenThemDo) {
       EXPECT_LT(std::abs(lateness(streams, interval)), 1.5e-5) << interval << " " << phase;
       CurrentSteps steps;
       steps.add(streams);
-      EXPECT_EQ(steps.delayStddev(1e-3), streams.response->lateness_stddev);
+      EXPECT_DOUBLE_EQ(steps.delayStddev(1e-3), streams.response->lateness_stddev);
       EXPECT_LT(streams.response->lateness_stddev, 3e-5);
     }
   }

@@ -55,6 +55,24 @@ TEST(CurrentSteps, LeaveTheDelayAsUncertainAsTheyShiftIt) {
   }
 }
 
+// A gentle motion before a lively one, say: its samples hardly count for the delay of both.
+TEST(CurrentSteps, CountBySquaresOfTheirChanges) {
+  const double sampled = delayStddev(stepping(1e-3, 0.0, 0.0), 0.0);
+  MotionStreams told = stepping(1e-3, 0.0, 0.0);
+  told.response = CommandResponse();
+  told.response->lateness_stddev = 5e-6;
+  EXPECT_NEAR(delayStddev(told, 0.0), 5e-6, 1e-9);
+  for (const float share : {1.0F, 0.2F}) {
+    MotionStreams gentle = stepping(1e-3, 0.0, 0.0);
+    gentle.currents *= share;
+    CurrentSteps both;
+    both.add(gentle);
+    both.add(told);
+    const double weight = share * share;
+    EXPECT_NEAR(both.delayStddev(0.0), (weight * sampled + 5e-6) / (weight + 1.0), 1e-7);
+  }
+}
+
 TEST(CurrentSteps, AreNotThoseOverAGap) {
   const MotionStreams whole = stepping(1e-3, 0.0, 0.0);
   MotionStreams streams = whole;

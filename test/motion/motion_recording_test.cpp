@@ -72,6 +72,34 @@ TEST(MotionRecorder, BeginsAnotherSpanWhereTheClockIsSetBack) {
   EXPECT_GE(recording.spans[1].current_stamps.size(), 998U);
 }
 
+TEST(MotionRecorder, BeginsAnotherSpanWhereNothingCameForLong) {
+  constexpr Stamp kSecond = 1'000'000'000;
+  const auto spans = [](Stamp pause, bool tracker_goes_on) {
+    MotionRecorder recorder(2);
+    for (const Stamp begin : {100 * kSecond, 101 * kSecond + pause}) {
+      for (Stamp n = 0; n <= 1000; ++n) {
+        recorder.add(joints(begin + 1'000'000 * n, 0.0));
+        recorder.add(currents(begin + 1'000'000 * n));
+      }
+      if (tracker_goes_on) {
+        recorder.add(OrientationMeasurement{begin + 2 * kSecond, Eigen::Quaterniond::Identity()});
+      }
+    }
+    const MotionRecording recording = recorder.take();
+    EXPECT_EQ(recording.dropped, 0U);
+    std::size_t readings = 0;
+    for (const MotionStreams& streams : recording.spans) {
+      EXPECT_EQ(streams.joints.size(), streams.current_stamps.size());
+      readings += streams.joints.size();
+    }
+    EXPECT_EQ(readings, 2002U);
+    return recording.spans.size();
+  };
+  EXPECT_EQ(spans(6 * kSecond, false), 2U);
+  EXPECT_EQ(spans(4 * kSecond, false), 1U);
+  EXPECT_EQ(spans(6 * kSecond - 1, true), 1U);
+}
+
 TEST(MotionRecorder, LosesLittleByASingleWrongStamp) {
   constexpr Stamp kSecond = 1'000'000'000;
   for (const Stamp jump : {100 * kSecond, -20 * kSecond}) {

@@ -96,6 +96,19 @@ class Planning(unittest.TestCase):
             self.assertEqual([list(pattern.coils) for pattern in there.pose.patterns], wanted)
             self.assertEqual(there.missing, there.pose.patterns)
 
+    def test_poses_that_were_begun_stay_in_the_plan(self):
+        begun = PosePatterns(joint_position=(0.1, -0.2, 0.3), patterns=[CoilPattern(coils=[3, -7])])
+        answer = self.plan(cycle="refine", max_poses=2, first=[begun], time_budget=10.0)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(len(answer.poses), 2)
+        wait_for(lambda: len(self.client.latest("plan_progress").poses) == 3, "the plan")
+        self.assertEqual(self.client.latest("plan_progress").poses[0].pose, begun)
+        begun.patterns[0].coils = [3, 99]
+        answer = self.plan(cycle="refine", max_poses=2, first=[begun], time_budget=10.0)
+        self.assertFalse(answer.success)
+        self.assertIn("99", answer.message)
+        self.assertEqual(len(self.client.latest("plan_progress").poses), 3)
+
     def test_follows_a_plan_of_a_file(self):
         path = pathlib.Path(self.folder) / "plan.yaml"
         description = pathlib.Path(rospy.get_param("~config")) / "pm_spherical_8x24.yaml"
@@ -104,8 +117,11 @@ class Planning(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         self.assertEqual((len(answer.poses), answer.current), (4, 2.0))
         wait_for(lambda: len(self.client.latest("plan_progress").poses) == 4, "the plan")
-        path.write_text(path.read_text(encoding="utf-8").replace("joint_position", "position", 1), encoding="utf-8")
-        for unusable in (path, self.folder + "/none.yaml", description, "/dev/zero", ""):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(text.replace("joint_position", "position", 1), encoding="utf-8")
+        weak = pathlib.Path(self.folder) / "weak.yaml"  # coils that would not count as excited
+        weak.write_text(text.replace("current: 2", "current: 0.01", 1), encoding="utf-8")
+        for unusable in (path, weak, self.folder + "/none.yaml", description, "/dev/zero", ""):
             answer = self.client.call("load_plan", path=str(unusable))
             self.assertFalse(answer.success)
             self.assertIn(str(unusable), answer.message)

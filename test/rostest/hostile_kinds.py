@@ -311,8 +311,8 @@ def text(value):
 # -- kinds of requests: service, and the bytes of its request --------------------------------------------------------
 
 
-# Patterns, currents, time budget and purpose of a plan, as by default.
-REST_OF_PLAN = text("") + struct.pack("<ddd?", 0.0, 0.0, 0.0, False)
+# Patterns, currents, time budget and purpose of a plan, as by default, and no poses before it.
+REST_OF_PLAN = text("") + struct.pack("<ddd?I", 0.0, 0.0, 0.0, False, 0)
 
 REQUESTS = {
     "half a request": ("calibration/capture", b"\0\0"),
@@ -343,12 +343,19 @@ REQUESTS = {
         "calibration/plan_poses",
         text("joint") + struct.pack("<IId", 0, 0xFFFFFFFF, math.nan) + REST_OF_PLAN,
     ),
+    "coil 2147483647 of a pose before a plan": (
+        "calibration/plan_poses",
+        text("refine")
+        + struct.pack("<IId", 0, 1, 0.0)
+        + text("")
+        + struct.pack("<ddd?I3dIIi?", 0.0, 0.0, 0.0, False, 1, *(0.0,) * 3, 1, 1, 2**31 - 1, False),
+    ),
     "a path for patterns": (
         "calibration/plan_poses",
-        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text(TRICK) + struct.pack("<ddd?", 0.0, 0.0, 0.0, False),
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text(TRICK) + struct.pack("<ddd?I", 0.0, 0.0, 0.0, False, 0),
     ),
     "NaN of currents and of a time": (
         "calibration/plan_poses",
-        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd?", *[math.nan] * 3, False),
+        text("refine") + struct.pack("<IId", 0, 1, 0.0) + text("weighing") + struct.pack("<ddd?I", *[math.nan] * 3, False, 0),
     ),
 }

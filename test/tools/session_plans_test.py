@@ -87,6 +87,7 @@ class Bench:
     def __init__(self):
         self.held = []
         self.asked = []  # for how many poses
+        self.in_force = []  # poses of the plan
 
     def measured(self):
         return self.held
@@ -103,36 +104,28 @@ class Bench:
         missing = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations if pattern not in there]
         return PoseProgress(has_sample=bool(there), is_measured=bool(there) and not missing, missing=missing)
 
-    def plan(self, poses, wanted_stddev, **_):
+    def begun(self):
+        there = zip(self.in_force, self.progress_of(self.in_force))
+        return [pose for pose, progress in there if progress.has_sample and not progress.is_measured]
+
+    def plan(self, poses, wanted_stddev, first, **_):
         self.asked.append(poses)
         begin = sum(self.asked[:-1])
-        return [Pose((0.1 * n, 0.0, 0.0), ((1,), (2,))) for n in range(begin, begin + poses)], "Planned."
+        chosen = [Pose((0.1 * n, 0.0, 0.0), ((1,), (2,))) for n in range(begin, begin + poses)]
+        self.in_force = [*first, *chosen]
+        return chosen, "Planned."
 
     def capture(self, pose, *patterns):
         self.held += [Measured(pose.joints, pattern, pose.validation) for pattern in patterns]
 
 
-class Kept:
-    """The last plan."""
-
-    def __init__(self):
-        self.last = []
-
-    def keep(self, poses):
-        self.last = list(poses)
-
-    def poses(self):
-        return self.last
-
-
 class InterruptedSessions(unittest.TestCase):
     def setUp(self):
-        self.bench, self.kept, self.account = Bench(), Kept(), Account()
+        self.bench, self.account = Bench(), Account()
 
-    def wanted(self, coils=4, **options):
+    def wanted(self, **options):
         options = Options(poses=4, validation_poses=0, **options)
-        actuator = {**ACTUATOR, "coils": [{}] * coils}
-        return Session(self.bench, None, actuator, options, Task(), self.account, self.kept)._wanted_poses()
+        return Session(self.bench, None, ACTUATOR, options, Task(), self.account)._wanted_poses()
 
     def test_complete_the_pose_that_was_begun(self):
         first, second, *_ = self.wanted()
@@ -150,14 +143,13 @@ class InterruptedSessions(unittest.TestCase):
     def test_go_on_when_all_poses_were_begun(self):
         for pose in self.wanted():
             self.bench.capture(pose, ())
-        self.assertEqual(self.wanted(), self.kept.last)
+        self.assertEqual(self.wanted(), self.bench.in_force)
         self.assertEqual(self.bench.asked, [4])
 
     def test_forget_what_does_not_fit_any_more(self):
         for pose in self.wanted():
             self.bench.capture(pose, ())
-        self.assertEqual(self.wanted(coils=1), [])
-        self.kept.keep([Pose(pose.joints, ((1, -2),)) for pose in self.kept.last])
+        self.bench.in_force = [Pose(pose.joints, ((1, -2),)) for pose in self.bench.in_force]
         self.assertEqual(self.wanted(total_current=3.0), [])
         self.assertEqual(len(self.wanted(total_current=4.0)), 4)
         self.bench.held.clear()

@@ -9,6 +9,9 @@
 
 namespace sac {
 
+/// Tilts of a joint below it are short of a gimbal lock [rad].
+inline constexpr double kGimbalLock = 1.5;
+
 /// Joint sensor angles q [rad] at which rotorOrientation(joints, q) is R_stator_rotor, by Newton's
 /// method from `start`: the solution near it. Nothing where there is none nearby, as close to a
 /// gimbal lock.

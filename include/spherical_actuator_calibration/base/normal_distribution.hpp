@@ -5,6 +5,9 @@ namespace sac {
 /// Standard deviations of a normal distribution within which 95 % lie, on both sides.
 inline constexpr double kTwoSided95 = 1.959963984540054;
 
+/// Standard deviations beyond which no noise explains a difference: once in a million and more.
+inline constexpr double kSignificant = 5.0;
+
 /// Median of the absolute value of a normal distribution of unit standard deviation.
 inline constexpr double kMedianOfNormal = 0.6745;
 

@@ -9,19 +9,11 @@
 
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_report.hpp"
+#include "spherical_actuator_calibration/calibration/group_uncertainty.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/motion/live_motion.hpp"
 
 namespace sac {
-
-/// How well one kind of parameters is known.
-struct GroupUncertainty {
-  std::string group;        ///< joints, poles or coils
-  std::string least_known;  ///< its parameter with the largest standard deviation
-  double stddev = 0.0;      ///< of that one [rad]
-  std::uint32_t parameters = 0;
-  std::uint32_t left = 0;  ///< of them: not known as well as wanted
-};
 
 /// What a motion tells of one unit while it goes on, in words of parameters.
 class MotionFollower {

@@ -17,10 +17,6 @@ struct UnidentifiedPart {
   Eigen::MatrixXd directions;
 };
 
-/// Coordinates that take part in directions (P×d, orthonormal columns): more than 1 % of their unit
-/// vector lies there, squared. Ascending.
-std::vector<Eigen::Index> coordinatesOf(const Eigen::MatrixXd& directions);
-
 /// Judges the information matrix (F×F) of the coordinates `free` (ascending): a standard deviation
 /// above `limit` [rad] is open.
 ///

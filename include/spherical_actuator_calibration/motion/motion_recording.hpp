@@ -49,7 +49,7 @@ class MotionRecorder {
 
   // What is not finite, not later than the last of its kind, or beyond a million of it, is dropped
   // and counted. Two in a row that are a second and more before the last are of a clock that was
-  // set back, or the last was wrong: another span begins.
+  // set back, or the last was wrong: another span begins, as it does where nothing came for long.
   void add(const JointMeasurement& measurement);
   void add(const CurrentMeasurement& measurement);
   void add(const OrientationMeasurement& measurement);
@@ -71,6 +71,7 @@ class MotionRecorder {
   bool isCurrent(const Eigen::VectorXd& current) const;
   bool isNext(Sequence& sequence, const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
   static bool isSetBack(Sequence& sequence, Stamp last, Stamp stamp);
+  bool isAfterPause(Stamp stamp) const;
   void endSpan();
 
   std::size_t coils_;

@@ -9,6 +9,7 @@
 #include <ros/console.h>
 
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/motion/motion_options.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
@@ -96,8 +97,8 @@ void CalibrationNode::followMotion() {
 
 // A rotor that a hand turns from pose to pose with a coil on is in no motion.
 void CalibrationNode::noteMotion(std::size_t windows) {
-  constexpr std::size_t kLeast = 8;  // windows: two seconds
-  constexpr double kRest = 1.5;      // [s]
+  constexpr double kLeast = 2.0;  // [s] of windows
+  constexpr double kRest = 1.5;   // [s]
   const double now = steadySeconds();
   if (windows > 0) {
     windows_in_a_row_ += windows;
@@ -105,7 +106,8 @@ void CalibrationNode::noteMotion(std::size_t windows) {
   } else if (now - last_window_ > kRest) {
     windows_in_a_row_ = 0;
   }
-  const bool is_in_motion = windows_in_a_row_ >= kLeast;
+  const bool is_in_motion =
+      static_cast<double>(windows_in_a_row_) * MotionOptions().window >= kLeast;
   if (is_in_motion != is_in_motion_) {
     is_in_motion_ = is_in_motion;
     publishStatus();

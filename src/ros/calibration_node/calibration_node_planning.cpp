@@ -36,19 +36,23 @@ CycleRequest plannedCycle(const msg::PlanPoses::Request& request) {
   throw ConfigError("cycle: " + request.cycle + " is none; joint, poles, coil and refine are.");
 }
 
-constexpr double kLargestCurrent = 1000.0;  // [A]
+/// Of an excited coil [A]: a weaker one does not count as excited.
+ValueRange excitationRange(const CalibrationSession& calibration) {
+  constexpr double kLargestCurrent = 1000.0;  // [A]
+  const double threshold = calibration.config().estimation.current_threshold;
+  return ValueRange::closed(leastExcitation(threshold), kLargestCurrent, "A");
+}
 
-/// Throws ConfigError for what is no pattern of an actuator with so many coils, and for less than
-/// the least current [A].
+/// Throws ConfigError for what is no pattern of an actuator with so many coils, and for a current
+/// beyond the range.
 PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request,
                               std::size_t coils,
-                              double least_current) {
+                              const ValueRange& range) {
   PlannedCapture planned;
   planned.joint_position = Eigen::Vector3d(request.joint_position.data());
   planned.pattern = patternFromRos(request.coils, coils);
   if (!planned.pattern.empty()) {
-    requireInRange(
-        "current", request.current, ValueRange::closed(least_current, kLargestCurrent, "A"));
+    requireInRange("current", request.current, range);
     planned.current = request.current;
   }
   return planned;
@@ -63,7 +67,7 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
     const CalibrationSession& calibration = session_.calibration();
     const double threshold = calibration.config().estimation.current_threshold;
     const PlannedCapture planned =
-        plannedCapture(request, calibration.model().space().coils(), leastExcitation(threshold));
+        plannedCapture(request, calibration.model().space().coils(), excitationRange(calibration));
     if (const auto coil = coilAmiss(planned, intake_.currents(), threshold)) {
       response.flaw = flawName(CaptureFlaw::kExcitation);
       response.message = amissInWords(planned, *coil);
@@ -165,12 +169,16 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
       plan_options.start =
           held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
     }
+    std::vector<PoseToMeasure> first;
+    for (const msg::PosePatterns& pose : request.first) {
+      first.push_back(poseFromRos(pose, problem.model->space().coils()));
+    }
     problem.held = &held;
     plan_options = withMeasuredNoise(std::move(plan_options), held);
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    adopt(plan, request.validation != 0);
+    adopt(first, plan, request.validation != 0);
   } catch (const std::exception& error) {
     response.success = 0;
     response.message = printable(error.what());
@@ -179,19 +187,33 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
 }
 
 bool CalibrationNode::loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response) {
-  answer(response, [&] {
-    const Actuator& nominal = session_.calibration().model().space().nominal();
+  try {
+    // Model and configuration never change while the node runs.
+    const CalibrationSession& calibration = session_.calibration();
+    const Actuator& nominal = calibration.model().space().nominal();
     const SessionPlanRecord record = loadSessionPlanFor(nominal, request.path);
-    response.current = record.current;
-    response.poses = posesToRos(record.plan, record.current, nominal.coils.size());
-    adopt(record.plan, false);
-    return std::to_string(record.plan.poses.size()) + " poses of " + request.path + " are planned.";
-  });
+    requireInRange(
+        request.path + ": assumed.current", record.current, excitationRange(calibration));
+    answer(response, [&] {
+      adopt({}, record.plan, false);
+      response.current = record.current;
+      response.poses = posesToRos(record.plan, record.current, nominal.coils.size());
+      return std::to_string(record.plan.poses.size()) + " poses of " + request.path +
+             " are planned.";
+    });
+  } catch (const std::exception& error) {
+    response.message = printable(error.what());
+  }
   return true;
 }
 
-void CalibrationNode::adopt(const PosePlan& plan, bool validation) {
+void CalibrationNode::adopt(const std::vector<PoseToMeasure>& first,
+                            const PosePlan& plan,
+                            bool validation) {
   StoredPlan poses;
+  for (const PoseToMeasure& pose : first) {
+    poses.push_back({pose.joint_position, pose.patterns, pose.validation});
+  }
   for (const PlannedPose& pose : plan.poses) {
     poses.push_back({pose.joint_position, pose.excitations(), validation});
   }

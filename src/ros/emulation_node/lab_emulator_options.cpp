@@ -8,14 +8,13 @@
 
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kGimbalLock = 1.5;  // [rad] short of it
 
 Eigen::Vector3d readVector(const YamlMap& map, const char* key, const char* unit) {
   return Eigen::Vector3d(map.numbers(key, ValueRange::finite(unit), 3).data());

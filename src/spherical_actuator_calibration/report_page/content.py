@@ -4,6 +4,7 @@ import math
 
 from ..parameter_drift import drifts_between
 from ..shown_numbers import change_of, plus_minus, signed, significant, with_unit
+from ..unit_identity import other_unit
 from . import figures
 from .motion import told_by
 
@@ -130,7 +131,8 @@ class Report:
 
     def since_last(self):
         """What changed since an earlier report of this unit: date, count, rows; None without one."""
-        if self._previous is None or self._previous["serial"] != self._report["serial"]:
+        old, own = self._previous, self._report
+        if old is None or other_unit(old["actuator"], old["serial"], own["actuator"], own["serial"]):
             return None
         drifts = drifts_between(_identified(self._previous), _identified(self._report))
         return {

@@ -9,7 +9,6 @@ from spherical_actuator_calibration import msg
 from spherical_actuator_calibration.msg import MeasurementProgress, SessionResult
 
 from .goals import checked_pattern, options_of, options_of_capture, pose_of_capture
-from .open_plan import OpenPlan
 from .options import OptionError, Options
 from .plans import PlanError
 from .pose_course import POLL, SLOW, PoseCourse
@@ -65,9 +64,7 @@ class SessionAction(_AtTheBench):
         self._take(task, account)
         try:
             options = options_of(goal, self._ns)
-            session = Session(
-                self._calibration, self._laboratory, self._actuator, options, task, account, OpenPlan(self._ns)
-            )
+            session = Session(self._calibration, self._laboratory, self._actuator, options, task, account)
             is_complete = session.run()
         except (OptionError, PlanError) as error:
             return False, self._result(SessionResult.UNUSABLE, str(error), account)

@@ -3,7 +3,13 @@
 import math
 
 import rospy
-from spherical_actuator_calibration.msg import ActuatorParameters, CalibrationStatus, CoilPattern, PosePatterns
+from spherical_actuator_calibration.msg import (
+    ActuatorParameters,
+    CalibrationStatus,
+    CoilPattern,
+    PlanProgress,
+    PosePatterns,
+)
 from spherical_actuator_calibration.srv import (
     Calibrate,
     Capture,
@@ -44,11 +50,12 @@ class Calibration:
         self._node = ns + "/calibration"
         self._narrator = narrator
         self._task = Task()
-        self._latest = {CalibrationStatus: None, ActuatorParameters: None}
+        self._latest = {CalibrationStatus: None, ActuatorParameters: None, PlanProgress: None}
         self._answered = rospy.Time()  # time of what the node answered last
         self._subscribers = [
             rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep),
             rospy.Subscriber(ns + "/parameters", ActuatorParameters, self._keep),
+            rospy.Subscriber(ns + "/plan_progress", PlanProgress, self._keep),
         ]
 
     def serve(self, task, narrator):
@@ -173,13 +180,24 @@ class Calibration:
         """Joint angles that differ by no more than this from a pose are at it [rad]."""
         return self._latest[CalibrationStatus].pose_tolerance
 
-    def plan(self, poses, wanted_stddev, cycle="refine", **excitation):
+    def begun(self):
+        """Poses of the plan in force, in their order, that have samples, and lack others."""
+        poses = self._latest[PlanProgress].poses
+        return [pose_of(there.pose) for there in poses if there.has_sample and not there.is_measured]
+
+    def plan(self, poses, wanted_stddev, cycle="refine", first=(), **excitation):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan.
 
-        excitation: patterns, current and total_current of the request.
+        first: poses that stay in the plan, before these; excitation: patterns, current and total_current of the request.
         """
         answer = self.call(
-            "plan_poses", cycle=cycle, coil=0, max_poses=poses, wanted_stddev=wanted_stddev, **excitation
+            "plan_poses",
+            cycle=cycle,
+            coil=0,
+            max_poses=poses,
+            wanted_stddev=wanted_stddev,
+            first=[message_of(pose) for pose in first],
+            **excitation,
         )
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)
@@ -197,6 +215,12 @@ def message_of(pose):
     """The PosePatterns of a Pose."""
     patterns = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations]
     return PosePatterns(joint_position=list(pose.joints), patterns=patterns, validation=pose.validation)
+
+
+def pose_of(message):
+    """The Pose of a PosePatterns."""
+    patterns = tuple(tuple(pattern.coils) for pattern in message.patterns)
+    return Pose(tuple(message.joint_position), patterns, bool(message.validation))
 
 
 def poses_from(planned):

@@ -6,6 +6,7 @@ import statistics
 
 from ..session_tables.export import ExportError
 from ..session_tables.export import Session as StoredSession
+from ..unit_identity import other_unit
 from .progress import Pose, excited_coils, poses_of
 
 
@@ -73,8 +74,6 @@ def _place(row):
 
 
 def _require_unit(path, actuator, name, serial):
-    if name != actuator["name"]:
-        raise PlanError(f"{path}: it is for the actuator {name}, not for {actuator['name']}.")
-    own = actuator.get("serial", "")
-    if serial and own and serial != own:
-        raise PlanError(f"{path}: it is for the serial number {serial}, not for {own}.")
+    other = other_unit(name, serial, actuator["name"], actuator.get("serial", ""))
+    if other is not None:
+        raise PlanError(f"{path}: it is for the {other[0]}, not for {other[1]}.")

@@ -4,7 +4,6 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 
 from . import progress
 from .linearity import LinearityTest
-from .open_plan import begun
 from .plans import read_session
 from .pose_course import PoseCourse
 from .progress import Progress
@@ -17,13 +16,12 @@ class Session:
     """Leads through one session; everything measured is with the calibration node. Raises PlanError for a file that
     gives no poses, RuntimeError with a sentence where a person has to see to something, and Cancelled of its task."""
 
-    def __init__(self, calibration, laboratory, actuator, options, task, account, open_plan):
+    def __init__(self, calibration, laboratory, actuator, options, task, account):
         self._options = options
         self._actuator = actuator
         self._task = task
         self._account = account
         self._calibration = calibration
-        self._open_plan = open_plan
         self._course = PoseCourse(calibration, laboratory, options, task, account)
         self._linearity = LinearityTest(calibration, self._course, account, not options.skip_linearity)
         self._coils = len(actuator.get("coils", []))
@@ -100,10 +98,13 @@ class Session:
         return read_session(path, self._actuator, threshold, self._calibration.pose_tolerance())
 
     def _interrupted(self):
-        """Poses of the last plan that were begun, and that the currents of this session can complete."""
+        """Poses of the plan in force that were begun, and that the currents of this session can complete."""
         most = self._options.total_current / self._course.current
-        poses = begun(self._open_plan.poses(), self._calibration, self._coils)
-        return [pose for pose in poses if all(len(pattern) <= most for pattern in pose.excitations)]
+        return [
+            pose
+            for pose in self._calibration.begun()
+            if not pose.validation and all(len(pattern) <= most for pattern in pose.excitations)
+        ]
 
     def _plan(self, count, wanted_stddev, interrupted=()):
         """The interrupted poses and as many others."""
@@ -114,11 +115,10 @@ class Session:
             patterns=self._options.patterns,
             current=self._course.current,
             total_current=self._options.total_current,
+            first=interrupted,
         )
         self._account.say("Plan: " + message)
-        poses = [*interrupted, *poses]
-        self._open_plan.keep(poses)
-        return poses
+        return [*interrupted, *poses]
 
     def _measure(self, poses):
         captures = [len(patterns) for patterns in self._course.to_capture(poses)]

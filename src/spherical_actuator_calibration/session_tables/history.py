@@ -68,7 +68,8 @@ def sentence_of(drift):
 
 
 def unit_of(session):
-    """Name and serial number of the unit of a Session."""
+    """Name and serial number of the unit of a Session. Histories are of units that agree in both: what a session without
+    serial number was of, nobody knows."""
     return tuple(session.rows("SELECT name, serial FROM unit")[0])
 
 

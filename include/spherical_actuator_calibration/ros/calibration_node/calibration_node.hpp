@@ -42,6 +42,7 @@ namespace sac {
 
 class PlanProgress;
 struct PosePlan;
+struct PoseToMeasure;
 
 /// The calibration of one unit while it is measured: takes samples on request or by itself, runs
 /// the cycles, keeps everything in the session database, and publishes the parameters in force.
@@ -80,8 +81,8 @@ class CalibrationNode {
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   bool loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response);
-  /// Keeps a plan and follows it; the caller holds the session.
-  void adopt(const PosePlan& plan, bool validation);
+  /// Keeps a plan and follows it, after poses that come before it; the caller holds the session.
+  void adopt(const std::vector<PoseToMeasure>& first, const PosePlan& plan, bool validation);
   bool missingPatterns(msg::MissingPatterns::Request& request,
                        msg::MissingPatterns::Response& response);
   /// What of a plan is left to be measured.
