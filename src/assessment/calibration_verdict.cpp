@@ -153,7 +153,10 @@ class Judge {
         ids.push_back(residual.id);
       }
     }
-    steps.push_back("Look at the rejected samples (" + enumerate(ids) +
+    const bool are_windows = last_success_->cycle == Cycle::kMotion;
+    steps.push_back(std::string("Look at the ") +
+                    (are_windows ? "windows that are left out" : "rejected samples") + " (" +
+                    enumerate(ids) +
                     "): was the tracker's view blocked, the rotor touched, a current switched?");
   }
 

@@ -317,8 +317,11 @@ std::string renderReport(const CalibrationSession& session,
                          const std::vector<std::string>& recording,
                          const std::vector<Diagnosis>& diagnoses) {
   const std::vector<SampleInfluence> influences = influencesOf(session);
+  // Samples judge effects; motion has more of its own.
   const std::vector<ModelFit> fits =
-      compareEffects(session.start(), session.samples(), session.config());
+      session.motion() == nullptr
+          ? compareEffects(session.start(), session.samples(), session.config())
+          : std::vector<ModelFit>();
   YamlWriter writer;
   writer.map(0, "calibration_report");
   writeOrigin(writer, session, origin);

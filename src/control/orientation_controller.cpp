@@ -223,9 +223,10 @@ const Eigen::VectorXd& OrientationController::update(Stamp now) {
       isOnItsWay() ? std::min(motion_->plan().limits.error, options_.largest_tracking_error)
                    : options_.largest_tracking_error;
   if (tracking_error_ > largest_error) {
-    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) +
-         whyNotFollowing(now));
-    is_lost_ = true;
+    const std::string fault = deviceFault(now);
+    const std::string reason = fault.empty() ? limitAsReason() : fault;
+    stop(format("the rotor does not follow: it is %.2g rad away", tracking_error_) + reason);
+    is_lost_ = fault.empty();
     return currents_;
   }
   observe(now, rotor);

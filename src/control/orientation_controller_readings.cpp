@@ -98,7 +98,7 @@ std::string OrientationController::silenceAt(Stamp now) const {
 }
 
 /// What the coils have to do with a rotor that does not follow; nothing: nothing is known.
-std::string OrientationController::whyNotFollowing(Stamp now) const {
+std::string OrientationController::deviceFault(Stamp now) const {
   constexpr double kSilence = 0.05;  // [s]
   constexpr double kLeast = 0.2;     // [A]
   const double silence = currents_flow_ ? secondsBetween(*current_stamp_, now) : 0.0;
@@ -111,6 +111,10 @@ std::string OrientationController::whyNotFollowing(Stamp now) const {
                   commanded_sum_,
                   measured_sum_);
   }
+  return {};
+}
+
+std::string OrientationController::limitAsReason() const {
   return limit_ == CurrentLimit::kNone ? std::string() : "; " + inWords({share_, limit_});
 }
 

@@ -105,6 +105,7 @@ TEST_F(OrientationControllerStops, TellsWhetherTheCurrentsAreThoseItCommands) {
     const bool is_told =
         controller_->stopReason().find("see to the amplifier") != std::string::npos;
     EXPECT_EQ(is_told, share == 0.0) << controller_->stopReason();
+    EXPECT_EQ(controller_->isLost(), share != 0.0);
   }
 }
 

@@ -34,6 +34,9 @@ class Recording:
     def wait_until_up(self):
         """At once."""
 
+    def look(self, say):
+        """It goes on."""
+
     def close(self):
         self._bag.parent.mkdir()
         self._bag.touch()
@@ -51,6 +54,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.grade = "good"
         self.tells_nothing = False  # the recordings, of the parameters
         self.module = loaded()
+        self.recording = self.module.Recording
         for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
             patch = mock.patch.object(self.module, name, fake)
             patch.start()
@@ -214,7 +218,24 @@ class CalibrateByMotion(unittest.TestCase):
         self.grade = "contradicted"
         status, said = self.run_with()
         self.assertEqual(status, 1)
-        self.assertIn("What was recorded can be calibrated from", said)
+        # What it gave before is there already.
+        self.assertIn("What was recorded can be calibrated from: rosrun spherical_actuator_calibration calibrate_bag --force", said)
+
+    def test_tells_how_to_rescue_what_a_recorder_that_ended_has_left(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(self.module, "program", lambda _: "/bin/false"):
+            recording = self.recording("/actuator", pathlib.Path(folder))
+            said = []
+            while not said:
+                recording.look(said.append)
+            recording.look(said.append)
+            self.assertEqual(said, ["The recorder has ended (status 1): what comes now is not recorded."])
+            self.assertEqual(recording.close(), [])
+            self.assertEqual(recording.rescue().count("rosbag reindex"), 0)
+            begun = pathlib.Path(folder) / "recordings" / "1.bag.active"
+            begun.parent.mkdir()
+            begun.touch()
+            self.assertIn(f"rosbag reindex {begun} - or", recording.rescue())
+            self.assertIn("rosservice call /actuator/calibration/calibrate_motion", recording.rescue())
 
     def test_an_interrupt_tells_what_was_recorded(self):
         def interrupt(words):

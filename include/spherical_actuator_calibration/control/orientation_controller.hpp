@@ -97,7 +97,8 @@ class OrientationController {
   const char* readings() const { return parameters_.has_joints ? "joint angles" : "orientations"; }
   /// Why it stopped, or nothing.
   const std::string& stopReason() const { return stop_reason_; }
-  /// Whether it stopped because the rotor was too far from its reference.
+  /// Whether it stopped because the rotor was too far from its reference, though currents flowed
+  /// as commanded.
   bool isLost() const { return is_lost_; }
   /// Share of the wanted torque that the limits of the currents allowed in the last cycle.
   double torqueShare() const { return share_; }
@@ -116,7 +117,9 @@ class OrientationController {
   RotorState rotorAt(const Eigen::Vector3d& q) const;
   std::string defectAt(Stamp now) const;
   std::string silenceAt(Stamp now) const;
-  std::string whyNotFollowing(Stamp now) const;
+  /// Why currents do not flow as commanded; empty: they do.
+  std::string deviceFault(Stamp now) const;
+  std::string limitAsReason() const;
   bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
   void keepTorque();
   const ControlGains& gains() const {

@@ -55,6 +55,11 @@ void CalibrationNode::beginMotionAnew(std::optional<double> wanted_stddev) {
   waiting_windows_.clear();
   intake_.forgetMotion();
   motion_.forget(wanted_stddev);
+  if (wanted_stddev) {
+    private_node_.setParam(kMotionWish, *wanted_stddev);
+  } else {
+    private_node_.deleteParam(kMotionWish);
+  }
   windows_in_a_row_ = 0;
   is_in_motion_ = false;
 }
@@ -62,6 +67,9 @@ void CalibrationNode::beginMotionAnew(std::optional<double> wanted_stddev) {
 void CalibrationNode::takeUpMotion() {
   try {
     stored_windows_ = session_.motionWindows();
+    if (!stored_windows_.empty()) {
+      motion_.forget(options_.motion_wish);
+    }
     intake_.restoreMotion(stored_windows_);
   } catch (const std::exception& error) {
     last_error_ = printable(error.what());

@@ -19,6 +19,9 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
       map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
   options.motion_wanted_stddev =
       map.number("motion_wanted_stddev", wantedStddevRange(), options.motion_wanted_stddev);
+  if (map.has(kMotionWish)) {
+    options.motion_wish = map.number(kMotionWish, wantedStddevRange());
+  }
   options.report_page = map.boolean("report_page", options.report_page);
   acceptDiagnosticPeriod(map);
   map.finish();

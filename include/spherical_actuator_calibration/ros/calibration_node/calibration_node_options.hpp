@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <ros/node_handle.h>
@@ -19,8 +20,14 @@ struct CalibrationNodeOptions {
   double capture_duration = 1.0;  ///< of a capture that asks for none [s]
   /// Of each parameter of joints, poles and coils, that motion_progress tells the way to [rad].
   double motion_wanted_stddev = 1e-4;
+  /// The same of the motion that goes on, where begin_motion was told: it keeps it here for a node
+  /// that is started again.
+  std::optional<double> motion_wish;
   bool report_page = true;  ///< save also makes the page of the report, which takes seconds
 };
+
+/// Key of CalibrationNodeOptions::motion_wish.
+inline constexpr auto kMotionWish = "motion_wish";
 
 /// Of motion_wanted_stddev, whoever states it.
 ValueRange wantedStddevRange();
