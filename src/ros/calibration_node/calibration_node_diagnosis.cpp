@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <exception>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
@@ -26,9 +28,9 @@ bool CalibrationNode::explainSamples(msg::Diagnose::Request& /*request*/,
     response.success = 1;
     response.message = diagnoses.empty() ? "Nothing speaks for a mistake." : inWords(diagnoses);
     response.diagnoses = diagnosesToRos(diagnoses);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     response.success = 0;
-    response.message = error.what();
+    response.message = printable(error.what());
   }
   return true;
 }
@@ -41,9 +43,9 @@ bool CalibrationNode::checkParameters(msg::Diagnose::Request& /*request*/,
     response.success = static_cast<std::uint8_t>(check.is_valid);
     response.message = check.message;
     response.diagnoses = diagnosesToRos(check.changes);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     response.success = 0;
-    response.message = error.what();
+    response.message = printable(error.what());
   }
   return true;
 }
