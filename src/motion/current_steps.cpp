@@ -116,8 +116,10 @@ void CurrentSteps::addSampled(const MotionStreams& streams) {
 // deviations.
 double CurrentSteps::delayStddev(double noise) const {
   const double sampled = sampledStddev(noise);
-  const double changes = told_changes_ + changes_;
-  return changes > 0.0 ? (told_ + changes_ * sampled) / changes : sampled;
+  // Noise is in the changes of samples, and not in currents that commands tell.
+  const double of_samples = std::max(0.0, changes_ - 2.0 * noise * noise * values_);
+  const double changes = told_changes_ + of_samples;
+  return changes > 0.0 ? (told_ + of_samples * sampled) / changes : sampled;
 }
 
 double CurrentSteps::sampledStddev(double noise) const {

@@ -48,13 +48,11 @@ class Rehearsal(Session):
         self.poses = 0
         account = SimpleNamespace(say=self.said.append, set=lambda **fields: None)
         actuator = {"workspace": {"tilt_limit": 0.3}}
-        no_plan = SimpleNamespace(poses=lambda: [], keep=lambda poses: None)
-        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account, no_plan)
+        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account)
 
     # What it asks its calibration node.
-    def progress_of(self, poses):
-        assert not poses  # of no earlier plan
-        return []
+    def begun(self):
+        return []  # of no earlier plan
 
     def plan(self, poses, wanted_stddev, **_excitation):
         expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses
