@@ -266,7 +266,7 @@ void requireSuits(const SessionPlanRecord& record, const Actuator& actuator) {
 }  // namespace
 
 SessionPlanRecord loadSessionPlanFor(const Actuator& actuator, const std::string& path) {
-  const SessionPlanRecord record = loadSessionPlan(path);
+  SessionPlanRecord record = loadSessionPlan(path);
   try {
     requireSuits(record, actuator);
   } catch (const ConfigError& error) {
