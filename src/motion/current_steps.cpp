@@ -69,15 +69,15 @@ void CurrentSteps::add(const MotionStreams& streams) {
     return;
   }
   if (streams.response) {
-    double changes = 0.0;
+    double slopes = 0.0;
     eachChange(
         streams,
-        [&](const Eigen::RowVectorXd& change, double /*interval*/) {
-          changes += change.squaredNorm();
+        [&](const Eigen::RowVectorXd& change, double interval) {
+          slopes += change.squaredNorm() / interval;
         },
         [] {});
-    told_changes_ += changes;
-    told_ += changes * streams.response->lateness_stddev;
+    told_slopes_ += slopes;
+    told_ += slopes * streams.response->lateness_stddev;
     return;
   }
   addSampled(streams);
@@ -91,6 +91,8 @@ void CurrentSteps::addSampled(const MotionStreams& streams) {
     if (before_that.size() > 0) {
       stretch.add(change, before);
       changes_ += change.squaredNorm();
+      slopes_ += change.squaredNorm() / interval;
+      per_time_ += static_cast<double>(change.size()) / interval;
       next_ += change.dot(before);
       second_ += change.dot(before_that);
       values_ += static_cast<double>(change.size());
@@ -111,15 +113,14 @@ void CurrentSteps::addSampled(const MotionStreams& streams) {
   });
 }
 
-// What currents tell of their delay grows with the square of their changes: by that the estimate is
-// a mean of what each span alone would give, and at most as far off as the mean of their
-// deviations.
+// What currents tell of their delay grows with ∫(dI/dt)² dt: by that the estimate is a mean of what
+// each span alone would give, and at most as far off as the mean of their deviations.
 double CurrentSteps::delayStddev(double noise) const {
   const double sampled = sampledStddev(noise);
   // Noise is in the changes of samples, and not in currents that commands tell.
-  const double of_samples = std::max(0.0, changes_ - 2.0 * noise * noise * values_);
-  const double changes = told_changes_ + of_samples;
-  return changes > 0.0 ? (told_ + of_samples * sampled) / changes : sampled;
+  const double of_samples = std::max(0.0, slopes_ - 2.0 * noise * noise * per_time_);
+  const double slopes = told_slopes_ + of_samples;
+  return slopes > 0.0 ? (told_ + of_samples * sampled) / slopes : sampled;
 }
 
 double CurrentSteps::sampledStddev(double noise) const {

@@ -24,12 +24,14 @@ class CurrentSteps {
   double sampledStddev(double noise) const;
 
   // Where commands tell steps.
-  double told_changes_ = 0.0;  ///< sum of squared differences from one sample to the next
-  double told_ = 0.0;          ///< of the same, times the standard deviation
+  double told_slopes_ = 0.0;  ///< ∫(dI/dt)² dt
+  double told_ = 0.0;         ///< the same times the standard deviation, span by span
   // Of the others.
-  double changes_ = 0.0;  ///< sum of squared differences from one sample to the next
-  double next_ = 0.0;     ///< of their products with the ones before
-  double second_ = 0.0;   ///< with those before that
+  double slopes_ = 0.0;    ///< ∫(dI/dt)² dt
+  double per_time_ = 0.0;  ///< what the square of noise is multiplied by in half of it
+  double changes_ = 0.0;   ///< sum of squared differences from one sample to the next
+  double next_ = 0.0;      ///< of their products with the ones before
+  double second_ = 0.0;    ///< with those before that
   double duration_ = 0.0;
   double intervals_ = 0.0;
   double values_ = 0.0;     ///< in each sum

@@ -64,19 +64,23 @@ bool MotionRecorder::isSetBack(Sequence& sequence, Stamp last, Stamp stamp) {
 // As between two recordings: a driver that was started anew follows commands anew.
 bool MotionRecorder::isAfterPause(Stamp stamp) const {
   constexpr double kPause = 5.0;  // [s]
-  const auto is_long_ago = [&](const std::vector<Stamp>& stamps) {
-    return stamps.empty() || secondsBetween(stamps.back(), stamp) > kPause;
-  };
-  return is_long_ago(streams_.joint_stamps) && is_long_ago(streams_.current_stamps) &&
-         is_long_ago(streams_.orientation_stamps);
+  bool is_begun = false;
+  for (const std::vector<Stamp>* stamps :
+       {&streams_.joint_stamps, &streams_.current_stamps, &streams_.orientation_stamps}) {
+    if (!stamps->empty() && secondsBetween(stamps->back(), stamp) <= kPause) {
+      return false;
+    }
+    is_begun = is_begun || !stamps->empty();
+  }
+  return is_begun;
 }
 
 bool MotionRecorder::isNext(Sequence& sequence,
                             const std::vector<Stamp>& stamps,
                             Stamp stamp,
                             bool is_fine) {
-  if (is_fine && !stamps.empty() &&
-      (isSetBack(sequence, stamps.back(), stamp) || isAfterPause(stamp))) {
+  const bool is_set_back = is_fine && !stamps.empty() && isSetBack(sequence, stamps.back(), stamp);
+  if (is_set_back || (is_fine && isAfterPause(stamp))) {
     endSpan();
   }
   const bool is_next =

@@ -71,6 +71,37 @@ TEST(CurrentSteps, CountBySquaresOfTheirChanges) {
     const double weight = share * share;
     EXPECT_NEAR(both.delayStddev(0.0), (weight * sampled + 5e-6) / (weight + 1.0), 1e-7);
   }
+  // What is noise alone counts for nothing.
+  constexpr double kNoise = 1e-3;
+  MotionStreams still = stepping(1e-3, 0.0, 1e3 * kNoise);
+  still.currents *= 1e-3F;
+  CurrentSteps both;
+  both.add(still);
+  both.add(told);
+  EXPECT_LT(both.delayStddev(kNoise), 6e-6);
+}
+
+/// Currents of one slope everywhere, sampled for 10 s.
+MotionStreams rising(double interval) {
+  MotionStreams streams;
+  const auto count = static_cast<Eigen::Index>(std::lround(10.0 / interval));
+  streams.currents.resize(count, 1);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const double time = static_cast<double>(n) * interval;
+    streams.current_stamps.push_back(static_cast<Stamp>(std::llround(time * 1e9)));
+    streams.currents(n, 0) = static_cast<float>(0.1 * time);
+  }
+  return streams;
+}
+
+TEST(CurrentSteps, CountAlikeAtAllRates) {
+  MotionStreams slow = rising(5e-3);
+  slow.response = CommandResponse();
+  slow.response->lateness_stddev = 5e-6;
+  CurrentSteps both;
+  both.add(slow);
+  both.add(rising(1e-3));
+  EXPECT_NEAR(both.delayStddev(0.0), 0.5 * (5e-6 + 1e-3 / std::sqrt(12.0)), 1e-6);
 }
 
 TEST(CurrentSteps, AreNotThoseOverAGap) {

@@ -100,6 +100,21 @@ TEST(MotionRecorder, BeginsAnotherSpanWhereNothingCameForLong) {
   EXPECT_EQ(spans(6 * kSecond - 1, true), 1U);
 }
 
+// The tracker, say, which was not there before.
+TEST(MotionRecorder, BeginsAnotherSpanWithAStreamThatIsNew) {
+  constexpr Stamp kSecond = 1'000'000'000;
+  MotionRecorder recorder(2);
+  recorder.add(joints(kSecond, 0.0));
+  recorder.add(currents(kSecond));
+  recorder.add(OrientationMeasurement{9 * kSecond, Eigen::Quaterniond::Identity()});
+  recorder.add(joints(9 * kSecond + 1, 0.0));
+  recorder.add(currents(9 * kSecond + 1));
+  const MotionRecording recording = recorder.take();
+  ASSERT_EQ(recording.spans.size(), 2U);
+  EXPECT_TRUE(recording.spans[0].orientations.empty());
+  EXPECT_EQ(recording.spans[1].orientations.size(), 1U);
+}
+
 TEST(MotionRecorder, LosesLittleByASingleWrongStamp) {
   constexpr Stamp kSecond = 1'000'000'000;
   for (const Stamp jump : {100 * kSecond, -20 * kSecond}) {

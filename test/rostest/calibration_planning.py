@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The services plan_poses, load_plan and missing_patterns of the calibration node."""
 
+import math
 import pathlib
 import sys
 import tempfile
@@ -107,6 +108,8 @@ class Planning(unittest.TestCase):
         answer = self.plan(cycle="refine", max_poses=2, first=[begun], time_budget=10.0)
         self.assertFalse(answer.success)
         self.assertRegex(answer.message, "coil")
+        nowhere = PosePatterns(joint_position=(math.inf, 0.0, 0.0))
+        self.assertIn("joint_position", self.plan(cycle="refine", max_poses=2, first=[nowhere]).message)
         self.assertEqual(len(self.client.latest("plan_progress").poses), 3)
 
     def test_follows_a_plan_of_a_file(self):

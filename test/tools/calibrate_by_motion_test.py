@@ -38,9 +38,18 @@ class Recording:
         """It goes on."""
 
     def close(self):
-        self._bag.parent.mkdir()
-        self._bag.touch()
+        self.close_as(self._bag.name)
         return [str(self._bag)]
+
+    def close_as(self, name):
+        self._bag.parent.mkdir()
+        (self._bag.parent / name).touch()
+
+
+def close_without_end(recording):
+    """That of a recorder which was killed."""
+    recording.close_as("1.bag.active")
+    return []
 
 
 class CalibrateByMotion(unittest.TestCase):
@@ -53,6 +62,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.fails = lambda command: False
         self.grade = "good"
         self.tells_nothing = False  # the recordings, of the parameters
+        self.gives_parameters = True  # beside a report
         self.module = loaded()
         self.recording = self.module.Recording
         for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
@@ -67,7 +77,8 @@ class CalibrateByMotion(unittest.TestCase):
         words = [str(word) for word in command]
         self.started.append(words)
         if words[0] == "calibrate_bag" and not self.tells_nothing:
-            pathlib.Path(words[words.index("--output") + 1]).touch()
+            if self.gives_parameters:
+                pathlib.Path(words[words.index("--output") + 1]).touch()
             report = pathlib.Path(words[words.index("--report") + 1]) / "report.yaml"
             report.parent.mkdir()
             report.write_text(f"calibration_report: {{verdict: {{grade: {self.grade}}}}}")
@@ -221,7 +232,13 @@ class CalibrateByMotion(unittest.TestCase):
         # What it gave before is there already.
         self.assertIn("What was recorded can be calibrated from: rosrun spherical_actuator_calibration calibrate_bag --force", said)
 
-    def test_tells_how_to_rescue_what_a_recorder_that_ended_has_left(self):
+    def test_overwrites_a_report_without_parameters(self):
+        self.fails = lambda words: words[0] == "calibrate_bag"
+        self.gives_parameters = False
+        _, said = self.run_with()
+        self.assertIn("calibrate_bag --force", said)
+
+    def test_says_once_that_a_recorder_has_ended(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(self.module, "program", lambda _: "/bin/false"):
             recording = self.recording("/actuator", pathlib.Path(folder))
             said = []
@@ -230,12 +247,19 @@ class CalibrateByMotion(unittest.TestCase):
             recording.look(said.append)
             self.assertEqual(said, ["The recorder has ended (status 1): what comes now is not recorded."])
             self.assertEqual(recording.close(), [])
-            self.assertEqual(recording.rescue().count("rosbag reindex"), 0)
-            begun = pathlib.Path(folder) / "recordings" / "1.bag.active"
-            begun.parent.mkdir()
-            begun.touch()
-            self.assertIn(f"rosbag reindex {begun} - or", recording.rescue())
-            self.assertIn("rosservice call /actuator/calibration/calibrate_motion", recording.rescue())
+
+    def test_tells_how_to_rescue_what_a_killed_recorder_has_left(self):
+        for status in (0, 1, LOST):
+            with self.subTest(status), tempfile.TemporaryDirectory() as folder:
+                self.folder = pathlib.Path(folder) / "new"
+                self.fails = lambda words, status=status: status if words[0] == "run_motion" else 0
+                with mock.patch.object(Recording, "close", close_without_end):
+                    result, said = self.run_with()
+                self.assertEqual(result, 1)
+                bag = self.folder / "recordings" / "1.bag.active"
+                self.assertIn(f"rosbag reindex {bag} && rosrun spherical_actuator_calibration calibrate_bag --actuator", said)
+                self.assertTrue(said.endswith(str(bag)))
+                self.assertEqual("rosservice call /actuator/calibration/calibrate_motion 0" in said, status != 1)
 
     def test_an_interrupt_tells_what_was_recorded(self):
         def interrupt(words):

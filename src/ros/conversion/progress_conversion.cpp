@@ -44,6 +44,9 @@ CoilPattern patternFromRos(const std::vector<std::int32_t>& signed_numbers, std:
 PoseToMeasure poseFromRos(const msg::PosePatterns& message, std::size_t coils) {
   PoseToMeasure pose;
   pose.joint_position = Eigen::Vector3d(message.joint_position.data());
+  if (!pose.joint_position.allFinite()) {
+    throw ConfigError("joint_position: an angle is not finite.");
+  }
   for (const msg::CoilPattern& pattern : message.patterns) {
     if (pattern.coils.empty()) {
       throw ConfigError("patterns: each has a coil; without current it goes without saying.");

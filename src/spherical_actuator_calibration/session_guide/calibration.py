@@ -182,8 +182,10 @@ class Calibration:
 
     def begun(self):
         """Poses of the plan in force, in their order, that have samples, and lack others."""
-        poses = self._latest[PlanProgress].poses
-        return [pose_of(there.pose) for there in poses if there.has_sample and not there.is_measured]
+        poses = [pose_of(there.pose) for there in self._latest[PlanProgress].poses]
+        # Of what is held now: a topic may be of a moment ago.
+        there = zip(poses, self.progress_of(poses))
+        return [pose for pose, progress in there if progress.has_sample and not progress.is_measured]
 
     def plan(self, poses, wanted_stddev, cycle="refine", first=(), **excitation):
         """Planned poses, in their order; raises RuntimeError with the reason when there is no plan.
