@@ -43,28 +43,35 @@ PATIENCE = 1.0  # [s] between two looks for a node that is gone
 LATEST = 1.0  # [s] after which a message counts as new, whatever its time
 
 
-class Calibration:
-    """Calls the services of the calibration node, and waits for it where it is gone."""
+class Topics:
+    """What the calibration node told last. One of a process: rospy gives what is latched to the first subscriber only."""
 
-    def __init__(self, ns, narrator):
-        self._node = ns + "/calibration"
-        self._narrator = narrator
-        self._task = Task()
-        self._latest = {CalibrationStatus: None, ActuatorParameters: None, PlanProgress: None}
-        self._answered = rospy.Time()  # time of what the node answered last
+    def __init__(self, ns):
+        self.latest = {CalibrationStatus: None, ActuatorParameters: None, PlanProgress: None}
         self._subscribers = [
             rospy.Subscriber(ns + "/status", CalibrationStatus, self._keep),
             rospy.Subscriber(ns + "/parameters", ActuatorParameters, self._keep),
             rospy.Subscriber(ns + "/plan_progress", PlanProgress, self._keep),
         ]
 
+    def _keep(self, message):
+        self.latest[type(message)] = message
+
+
+class Calibration:
+    """Calls the services of the calibration node, and waits for it where it is gone."""
+
+    def __init__(self, ns, narrator, topics=None):
+        self._node = ns + "/calibration"
+        self._narrator = narrator
+        self._task = Task()
+        self._latest = (topics or Topics(ns)).latest
+        self._answered = rospy.Time()  # time of what the node answered last
+
     def serve(self, task, narrator):
         """From now on calls are of a task, whose Cancelled they raise, and tell its narrator what they wait for."""
         self._task = task
         self._narrator = narrator
-
-    def _keep(self, message):
-        self._latest[type(message)] = message
 
     def wait_until_up(self):
         self._wait_for("save")

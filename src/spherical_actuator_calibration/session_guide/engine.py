@@ -9,7 +9,7 @@ from spherical_actuator_calibration.text_files import printable
 
 from .account import Account
 from .actions import CaptureAction, ExciteAction, PlanAction, SaveAction, SessionAction
-from .calibration import Calibration
+from .calibration import Calibration, Topics
 from .job import Job, client_of
 from .laboratory import Laboratory
 from .revisions import Revisions
@@ -74,14 +74,15 @@ class Engine:
         coils = len(actuator.get("coils", []))
         self._laboratory = Laboratory(ns, coils, readings_of(ns, actuator))
         console = Terminal()
-        bench = Calibration(ns, console)
+        topics = Topics(ns)
+        bench = Calibration(ns, console, topics)
         self._lanes = [Lane() for _ in range(3)]
         actions = (
             (CaptureAction(ns, bench, self._laboratory), 0),
             (ExciteAction(ns, bench, self._laboratory, coils), 0),
             (SessionAction(ns, bench, self._laboratory, actuator), 0),
-            (PlanAction(Calibration(ns, console)), 1),
-            (SaveAction(Calibration(ns, console)), 2),
+            (PlanAction(Calibration(ns, console, topics)), 1),
+            (SaveAction(Calibration(ns, console, topics)), 2),
         )
         for action, lane in actions:
             self._lanes[lane].serve(ns, action)
