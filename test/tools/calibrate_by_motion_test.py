@@ -245,7 +245,7 @@ class CalibrateByMotion(unittest.TestCase):
             while not said:
                 recording.look(said.append)
             recording.look(said.append)
-            self.assertEqual(said, ["The recorder has ended (status 1): what comes now is not recorded."])
+            self.assertEqual(said, ["The recorder has ended (status 1): what comes now is not recorded. How to go on is told at the end of the motion."])
             self.assertEqual(recording.close(), [])
 
     def test_tells_how_to_rescue_what_a_killed_recorder_has_left(self):
