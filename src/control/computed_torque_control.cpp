@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
@@ -11,6 +12,14 @@ namespace sac {
 void validate(const ControlGains& gains) {
   requireInRange("proportional gain", gains.proportional, ValueRange::positive("1/s²"));
   requireInRange("derivative gain", gains.derivative, ValueRange::positive("1/s"));
+}
+
+const Actuator& controllable(const Actuator& actuator) {
+  validate(actuator);
+  if (!actuator.hasTorqueModel()) {
+    throw ConfigError("An actuator without poles, coils and torque curve cannot be controlled.");
+  }
+  return actuator;
 }
 
 Eigen::Vector3d computedTorque(const RigidRotor& rotor,

@@ -19,14 +19,6 @@ constexpr double kAtLimit = 1.0 - 1e-9;
 /// The observer learns from no reading that is older [s]: its delay would shake the rotor.
 constexpr double kLatestLesson = 0.02;
 
-const Actuator& withTorqueModel(const Actuator& actuator) {
-  validate(actuator);
-  if (!actuator.hasTorqueModel()) {
-    throw ConfigError("An actuator without poles, coils and torque curve cannot be controlled.");
-  }
-  return actuator;
-}
-
 /// The plan with limits that are the controller's as well.
 MotionPlan withinLimits(const MotionPlan& plan, const OrientationControllerOptions& options) {
   MotionPlan limited = plan;
@@ -66,7 +58,7 @@ std::string inWords(const TorqueCut& cut) {
 
 OrientationController::OrientationController(const Actuator& design,
                                              const OrientationControllerOptions& options)
-    : parameters_(withTorqueModel(design)),
+    : parameters_(controllable(design)),
       options_(options),
       configured_unbalance_(options.rotor.unbalance),
       curve_(*design.torque_curve),
@@ -81,7 +73,7 @@ OrientationController::OrientationController(const Actuator& design,
 // What a motion shows belongs to one set of parameters, and a torque that jumped would be its
 // fault: new ones wait.
 void OrientationController::setParameters(const Actuator& parameters) {
-  withTorqueModel(parameters);
+  controllable(parameters);
   if (parameters.poles.size() != parameters_.poles.size() ||
       parameters.coils.size() != parameters_.coils.size()) {
     throw ConfigError("The parameters belong to an actuator with other poles or coils.");
@@ -145,9 +137,9 @@ void OrientationController::requireWay(const Eigen::Matrix3d& R_stator_rotor) co
   bool leaves = false;
   for (int n = 1; n <= kPoints && q; ++n) {
     q = jointAngles(joints_, begin * rotationExp(way * n / static_cast<double>(kPoints)), *q);
-    leaves = leaves || (q && !isInWorkspace(*q, options_.workspace_margin));
+    leaves = leaves || (q && !parameters_.workspace.contains(*q, options_.workspace_margin));
   }
-  if (!q || !isInWorkspace(*q, 0.0)) {
+  if (!q || !parameters_.workspace.contains(*q)) {
     throw DataError(format("The target lies outside of the workspace, ±%.3g rad of tilt.",
                            parameters_.workspace.tilt_limit));
   }

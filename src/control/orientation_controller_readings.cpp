@@ -65,7 +65,7 @@ std::string OrientationController::defectAt(Stamp now) const {
   if (std::abs(age) > options_.largest_age) {
     return format("the %s are %.2g s old", readings(), age);
   }
-  if (!isInWorkspace(measured_->position, options_.workspace_margin)) {
+  if (!parameters_.workspace.contains(measured_->position, options_.workspace_margin)) {
     return format("the rotor is outside of the workspace, ±%.3g rad of tilt",
                   parameters_.workspace.tilt_limit);
   }
@@ -116,10 +116,6 @@ std::string OrientationController::deviceFault(Stamp now) const {
 
 std::string OrientationController::limitAsReason() const {
   return limit_ == CurrentLimit::kNone ? std::string() : "; " + inWords({share_, limit_});
-}
-
-bool OrientationController::isInWorkspace(const Eigen::Vector3d& q, double margin) const {
-  return q.head<2>().cwiseAbs().maxCoeff() <= parameters_.workspace.tilt_limit + margin;
 }
 
 }  // namespace sac

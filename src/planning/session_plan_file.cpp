@@ -229,8 +229,8 @@ void requireUnit(const SessionPlanRecord& record, const Actuator& actuator) {
 
 void requireInWorkspace(const PlannedPose& pose, const Actuator& actuator) {
   constexpr double kRounding = 1e-9;  // [rad] of a file
-  const double tilt = pose.joint_position.head<2>().cwiseAbs().maxCoeff();
-  if (tilt > actuator.workspace.tilt_limit + kRounding) {
+  if (!actuator.workspace.contains(pose.joint_position, kRounding)) {
+    const double tilt = pose.joint_position.head<2>().cwiseAbs().maxCoeff();
     throw ConfigError("a tilt of " + shortNumber(tilt) +
                       " rad is beyond the workspace's tilt_limit of " +
                       shortNumber(actuator.workspace.tilt_limit) + " rad.");

@@ -31,11 +31,8 @@ struct Parameters {
 };
 
 void validate(const ClosedLoopOptions& options) {
-  validate(options.truth);
-  validate(options.model);
-  if (!options.truth.hasTorqueModel() || !options.model.hasTorqueModel()) {
-    throw ConfigError("An actuator without poles, coils and torque curve cannot be controlled.");
-  }
+  controllable(options.truth);
+  controllable(options.model);
   validate(options.rotor);
   validate(options.gains);
   requireInRange("duration", options.duration, ValueRange::positive("s"));

@@ -54,6 +54,11 @@ struct Workspace {
   /// Largest |q₁| and |q₂| [rad], in (0, π/2); of a rotor without joints, those of
   /// freeRotorJoints().
   double tilt_limit = 0.6;
+
+  /// Whether it may be at raw sensor angles q [rad], or up to `margin` [rad] of tilt beyond.
+  bool contains(const Eigen::Vector3d& q, double margin = 0.0) const {
+    return q.head<2>().cwiseAbs().maxCoeff() <= tilt_limit + margin;
+  }
 };
 
 /// Torque −(b + c/√(ω² + v²)) ω on a rotor that turns with ω, v = 0.05 rad/s.

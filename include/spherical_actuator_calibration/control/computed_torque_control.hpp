@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 
 namespace sac {
@@ -14,6 +15,10 @@ struct ControlGains {
 
 /// Throws ConfigError that names the gain and its range.
 void validate(const ControlGains& gains);
+
+/// The same actuator. Throws ConfigError unless it is valid, and has the poles, coils and torque
+/// curve of a torque model.
+const Actuator& controllable(const Actuator& actuator);
 
 /// A desired motion at one time. Velocity and acceleration in the desired rotor frame.
 struct DesiredMotion {

@@ -120,7 +120,6 @@ class OrientationController {
   /// Why currents do not flow as commanded; empty: they do.
   std::string deviceFault(Stamp now) const;
   std::string limitAsReason() const;
-  bool isInWorkspace(const Eigen::Vector3d& q, double margin) const;
   void keepTorque();
   const ControlGains& gains() const {
     return isInMotion() ? options_.motion_gains : options_.gains;

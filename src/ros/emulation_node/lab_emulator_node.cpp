@@ -174,11 +174,10 @@ Eigen::Vector3d LabEmulatorNode::targetOf(const geometry_msgs::QuaternionStamped
 }
 
 void LabEmulatorNode::setTarget(const Eigen::Vector3d& target) {
-  const double limit = truth_.workspace.tilt_limit;
   constexpr double kRounding = 1e-6;
-  if (!target.allFinite() || target.head<2>().cwiseAbs().maxCoeff() > limit + kRounding) {
-    throw DataError("the target lies outside of the workspace, ±" + std::to_string(limit) +
-                    " rad of tilt.");
+  if (!target.allFinite() || !truth_.workspace.contains(target, kRounding)) {
+    throw DataError("the target lies outside of the workspace, ±" +
+                    std::to_string(truth_.workspace.tilt_limit) + " rad of tilt.");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   // Joints turn to the very angles, an orientation is reached by the shortest turn.
