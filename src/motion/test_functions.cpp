@@ -1,4 +1,4 @@
-#include "test_functions.hpp"
+#include "spherical_actuator_calibration/motion/test_functions.hpp"
 
 #include <array>
 

@@ -6,7 +6,7 @@
 
 #include "motion_point.hpp"
 #include "motion_span.hpp"
-#include "test_functions.hpp"
+#include "spherical_actuator_calibration/motion/test_functions.hpp"
 
 namespace sac {
 

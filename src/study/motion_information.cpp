@@ -1,7 +1,6 @@
 #include "spherical_actuator_calibration/study/motion_information.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "spherical_actuator_calibration/control/motion_run.hpp"
 #include "spherical_actuator_calibration/estimation/model_point.hpp"
 #include "spherical_actuator_calibration/motion/motion_options.hpp"
+#include "spherical_actuator_calibration/motion/test_functions.hpp"
 
 namespace sac {
 namespace {
@@ -48,25 +48,21 @@ struct Moment {
   Eigen::Matrix3d current_torque;  ///< R Q Qᵀ Rᵀ [(N·m/A)²]
 };
 
-/// A test function and its first two derivatives by s in [−1, 1]: φ″ is the Legendre polynomial
-/// P_k, φ and φ′ vanish at both ends.
-struct TestValue {
-  double value = 0.0;
-  double slope = 0.0;
-  double curvature = 0.0;
+/// All test functions at one sample of a window.
+struct TestsAtSample {
+  TestFunctionValues values;
+  TestFunctionBends bends;
 };
 
-TestValue testFunction(int k, double s) {
-  std::array<double, kTests + 4> P{1.0, s};
-  for (std::size_t n = 1; n + 1 < P.size(); ++n) {
-    const auto order = static_cast<double>(n);
-    P.at(n + 1) = ((2.0 * order + 1.0) * s * P.at(n) - order * P.at(n - 1)) / (order + 1.0);
+std::vector<TestsAtSample> testsOfWindow() {
+  const TestFunctions functions(0.0, kWindow, kTests);
+  std::vector<TestsAtSample> tests(kSamples);
+  for (int n = 0; n < kSamples; ++n) {
+    TestsAtSample& at = tests[static_cast<std::size_t>(n)];
+    functions.evaluate((n + 0.5) * kStep, at.values);
+    functions.evaluate((n + 0.5) * kStep, at.bends);
   }
-  const auto at = [&](int n) { return P.at(static_cast<std::size_t>(n)); };
-  const double k2 = 2.0 * k;
-  return {((at(k + 2) - at(k)) / (k2 + 3.0) - (at(k) - at(k - 2)) / (k2 - 1.0)) / (k2 + 1.0),
-          (at(k + 1) - at(k - 1)) / (k2 + 1.0),
-          at(k)};
+  return tests;
 }
 
 /// The motion as the controller would carry it out, were the model true.
@@ -198,26 +194,26 @@ class PlannedMotion {
   ModelPoint point_;   ///< nominal
 };
 
-/// Information of one window of torques by one test function.
+/// Information of one window of torques by one of its test functions.
 void addTest(const std::vector<Moment>& moments,
+             const std::vector<TestsAtSample>& tests,
              int test,
              const MotionSensors& sensors,
              double weight,
              Eigen::MatrixXd& information) {
-  const double scale = 2.0 / kWindow;
   Rows G = Rows::Zero(3, information.cols());
   Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
   const double joint_variance = sensors.joint_stddev * sensors.joint_stddev / sensors.joint_rate;
   const double current_variance =
       sensors.current_stddev * sensors.current_stddev / sensors.current_rate;
-  for (int n = 0; n < kSamples; ++n) {
-    const Moment& moment = moments[static_cast<std::size_t>(n)];
-    const TestValue phi = testFunction(test + 2, (2.0 * n + 1.0) / kSamples - 1.0);
-    G += kStep * (scale * phi.slope * moment.momentum + phi.value * moment.torque);
+  for (std::size_t n = 0; n < moments.size(); ++n) {
+    const Moment& moment = moments[n];
+    const double value = tests[n].values.value[test];
+    G += kStep * (tests[n].values.first[test] * moment.momentum + value * moment.torque);
     const Eigen::Matrix3d by_joints =
-        scale * scale * phi.curvature * moment.joint_momentum - phi.value * moment.joint_torque;
+        tests[n].bends.second[test] * moment.joint_momentum - value * moment.joint_torque;
     noise += kStep * (joint_variance * by_joints * by_joints.transpose() +
-                      current_variance * phi.value * phi.value * moment.current_torque);
+                      current_variance * value * value * moment.current_torque);
   }
   information += weight * G.transpose() * noise.llt().solve(G);
 }
@@ -250,6 +246,7 @@ Eigen::VectorXd expectedStddevs(const CalibrationModel& model,
   prior.segment(size + kCurrentDelay, 2).setConstant(0.05);
   Eigen::MatrixXd information = prior.cwiseAbs2().cwiseInverse().asDiagonal();
 
+  const std::vector<TestsAtSample> tests = testsOfWindow();
   const int windows = static_cast<int>(plan.duration / kWindow);
   for (int window = every / 2; window < windows; window += every) {
     std::vector<Moment> moments;
@@ -261,7 +258,7 @@ Eigen::VectorXd expectedStddevs(const CalibrationModel& model,
       information += weight * turning.transpose() * turning;
     }
     for (int test = 0; test < kTests; ++test) {
-      addTest(moments, test, sensors, every, information);
+      addTest(moments, tests, test, sensors, every, information);
     }
   }
   const Eigen::MatrixXd covariance =
