@@ -133,10 +133,10 @@ std::vector<MotionSlice> LiveSession::motionWindows() const {
   return windows;
 }
 
-StoredPlan LiveSession::plan() const {
-  StoredPlan plan = database_.plan();
+PosesToMeasure LiveSession::plan() const {
+  PosesToMeasure plan = database_.plan();
   const std::size_t coils = modelledCoils(session_.model().space().nominal());
-  for (const StoredPose& pose : plan) {
+  for (const PoseToMeasure& pose : plan) {
     for (const CoilPattern& pattern : pose.patterns) {
       const bool has_all = std::all_of(
           pattern.begin(), pattern.end(), [&](const SignedCoil& one) { return one.coil < coils; });

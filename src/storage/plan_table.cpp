@@ -29,7 +29,7 @@ CoilPattern patternOf(const std::string& text) {
 
 }  // namespace
 
-void replace(const SQLite::Database& database, const StoredPlan& plan) {
+void replace(const SQLite::Database& database, const PosesToMeasure& plan) {
   RowWriter(database, "DELETE FROM planned_patterns").write();
   RowWriter(database, "DELETE FROM planned_poses").write();
   RowWriter pose(database,
@@ -49,14 +49,14 @@ void replace(const SQLite::Database& database, const StoredPlan& plan) {
   }
 }
 
-StoredPlan find(const SQLite::Database& database) {
-  StoredPlan plan;
+PosesToMeasure find(const SQLite::Database& database) {
+  PosesToMeasure plan;
   RowReader pose(database,
                  "SELECT position, joint_1, joint_2, joint_3, validation FROM planned_poses "
                  "ORDER BY position");
   while (pose.next()) {
     const std::int64_t position = pose.integer();
-    StoredPose& one = plan.emplace_back();
+    PoseToMeasure& one = plan.emplace_back();
     for (double& angle : one.joint_position) {
       angle = pose.number();
     }

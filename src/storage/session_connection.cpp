@@ -1,11 +1,11 @@
 #include "session_connection.hpp"
 
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include <SQLiteCpp/Transaction.h>
 
+#include "files_beside.hpp"
 #include "row_access.hpp"
 #include "session_schema.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
@@ -48,35 +48,6 @@ constexpr char kLost[] =
       path + ": " + failure +
       ", because the file was removed, replaced or changed at this moment; put it back as it "
       "was, and start the node again.");
-}
-
-/// What stands at a path where a file, or nothing, belongs; empty when there is nothing wrong.
-std::string wrongKind(const std::string& path) {
-  std::error_code ignored;
-  switch (std::filesystem::symlink_status(path, ignored).type()) {
-    case std::filesystem::file_type::none:
-    case std::filesystem::file_type::not_found:
-    case std::filesystem::file_type::regular:
-      return "";
-    case std::filesystem::file_type::directory:
-      return "a folder";
-    case std::filesystem::file_type::symlink:
-      return "a symbolic link";
-    case std::filesystem::file_type::fifo:
-      return "a FIFO";
-    case std::filesystem::file_type::socket:
-      return "a socket";
-    default:
-      return "a device";
-  }
-}
-
-[[noreturn]] void throwBeside(const std::string& path,
-                              const std::string& failure,
-                              const std::string& beside,
-                              const std::string& kind) {
-  throw DataError(path + ": " + failure + ", because " + beside + " is " + kind +
-                  ", not a file; remove it, and try again.");
 }
 
 /// Undoes before what a transaction that was killed left half written.
@@ -161,14 +132,7 @@ void SessionConnection::write(const std::string& failure,
 
 void SessionConnection::requireFilesBeside(const std::string& failure) const {
   // Links are followed to where SQLite has its journal.
-  const std::string file = sqlite3_db_filename(database_.getHandle(), "main");
-  for (const char* const ending : {"-journal", "-wal", "-shm"}) {
-    const std::string beside = file + ending;
-    const std::string kind = wrongKind(beside);
-    if (!kind.empty()) {
-      throwBeside(path_, failure, beside, kind);
-    }
-  }
+  sac::requireFilesBeside(path_, sqlite3_db_filename(database_.getHandle(), "main"), failure);
 }
 
 void SessionConnection::requireInPlace(const std::string& failure) const {

@@ -130,13 +130,13 @@ void SessionDatabase::forgetMotion() {
   tables_->connection.write("the motion was not forgotten", motion_table::clear);
 }
 
-void SessionDatabase::setPlan(const StoredPlan& plan) {
+void SessionDatabase::setPlan(const PosesToMeasure& plan) {
   tables_->connection.write(notStored("the plan"), [&](SQLite::Database& database) {
     plan_table::replace(database, plan);
   });
 }
 
-StoredPlan SessionDatabase::plan() const {
+PosesToMeasure SessionDatabase::plan() const {
   return tables_->connection.read(kNotRead,
                                   [this] { return plan_table::find(tables_->database()); });
 }

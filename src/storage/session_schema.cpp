@@ -246,7 +246,8 @@ bool hasSessionSchema(const SQLite::Database& database, const std::string& path)
     return false;
   }
   if (application != kApplicationId) {
-    throw DataError(path + ": this is not a session database; choose another directory.");
+    throw DataError(path +
+                    ": this is not a session database; choose another one, or another directory.");
   }
   if (version > kSchemaVersion) {
     throw DataError(path + ": a newer version of this package made this session database (format " +

@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 """The services plan_poses, load_plan and missing_patterns of the calibration node."""
 
+import contextlib
 import math
 import pathlib
+import shutil
+import sqlite3
 import sys
 import tempfile
 import unittest
@@ -130,6 +133,37 @@ class Planning(unittest.TestCase):
             self.assertIn(str(unusable), answer.message)
             self.assertEqual(answer.poses, [])
         self.assertEqual(len(self.client.latest("plan_progress").poses), 4)
+
+    def test_follows_an_earlier_session(self):
+        path = self.earlier_session([((0.1, 0.2, 0.3), 3, 0), ((0.1, 0.2, 0.3), 7, 0), ((-0.2, 0.0, 1.0), 3, 1)])
+        answer = self.client.call("load_plan", path=str(path))
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(answer.current, 1.5)
+        patterns = [[tuple(pattern.coils) for pattern in pose.patterns] for pose in answer.poses]
+        self.assertEqual(patterns, [[(3,), (7,)], [(3,)]])
+        self.assertEqual([pose.validation for pose in answer.poses], [0, 1])
+        wait_for(lambda: [there.pose for there in self.client.latest("plan_progress").poses] == answer.poses, "the plan")
+        own = next(pathlib.Path(self.folder).rglob("calibration/**/session.db"))
+        answer = self.client.call("load_plan", path=str(own))
+        self.assertIn("not an earlier one", answer.message)
+        self.assertEqual(len(self.client.latest("plan_progress").poses), 2)
+
+    def earlier_session(self, samples):
+        """A copy of this node's session, as yet without samples, that has these: joint angles, coil, held out."""
+        path = pathlib.Path(self.folder) / "earlier.db"
+        shutil.copy(next(pathlib.Path(self.folder).rglob("calibration/**/session.db")), path)
+        with contextlib.closing(sqlite3.connect(path)) as file:
+            for number, (joints, excited, held_out) in enumerate(samples, 1):
+                file.execute(
+                    "INSERT INTO samples (id, date, stamp, validation, joint_1, joint_2, joint_3, joint_1_stddev, "
+                    "joint_2_stddev, joint_3_stddev, has_orientation, has_torque, duration, measurements) "
+                    "VALUES (?, '', 0, ?, ?, ?, ?, 1e-6, 1e-6, 1e-6, 0, 0, 1.0, 1)",
+                    (number, held_out, *joints),
+                )
+                currents = [(number, coil, 1.5 if coil == excited else 0.0) for coil in range(1, 25)]
+                file.executemany("INSERT INTO sample_currents VALUES (?, ?, ?)", currents)
+            file.commit()
+        return path
 
     def test_refuses_what_it_cannot_plan(self):
         for request, word in (

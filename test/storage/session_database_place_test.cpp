@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/measurement/pose_to_measure.hpp"
 #include "spherical_actuator_calibration/storage/session_database.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
@@ -343,7 +344,7 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
 }
 
 TEST_F(PlaceTest, APlanOfTheSeventhFormatIsToCalibrateBy) {
-  StoredPlan plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}}, true}};
+  PosesToMeasure plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}}, true}};
   SessionDatabase(path(), identity()).setPlan(plan);
   database_examples::change(
       path(), "ALTER TABLE planned_poses DROP COLUMN validation; PRAGMA user_version = 7");

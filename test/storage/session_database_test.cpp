@@ -11,6 +11,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/measurement/pose_to_measure.hpp"
 #include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
@@ -91,8 +92,8 @@ TEST_F(SessionDatabaseTest, KeepsEveryBitOfAMotion) {
 }
 
 TEST_F(SessionDatabaseTest, KeepsAPlanUntilItIsDone) {
-  const StoredPlan plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}, {{2, -1}, {23, 1}}}},
-                        {Eigen::Vector3d(0.4, 0.5, -0.0), {}, true}};
+  const PosesToMeasure plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}, {{2, -1}, {23, 1}}}},
+                            {Eigen::Vector3d(0.4, 0.5, -0.0), {}, true}};
   open().setPlan({{Eigen::Vector3d::Zero(), {{{7, 1}}}}});
   open().setPlan(plan);
   EXPECT_EQ(open().plan(), plan);

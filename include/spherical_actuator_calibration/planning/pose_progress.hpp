@@ -2,19 +2,11 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
+#include "spherical_actuator_calibration/measurement/pose_to_measure.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
-
-/// A pose, and what is excited there (message PosePatterns).
-struct PoseToMeasure {
-  Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
-  std::vector<CoilPattern> patterns;                         ///< in turn; none: orientation only
-  bool validation = false;  ///< to judge: samples that are held out count, and no others
-};
 
 /// What of a pose is measured, by samples that come one after the other: the one rule for all who
 /// ask (message PoseProgress). Samples at the pose count (isAtPose()) that are held out as it is. A

@@ -17,6 +17,8 @@
 
 namespace sac {
 
+struct PoseToMeasure;
+
 /// The calibration of one unit as it grows: samples, cycles and revisions of the parameters. What a
 /// function acknowledges by returning is in the session database; when it throws, nothing has
 /// changed. Dates are ISO 8601 with time, given by the caller. Not thread-safe.
@@ -61,9 +63,9 @@ class LiveSession {
   void forgetMotion() { database_.forgetMotion(); }
 
   /// Remembers which poses are to be measured, until all samples are refined together or cleared.
-  void setPlan(const StoredPlan& plan) { database_.setPlan(plan); }
+  void setPlan(const std::vector<PoseToMeasure>& plan) { database_.setPlan(plan); }
   /// Throws DataError.
-  StoredPlan plan() const;
+  std::vector<PoseToMeasure> plan() const;
 
   /// What the cycle motion is run on; null: nothing. It is not stored.
   void setMotion(std::shared_ptr<const MotionRecording> motion) {

@@ -14,9 +14,10 @@
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 #include "spherical_actuator_calibration/motion/motion_slice.hpp"
 #include "spherical_actuator_calibration/storage/revision.hpp"
-#include "spherical_actuator_calibration/storage/stored_plan.hpp"
 
 namespace sac {
+
+struct PoseToMeasure;
 
 /// What the database of one unit belongs to.
 struct SessionIdentity {
@@ -66,9 +67,9 @@ class SessionDatabase {
   void forgetMotion();
 
   /// Stores which poses are to be measured, in the place of an earlier plan.
-  void setPlan(const StoredPlan& plan);
+  void setPlan(const std::vector<PoseToMeasure>& plan);
   /// Empty: none, or all samples were refined together or cleared since.
-  StoredPlan plan() const;
+  std::vector<PoseToMeasure> plan() const;
 
   /// Stores the report of a cycle that changed nothing. Its residuals name stored samples.
   void addCycle(const CycleReport& report, const std::string& date);

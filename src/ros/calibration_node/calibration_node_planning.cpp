@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -21,6 +24,7 @@
 #include "spherical_actuator_calibration/ros/calibration_node/calibration_node.hpp"
 #include "spherical_actuator_calibration/ros/conversion/plan_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
+#include "spherical_actuator_calibration/storage/earlier_session.hpp"
 
 namespace sac {
 namespace {
@@ -56,6 +60,38 @@ PlannedCapture plannedCapture(const msg::CapturePlanned::Request& request,
     planned.current = request.current;
   }
   return planned;
+}
+
+void addPoses(const PosePlan& plan, bool validation, PosesToMeasure& poses) {
+  for (const PlannedPose& pose : plan.poses) {
+    poses.push_back({pose.joint_position, pose.excitations(), validation});
+  }
+}
+
+/// Of an earlier session, or of the plan of one. `database`: that of the present session.
+EarlierSession posesOfFile(const std::string& path,
+                           const CalibrationSession& calibration,
+                           const std::string& database) {
+  const Actuator& nominal = calibration.model().space().nominal();
+  std::error_code ignored;
+  if (std::filesystem::equivalent(path, database, ignored)) {
+    throw ConfigError(path + ": that is the session which goes on, not an earlier one.");
+  }
+  EarlierSession poses;
+  if (isDatabase(path)) {
+    poses = loadEarlierSession(path, nominal, calibration.config().estimation.current_threshold);
+  } else {
+    const SessionPlanRecord record = loadSessionPlanFor(nominal, path);
+    addPoses(record.plan, false, poses.poses);
+    poses.current = record.current;
+  }
+  const bool excites = std::any_of(poses.poses.begin(), poses.poses.end(), [](const auto& pose) {
+    return !pose.patterns.empty();
+  });
+  if (excites) {
+    requireInRange(path + ": the current of a coil", poses.current, excitationRange(calibration));
+  }
+  return poses;
 }
 
 }  // namespace
@@ -100,7 +136,7 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
 }
 
 /// What of a plan is left to be measured; the caller holds the session, or is alone with it.
-void CalibrationNode::followPlan(const StoredPlan& poses) {
+void CalibrationNode::followPlan(const PosesToMeasure& poses) {
   const CalibrationSession& calibration = session_.calibration();
   plan_ = nullptr;
   if (poses.empty()) {
@@ -108,7 +144,7 @@ void CalibrationNode::followPlan(const StoredPlan& poses) {
   }
   plan_ = std::make_shared<PlanProgress>(calibration.config().estimation.current_threshold,
                                          calibration.model().space().joints() > 0);
-  for (const StoredPose& pose : poses) {
+  for (const PoseToMeasure& pose : poses) {
     plan_->addPose({pose.joint_position, pose.patterns, pose.validation});
   }
   plan_->countAnew(calibration.samples());
@@ -169,16 +205,17 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
       plan_options.start =
           held.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : held.back().joint_position;
     }
-    std::vector<PoseToMeasure> first;
+    PosesToMeasure poses;
     for (const msg::PosePatterns& pose : request.first) {
-      first.push_back(poseFromRos(pose, problem.model->space().coils()));
+      poses.push_back(poseFromRos(pose, problem.model->space().coils()));
     }
     problem.held = &held;
     plan_options = withMeasuredNoise(std::move(plan_options), held);
     const PosePlan plan = sac::planPoses(problem, plan_options);
     response = planToRos(plan, plan_options.current, problem.model->space().coils());
+    addPoses(plan, request.validation != 0, poses);
     const std::lock_guard<std::mutex> lock(session_mutex_);
-    adopt(first, plan, request.validation != 0);
+    adopt(poses);
   } catch (const std::exception& error) {
     response.success = 0;
     response.message = printable(error.what());
@@ -189,17 +226,15 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
 bool CalibrationNode::loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response) {
   try {
     // Model and configuration never change while the node runs.
-    const CalibrationSession& calibration = session_.calibration();
-    const Actuator& nominal = calibration.model().space().nominal();
-    const SessionPlanRecord record = loadSessionPlanFor(nominal, request.path);
-    requireInRange(
-        request.path + ": assumed.current", record.current, excitationRange(calibration));
+    const EarlierSession plan =
+        posesOfFile(request.path, session_.calibration(), session_.database().path());
     answer(response, [&] {
-      adopt({}, record.plan, false);
-      response.current = record.current;
-      response.poses = posesToRos(record.plan, record.current, nominal.coils.size());
-      return std::to_string(record.plan.poses.size()) + " poses of " + request.path +
-             " are planned.";
+      adopt(plan.poses);
+      response.current = plan.current;
+      for (const PoseToMeasure& pose : plan.poses) {
+        response.poses.push_back(poseToRos(pose));
+      }
+      return std::to_string(plan.poses.size()) + " poses of " + request.path + " are planned.";
     });
   } catch (const std::exception& error) {
     response.message = printable(error.what());
@@ -207,16 +242,7 @@ bool CalibrationNode::loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::R
   return true;
 }
 
-void CalibrationNode::adopt(const std::vector<PoseToMeasure>& first,
-                            const PosePlan& plan,
-                            bool validation) {
-  StoredPlan poses;
-  for (const PoseToMeasure& pose : first) {
-    poses.push_back({pose.joint_position, pose.patterns, pose.validation});
-  }
-  for (const PlannedPose& pose : plan.poses) {
-    poses.push_back({pose.joint_position, pose.excitations(), validation});
-  }
+void CalibrationNode::adopt(const PosesToMeasure& poses) {
   session_.setPlan(poses);
   followPlan(poses);
   topics_.publishPlan(plan_.get());

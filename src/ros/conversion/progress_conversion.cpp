@@ -57,13 +57,18 @@ PoseToMeasure poseFromRos(const msg::PosePatterns& message, std::size_t coils) {
   return pose;
 }
 
-msg::PoseProgress progressToRos(const PoseProgress& progress) {
-  const PoseToMeasure& pose = progress.pose();
-  msg::PoseProgress message;
+msg::PosePatterns poseToRos(const PoseToMeasure& pose) {
+  msg::PosePatterns message;
   std::copy_n(
-      pose.joint_position.data(), pose.joint_position.size(), message.pose.joint_position.begin());
-  message.pose.patterns = patternsToRos(pose.patterns);
-  message.pose.validation = static_cast<std::uint8_t>(pose.validation);
+      pose.joint_position.data(), pose.joint_position.size(), message.joint_position.begin());
+  message.patterns = patternsToRos(pose.patterns);
+  message.validation = static_cast<std::uint8_t>(pose.validation);
+  return message;
+}
+
+msg::PoseProgress progressToRos(const PoseProgress& progress) {
+  msg::PoseProgress message;
+  message.pose = poseToRos(progress.pose());
   message.has_sample = static_cast<std::uint8_t>(progress.hasSample());
   message.is_measured = static_cast<std::uint8_t>(progress.isMeasured());
   message.missing = patternsToRos(progress.missing());

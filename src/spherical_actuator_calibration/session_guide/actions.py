@@ -8,9 +8,9 @@ feedback(account); let_go(), which ends what it holds.
 from spherical_actuator_calibration import msg
 from spherical_actuator_calibration.msg import MeasurementProgress, SessionResult
 
+from .calibration import PlanError
 from .goals import checked_pattern, options_of, options_of_capture, pose_of_capture
 from .options import OptionError, Options
-from .plans import PlanError
 from .pose_course import POLL, SLOW, PoseCourse
 from .progress import Pose, in_words
 from .session import Session

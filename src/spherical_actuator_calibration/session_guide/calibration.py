@@ -21,7 +21,6 @@ from spherical_actuator_calibration.srv import (
 )
 from std_srvs.srv import Trigger
 
-from .plans import Plan, PlanError
 from .progress import Measured, Pose, are_carried, excited_coils, service_of
 from .task import Task
 
@@ -41,6 +40,10 @@ SERVICES = {
 }
 PATIENCE = 1.0  # [s] between two looks for a node that is gone
 LATEST = 1.0  # [s] after which a message counts as new, whatever its time
+
+
+class PlanError(ValueError):
+    """Why a file gives no poses, in a sentence that names it."""
 
 
 class Topics:
@@ -213,11 +216,12 @@ class Calibration:
         return poses_from(answer.poses), answer.message
 
     def load_plan(self, path):
-        """The Plan of plan_session in a file, which the node follows then. Raises PlanError."""
+        """Poses of a plan of plan_session, or of an earlier session in its session.db, which the node follows then, and
+        the current [A] that excites a coil. Raises PlanError."""
         answer = self.call("load_plan", path=path)
         if not answer.success:
             raise PlanError(answer.message)
-        return Plan(tuple(poses_from(answer.poses)), answer.current)
+        return [pose_of(pose) for pose in answer.poses], answer.current
 
 
 def message_of(pose):

@@ -4,7 +4,6 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 
 from . import progress
 from .linearity import LinearityTest
-from .plans import read_session
 from .pose_course import PoseCourse
 from .progress import Progress
 
@@ -56,7 +55,7 @@ class Session:
             measured = "1 pose is" if training == 1 else f"{training} poses are"
             partly = f", {len(interrupted)} of them in part" if interrupted else ""
             self._account.say(f"The session goes on: {measured} measured already{partly}.")
-        planned = list(self._poses_of_files()) or interrupted
+        planned = self._poses_of_files() or interrupted
         if not self._asks_for_files() and training < self._options.poses:
             planned = self._plan(self._options.poses - training, self._options.wanted_stddev, interrupted)
         if any(pose.validation for pose in planned):
@@ -87,15 +86,10 @@ class Session:
     def _poses_of_files(self):
         source = self._options.plan or self._options.repeat
         if not source:
-            return ()
-        plan = self._calibration.load_plan(source) if self._options.plan else self._earlier_session(source)
-        self._course.current = plan.current
-        self._account.say(f"{len(plan.poses)} poses of {source}, coils at {plan.current:g} A.")
-        return plan.poses
-
-    def _earlier_session(self, path):
-        threshold = self._calibration.status().current_threshold
-        return read_session(path, self._actuator, threshold, self._calibration.pose_tolerance())
+            return []
+        poses, self._course.current = self._calibration.load_plan(source)
+        self._account.say(f"{len(poses)} poses of {source}, coils at {self._course.current:g} A.")
+        return poses
 
     def _interrupted(self):
         """Poses of the plan in force that were begun, and that the currents of this session can complete."""

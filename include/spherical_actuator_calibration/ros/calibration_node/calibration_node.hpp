@@ -41,7 +41,6 @@
 namespace sac {
 
 class PlanProgress;
-struct PosePlan;
 struct PoseToMeasure;
 
 /// The calibration of one unit while it is measured: takes samples on request or by itself, runs
@@ -82,11 +81,11 @@ class CalibrationNode {
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   bool loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response);
   /// Keeps a plan and follows it, after poses that come before it; the caller holds the session.
-  void adopt(const std::vector<PoseToMeasure>& first, const PosePlan& plan, bool validation);
+  void adopt(const std::vector<PoseToMeasure>& poses);
   bool missingPatterns(msg::MissingPatterns::Request& request,
                        msg::MissingPatterns::Response& response);
   /// What of a plan is left to be measured.
-  void followPlan(const StoredPlan& poses);
+  void followPlan(const std::vector<PoseToMeasure>& poses);
   /// The plan that was followed before a restart.
   void takeUpPlan();
   void run(const CycleRequest& request,

@@ -18,6 +18,7 @@ CoilPattern patternFromRos(const std::vector<std::int32_t>& signed_numbers, std:
 
 /// Likewise; each pattern has a coil.
 PoseToMeasure poseFromRos(const msg::PosePatterns& message, std::size_t coils);
+msg::PosePatterns poseToRos(const PoseToMeasure& pose);
 
 msg::PoseProgress progressToRos(const PoseProgress& progress);
 std::vector<msg::PoseProgress> progressToRos(const std::vector<PoseProgress>& poses);

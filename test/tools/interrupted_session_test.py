@@ -1,84 +1,16 @@
 #!/usr/bin/python3
-"""Poses that a guided session takes from sessions of long ago, and goes on with."""
+"""Which poses a guided session goes on with that was interrupted."""
 
-import contextlib
-import pathlib
-import sqlite3
-import tempfile
 import unittest
 
 from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.options import Options
-from spherical_actuator_calibration.session_guide.plans import PlanError, read_session
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.session import Session
 from spherical_actuator_calibration.session_guide.task import Task
 
-ACTUATOR = {
-    "name": "sphere",
-    "serial": "A7",
-    "workspace": {"tilt_limit": 0.5},
-    "joints": [{"name": f"joint_{n}"} for n in (1, 2, 3)],
-    "coils": [{}] * 4,
-}
-
-
-class Sessions(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def stored(self, samples, name="sphere"):
-        """A database of (joint angles, currents, held out, removed)."""
-        path = str(self.folder / "session.db")
-        with contextlib.closing(sqlite3.connect(path)) as file:
-            file.executescript(
-                "PRAGMA application_id = 1396786003; PRAGMA user_version = 4;"
-                "CREATE TABLE unit (name TEXT, serial TEXT);"
-                "CREATE TABLE samples (id INTEGER, joint_1, joint_2, joint_3, validation INTEGER, removal TEXT);"
-                "CREATE TABLE sample_currents (sample INTEGER, coil INTEGER, current);"
-            )
-            file.execute("INSERT INTO unit VALUES (?, 'A7')", (name,))
-            for number, (joints, currents, held_out, removal) in enumerate(samples, 1):
-                file.execute("INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?)", (number, *joints, held_out, removal))
-                rows = [(number, coil, current) for coil, current in enumerate(currents)]
-                file.executemany("INSERT INTO sample_currents VALUES (?, ?, ?)", rows)
-            file.commit()
-        return path
-
-    def test_is_measured_again_as_it_was(self):
-        here, nearby, there = (0.1, 0.2, 0.3), (0.11, 0.2, 0.3), (0.4, 0.0, 0.0)
-        path = self.stored(
-            [
-                (here, (0, 0, 0, 0), 0, None),
-                (nearby, (2.001, 0, 0, 0.001), 0, None),
-                (nearby, (-2.001, 0, 0, 0), 0, None),
-                (here, (0, 1.999, -2.0, 0), 0, None),
-                (here, (0, 0, 0, 2.0), 0, "removed"),
-                (there, (0, 0, 2.0, 0), 1, None),
-            ]
-        )
-        plan = read_session(path, ACTUATOR, 0.05, 0.05)
-        self.assertEqual(plan.current, 2.0)
-        self.assertEqual([pose.joints for pose in plan.poses], [here, there])
-        self.assertEqual([pose.validation for pose in plan.poses], [False, True])
-        self.assertEqual(plan.poses[0].excitations, ((1,), (-1,), (2, -3)))
-        self.assertEqual(plan.poses[1].excitations, ((3,),))
-
-    def test_names_what_is_wrong(self):
-        with self.assertRaisesRegex(PlanError, "no samples in use"):
-            read_session(self.stored([]), ACTUATOR, 0.05, 0.05)
-        (self.folder / "session.db").write_text("no database")
-        with self.assertRaisesRegex(PlanError, "session.db"):
-            read_session(str(self.folder / "session.db"), ACTUATOR, 0.05, 0.05)
-        with self.assertRaisesRegex(PlanError, "there is no such file"):
-            read_session(str(self.folder / "none.db"), ACTUATOR, 0.05, 0.05)
-
-    def test_of_another_actuator(self):
-        with self.assertRaisesRegex(PlanError, "for the actuator cube, not for sphere"):
-            read_session(self.stored([], name="cube"), ACTUATOR, 0.05, 0.05)
+ACTUATOR = {"workspace": {"tilt_limit": 0.5}, "coils": [{}] * 4}
 
 
 class Bench:
