@@ -8,6 +8,7 @@
 
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/motion/live_motion.hpp"
+#include "support/motion_slices.hpp"
 #include "support/moving_rotor.hpp"
 #include "support/resident_memory.hpp"
 
@@ -28,34 +29,11 @@ MovingRotor movingUnit(double duration) {
   return moving;
 }
 
-/// All windows of a recording, as they come.
-std::vector<MotionSlice> slicesOf(const MotionRecording& recording) {
-  const MotionStreams& streams = recording.spans.front();
-  std::vector<MotionSlice> slices;
-  MotionSlicer slicer(static_cast<std::size_t>(streams.currents.cols()), MotionOptions());
-  std::size_t orientation = 0;
-  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
-    const auto row = streams.currents.row(static_cast<Eigen::Index>(n));
-    slicer.add(CurrentMeasurement{streams.current_stamps[n], row.transpose().cast<double>()});
-    for (; orientation < streams.orientation_stamps.size() &&
-           streams.orientation_stamps[orientation] <= streams.joint_stamps[n];
-         ++orientation) {
-      slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
-                                        streams.orientations[orientation]});
-    }
-    slicer.add(JointMeasurement{streams.joint_stamps[n], streams.joints[n]});
-    while (auto slice = slicer.take()) {
-      slices.push_back(std::move(*slice));
-    }
-  }
-  return slices;
-}
-
 /// One more window of a motion that has gone on for a minute, as it comes: what all of them tell
 /// after it, with its covariance. What looks at old windows now and then is part of it.
 void takeOneWindow(benchmark::State& state) {
   constexpr std::size_t kMinute = 240;
-  const std::vector<MotionSlice> slices = slicesOf(noisy(movingUnit(15.0).record()));
+  const std::vector<MotionSlice> slices = slicesOf(noisy(movingUnit(15.0).record()).spans.front());
   const CalibrationModel model(
       ParameterSpace(scenarios::paperNominal(), withMotionEffects(EffectSelection())));
   std::vector<Eigen::Index> free(static_cast<std::size_t>(model.space().size()));

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/motion_slices.hpp"
 #include "support/moving_rotor.hpp"
 
 namespace sac {
@@ -18,23 +19,10 @@ std::vector<std::vector<GroupUncertainty>> follow(
     const MotionStreams& streams, MotionFollower& follower, const std::function<void()>& look = [] {
     }) {
   std::vector<std::vector<GroupUncertainty>> told;
-  MotionSlicer slicer(static_cast<std::size_t>(streams.currents.cols()), MotionOptions());
-  std::size_t orientation = 0;
-  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
-    const auto row = streams.currents.row(static_cast<Eigen::Index>(n));
-    slicer.add(CurrentMeasurement{streams.current_stamps[n], row.transpose().cast<double>()});
-    for (; orientation < streams.orientation_stamps.size() &&
-           streams.orientation_stamps[orientation] <= streams.joint_stamps[n];
-         ++orientation) {
-      slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
-                                        streams.orientations[orientation]});
-    }
-    slicer.add(JointMeasurement{streams.joint_stamps[n], streams.joints[n]});
-    while (auto slice = slicer.take()) {
-      follower.add(std::move(*slice));
-      told.push_back(follower.groups());
-      look();
-    }
+  for (MotionSlice& slice : slicesOf(streams)) {
+    follower.add(std::move(slice));
+    told.push_back(follower.groups());
+    look();
   }
   return told;
 }

@@ -23,6 +23,7 @@
 #include "spherical_actuator_calibration/motion/better_currents.hpp"
 #include "spherical_actuator_calibration/motion/live_motion.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "support/motion_slices.hpp"
 
 namespace sac {
 namespace {
@@ -57,44 +58,16 @@ MotionRecording readStreams(const char* path, std::size_t coils) {
   return recorder.take();
 }
 
-/// All measurements in the order of their stamps, window by window.
-std::vector<MotionSlice> slicesOf(const MotionRecording& recording, std::size_t coils) {
-  std::vector<MotionSlice> slices;
-  MotionSlicer slicer(coils, MotionOptions());
-  for (const MotionStreams& streams : recording.spans) {
-    std::size_t current = 0;
-    std::size_t orientation = 0;
-    for (std::size_t n = 0; n < streams.joints.size(); ++n) {
-      const Stamp now = streams.joint_stamps[n];
-      for (; current < streams.current_stamps.size() && streams.current_stamps[current] <= now;
-           ++current) {
-        const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
-        slicer.add(CurrentMeasurement{streams.current_stamps[current],
-                                      Eigen::VectorXd(row.transpose().cast<double>())});
-      }
-      for (; orientation < streams.orientation_stamps.size() &&
-             streams.orientation_stamps[orientation] <= now;
-           ++orientation) {
-        slicer.add(OrientationMeasurement{streams.orientation_stamps[orientation],
-                                          streams.orientations[orientation]});
-      }
-      slicer.add(JointMeasurement{now, streams.joints[n]});
-      while (auto slice = slicer.take()) {
-        slices.push_back(std::move(*slice));
-      }
-    }
-  }
-  return slices;
-}
-
 /// Puts the estimate of windows as they came in place of that of all at once.
 void followLive(const MotionProblem& problem, MotionEstimate& found) {
   LiveMotion live(*problem.model, problem.prior, problem.free, EstimationOptions());
   MotionRecording taken;
-  for (const MotionSlice& slice : slicesOf(*problem.recording, problem.model->space().coils())) {
-    taken.spans.push_back(slice.streams);
-    taken.windows.push_back(slice.window);
-    live.add(slice);
+  for (const MotionStreams& streams : problem.recording->spans) {
+    for (const MotionSlice& slice : slicesOf(streams)) {
+      taken.spans.push_back(slice.streams);
+      taken.windows.push_back(slice.window);
+      live.add(slice);
+    }
   }
   MotionProblem again = problem;
   again.recording = &taken;

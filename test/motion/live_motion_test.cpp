@@ -9,34 +9,12 @@
 
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "support/motion_slices.hpp"
 #include "support/moving_rotor.hpp"
 #include "support/resident_memory.hpp"
 
 namespace sac {
 namespace {
-
-/// Calls `take` with all measurements of a recording in the order of their stamps.
-template <typename Take>
-void play(const MotionStreams& streams, const Take& take) {
-  std::size_t current = 0;
-  std::size_t orientation = 0;
-  for (std::size_t n = 0; n < streams.joints.size(); ++n) {
-    const Stamp now = streams.joint_stamps[n];
-    for (; current < streams.current_stamps.size() && streams.current_stamps[current] <= now;
-         ++current) {
-      const auto row = streams.currents.row(static_cast<Eigen::Index>(current));
-      take(CurrentMeasurement{streams.current_stamps[current],
-                              Eigen::VectorXd(row.transpose().cast<double>())});
-    }
-    for (; orientation < streams.orientation_stamps.size() &&
-           streams.orientation_stamps[orientation] <= now;
-         ++orientation) {
-      take(OrientationMeasurement{streams.orientation_stamps[orientation],
-                                  streams.orientations[orientation]});
-    }
-    take(JointMeasurement{now, streams.joints[n]});
-  }
-}
 
 class LiveMotionTest : public ::testing::Test {
  protected:
@@ -57,16 +35,12 @@ class LiveMotionTest : public ::testing::Test {
   }
   /// Takes a whole recording, window by window, which are added to `taken`.
   void follow(const MotionRecording& recording, LiveMotion& live, MotionRecording& taken) const {
-    MotionSlicer slicer(24, MotionOptions());
     for (const MotionStreams& streams : recording.spans) {
-      play(streams, [&](const auto& measurement) {
-        slicer.add(measurement);
-        while (auto slice = slicer.take()) {
-          taken.spans.push_back(slice->streams);
-          taken.windows.push_back(slice->window);
-          live.add(std::move(*slice));
-        }
-      });
+      for (MotionSlice& slice : slicesOf(streams)) {
+        taken.spans.push_back(slice.streams);
+        taken.windows.push_back(slice.window);
+        live.add(std::move(slice));
+      }
     }
   }
   Estimate batch(const MotionRecording& recording) const {
@@ -165,23 +139,19 @@ TEST_F(LiveMotionTest, HoldsACoilUntilCurrentFlowsInIt) {
   const std::vector<Eigen::Index> of_coil{space.coil(kCoil), space.coil(kCoil) + 1};
   const ParameterBelief prior = nominalState(space, {}).belief;
   LiveMotion live = this->live();
-  MotionSlicer slicer(24, MotionOptions());
   std::size_t held = 0;
-  play(streams, [&](const auto& measurement) {
-    slicer.add(measurement);
-    while (auto slice = slicer.take()) {
-      const double until = secondsBetween(begin, slice->streams.current_stamps.back());
-      live.add(std::move(*slice));
-      const ParameterBelief& belief = live.estimate().belief;
-      if (live.estimate().is_told && until < moving_.off_until) {
-        ++held;
-        for (const Eigen::Index p : of_coil) {
-          EXPECT_EQ(belief.x[p], prior.x[p]);
-          EXPECT_EQ(belief.covariance(p, p), prior.covariance(p, p));
-        }
+  for (MotionSlice& slice : slicesOf(streams)) {
+    const double until = secondsBetween(begin, slice.streams.current_stamps.back());
+    live.add(std::move(slice));
+    const ParameterBelief& belief = live.estimate().belief;
+    if (live.estimate().is_told && until < moving_.off_until) {
+      ++held;
+      for (const Eigen::Index p : of_coil) {
+        EXPECT_EQ(belief.x[p], prior.x[p]);
+        EXPECT_EQ(belief.covariance(p, p), prior.covariance(p, p));
       }
     }
-  });
+  }
   EXPECT_GT(held, 3U);
   const ParameterBelief& belief = live.estimate().belief;
   EXPECT_LT(belief.covariance(of_coil[0], of_coil[0]),
