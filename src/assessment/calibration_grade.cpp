@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
+#include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
@@ -70,7 +71,14 @@ class CalibrationGrader::Examiner {
 
   bool isContradicted() const {
     return validation_ != nullptr && validation_->hasVerdict() &&
-           validation_->probability < kLeastProbability;
+           (validation_->probability < kLeastProbability || isOutdated());
+  }
+
+  /// Whether what was held out lately contradicts, though all together may agree. Where a motion
+  /// has told everything, samples are of another time.
+  bool isOutdated() const {
+    return !(last_success_ != nullptr && last_success_->cycle == Cycle::kMotion) &&
+           judgeNewestHeldOut(session_).contradicts;
   }
 
   /// Torques judge everything, orientations the joint only.
@@ -202,10 +210,11 @@ class CalibrationGrader::Examiner {
     if (used_torques && !registration.rotor_ft_sensor) {
       add("rotor_ft_sensor");
     }
+    const bool are_several = names.find(',') != std::string::npos;
     return names.empty() ? names
                          : ", but their uncertainty is relative to the registrations, which count "
                            "as exact because registration." +
-                               names + " is not stated";
+                               names + (are_several ? " are not stated" : " is not stated");
   }
 
   std::string missedAccuracy() const {
@@ -233,8 +242,9 @@ class CalibrationGrader::Examiner {
         if (refused_ != nullptr) {
           return "Do not use this calibration: " + refused_->message;
         }
-        return "Do not use this calibration yet: " + identified() +
-               ", but the held-out samples contradict them.";
+        return "Do not use this calibration yet: " + identified() + ", but the " +
+               (validation_->probability < kLeastProbability ? "" : "newest ") +
+               "held-out samples contradict them.";
       case Grade::kNotValidated:
         return "The calibration is not validated: " + identified() + shortcoming_ + unjudged() +
                expected_errors_;

@@ -28,7 +28,10 @@ class Guide {
 
   std::string step() const {
     if (!progress_.plan_step.empty()) {
-      return progress_.plan_step;
+      return (progress_.contradicted
+                  ? "Do not use the parameters in force, which are contradicted. "
+                  : "") +
+             progress_.plan_step;
     }
     if (progress_.saved && progress_.samples == 0) {
       return "The parameters in force are saved, and no sample is in use: there is nothing to do. "
@@ -36,8 +39,8 @@ class Guide {
     }
     if (progress_.refused && progress_.samples > 0) {
       return "The last cycle was refused, and would be again: its report says what contradicts. "
-             "Call "
-             "diagnose and mend what it names, or remove those samples and capture at new poses; "
+             "Call diagnose "
+             "and mend what it names, or remove those samples and capture at new poses; "
              "then run it again.";
     }
     if (progress_.samples == 0 && progress_.isAllIdentified()) {
@@ -128,8 +131,7 @@ class Guide {
   std::string closingStep() const {
     if (progress_.contradicted) {
       return "Do not use the parameters: the grade says what contradicts them. Call diagnose, look "
-             "at "
-             "the rejected samples, then calibrate with more poses and call validate again.";
+             "at the rejected samples, then calibrate with more poses and call validate again.";
     }
     if (!progress_.judged) {
       return validationStep();

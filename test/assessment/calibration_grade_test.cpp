@@ -69,6 +69,28 @@ TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
   EXPECT_TRUE(tells(graded, "no held-out torque judges poles and coils")) << graded.reason;
 }
 
+TEST(CalibrationGrade, IsLostWhereTheNewestHeldOutSamplesContradict) {
+  constexpr double kNoise = 1e-3;  // [rad]
+  scenarios::Generator generator(5);
+  std::vector<Sample> samples =
+      scenarios::orientationSamples(scenarios::paperTruth(),
+                                    scenarios::randomPoses(190, 0.3, generator),
+                                    kNoise,
+                                    scenarios::uniformStddev(kNoise),
+                                    generator);
+  for (std::size_t n = 40; n < samples.size(); ++n) {
+    samples[n].validation = true;
+  }
+  EXPECT_NE(gradeOf(samples, {{Cycle::kJoint}}).grade, Grade::kContradicted);
+  // The tracker was touched lately: too little to show among all 150.
+  for (std::size_t n = samples.size() - 24; n < samples.size(); ++n) {
+    samples[n].R_stator_rotor = rotationExp({1e-3, 0.0, 0.0}) * samples[n].R_stator_rotor;
+  }
+  const GradedCalibration graded = gradeOf(samples, {{Cycle::kJoint}});
+  EXPECT_EQ(graded.grade, Grade::kContradicted) << graded.reason;
+  EXPECT_TRUE(tells(graded, "newest held-out samples contradict")) << graded.reason;
+}
+
 TEST(CalibrationGrade, UsableWherePartsAreMissing) {
   const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), {{Cycle::kJoint}});
   EXPECT_EQ(graded.grade, Grade::kUsable);

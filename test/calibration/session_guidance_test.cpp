@@ -135,6 +135,9 @@ TEST(SessionGuidance, APlanGoesFirst) {
   SessionProgress progress = progressOf(session);
   progress.plan_step = "Go on with the plan.";
   EXPECT_EQ(nextStep(session, progress), "Go on with the plan.");
+  progress.contradicted = true;
+  EXPECT_EQ(nextStep(session, progress),
+            "Do not use the parameters in force, which are contradicted. Go on with the plan.");
 }
 
 TEST(SessionGuidance, SamplesOfAPlanAreRefinedAtOnce) {

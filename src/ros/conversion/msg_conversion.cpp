@@ -212,9 +212,13 @@ msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
                                        const GradedCalibration& graded) {
   msg::CalibrationReport message;
   message.cycle = msg::CalibrationReport::VALIDATE;
-  message.success = static_cast<std::uint8_t>(validation.hasVerdict() &&
-                                              validation.probability >= kLeastProbability);
+  const bool agrees = validation.hasVerdict() && validation.probability >= kLeastProbability;
+  const bool is_contradicted = graded.grade == Grade::kContradicted;
+  message.success = static_cast<std::uint8_t>(agrees && !is_contradicted);
   message.message = verdict(validation);
+  if (agrees && is_contradicted) {  // by the newest of them, or by a cycle
+    message.message += " " + graded.reason;
+  }
   message.samples_used = static_cast<std::uint32_t>(validation.samples);
   message.reduced_chi_square = validation.reduced_chi_square;
   std::transform(validation.residuals.begin(),
