@@ -160,11 +160,15 @@ std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
 }
 
 const ModelFit& bestOf(const std::vector<ModelFit>& fits) {
-  const bool is_predicted = std::all_of(
-      fits.begin(), fits.end(), [](const ModelFit& fit) { return fit.held_out.has_value(); });
+  const bool is_predicted = std::all_of(fits.begin(), fits.end(), [](const ModelFit& fit) {
+    return !fit.converged || fit.held_out.has_value();
+  });
   return *std::min_element(
       fits.begin(), fits.end(), [is_predicted](const ModelFit& a, const ModelFit& b) {
-        return is_predicted ? *a.held_out < *b.held_out : a.bic < b.bic;
+        if (a.converged != b.converged) {
+          return a.converged;
+        }
+        return is_predicted && a.converged ? *a.held_out < *b.held_out : a.bic < b.bic;
       });
 }
 

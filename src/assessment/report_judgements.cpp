@@ -32,6 +32,7 @@ void writeModelChoice(YamlWriter& writer, const std::vector<ModelFit>& fits) {
     line.add("chi_square", yamlNumber(fit.chi_square));
     line.add("reduced_chi_square", yamlNumber(fit.reduced_chi_square));
     line.add("bic", yamlNumber(fit.bic));
+    line.add("best", yamlBoolean(&fit == &bestOf(fits)));
     if (fit.held_out) {
       line.add("held_out", yamlNumber(*fit.held_out));
     }

@@ -103,6 +103,7 @@ TEST(ModelChoice, PredictsRegionsThatItHasNotSeen) {
 
 TEST(ModelChoice, PrefersWhatPredictsOverWhatFits) {
   std::vector<ModelFit> fits(2);
+  fits[0].converged = fits[1].converged = true;
   fits[0].bic = 100.0;
   fits[1].bic = 80.0;
   EXPECT_EQ(&bestOf(fits), &fits[1]);
@@ -110,6 +111,18 @@ TEST(ModelChoice, PrefersWhatPredictsOverWhatFits) {
   EXPECT_EQ(&bestOf(fits), &fits[1]) << "only one of them was tried";
   fits[1].held_out = 2e-3;
   EXPECT_EQ(&bestOf(fits), &fits[0]);
+}
+
+TEST(ModelChoice, PrefersWhatConverged) {
+  std::vector<ModelFit> fits(3);
+  fits[0].converged = fits[2].converged = true;
+  fits[0].bic = 100.0;
+  fits[1].bic = 10.0;
+  fits[2].bic = 90.0;
+  EXPECT_EQ(&bestOf(fits), &fits[2]);
+  fits[0].held_out = 1e-3;
+  fits[2].held_out = 2e-3;
+  EXPECT_EQ(&bestOf(fits), &fits[0]) << "what did not converge predicts nothing";
 }
 
 TEST(ModelChoice, HasNothingToCompareWithoutEffects) {

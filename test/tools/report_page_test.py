@@ -272,11 +272,15 @@ class ReportPage(unittest.TestCase):
         effect = {"name": "torque_bias/x", "nominal": 0.0, "value": 2.7e-3, "stddev": 4e-5, "identified": True}
         figures["parameters"] = self.figures["parameters"] + [dict(effect, unit="N·m", kind="effect")]
         fit = {"effects": "none", "converged": True, "parameters": 31, "chi_square": 900.0, "reduced_chi_square": 3.0}
-        figures["model_choice"] = [dict(fit, bic=1076.5), dict(fit, effects="all", bic=400.25)]
+        # By the regions that it predicts, which the smaller criterion does not tell.
+        figures["model_choice"] = [
+            dict(fit, bic=1076.5, best=True, held_out=1e-4), dict(fit, effects="all", bic=400.25, best=False, held_out=2e-4)
+        ]  # fmt: skip
         page = self.render(figures, "effects")
         self.assertEqual(page.row("torque_bias/x")[1], "0.002700 ± 0.000040 N·m")
-        self.assertIn("best", page.row("all")[0])
-        self.assertEqual(page.row("none")[-1], "+676.2")
+        self.assertIn("best", page.row("none")[0])
+        self.assertNotIn("best", page.row("all")[0])
+        self.assertEqual(page.row("none")[-2:], ["+676.2", "0.100 mrad"])
 
     def test_tells_whether_torque_is_proportional_to_current(self):
         self.assertIn("proportional to current is not told", self.page.text)

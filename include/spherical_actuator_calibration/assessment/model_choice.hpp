@@ -38,7 +38,8 @@ std::vector<ModelFit> compareEffects(const CalibratedDescription& start,
                                      const std::vector<Sample>& samples,
                                      const CalibrationConfig& config);
 
-/// The best fit: by the regions that it predicts, or by the criterion where none was predicted.
+/// The best fit of those that converged: by the regions that it predicts, or by the criterion where
+/// not all have predicted some.
 const ModelFit& bestOf(const std::vector<ModelFit>& fits);
 
 /// One line per fit for people, the best one marked.

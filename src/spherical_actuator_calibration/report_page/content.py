@@ -353,18 +353,17 @@ class Report:
     # ---- laboratory effects --------------------------------------------------------------------------
 
     def model_choice(self):
-        """Rows of the compared sets of laboratory effects; the best has the smallest BIC."""
+        """Rows of the compared sets of laboratory effects; differences are from the smallest BIC."""
         fits = self._report.get("model_choice", [])
-        best = min((fit["bic"] for fit in fits if fit["converged"]), default=None)
+        least = min((fit["bic"] for fit in fits if fit["converged"]), default=None)
         return [
             {
-                "effects": fit["effects"],
-                "parameters": fit["parameters"],
+                **{key: fit[key] for key in ("effects", "parameters", "converged")},
                 "chi_square": significant(fit["reduced_chi_square"]),
                 "bic": f"{fit['bic']:.1f}",
-                "difference": f"{fit['bic'] - best:+.1f}" if best is not None else "–",
-                "best": fit["bic"] == best,
-                "converged": fit["converged"],
+                "difference": f"{fit['bic'] - least:+.1f}" if least is not None else "–",
+                "held_out": f"{1e3 * fit['held_out']:.3f} mrad" if "held_out" in fit else "–",
+                "best": fit.get("best", False),
             }
             for fit in fits
         ]
