@@ -6,6 +6,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "torque_of_a_coil.hpp"
 
@@ -150,6 +151,16 @@ AxisAngles anglesFromAxis(const Eigen::Vector3d& axis, double azimuth_hint) {
   const double turns = std::round((azimuth_hint - azimuth) / (2.0 * kPi));
   angles.azimuth = azimuth + 2.0 * kPi * turns;
   return angles;
+}
+
+void requireInWorkspace(const Eigen::Vector3d& q, const Workspace& workspace) {
+  constexpr double kRounding = 1e-9;  // [rad]
+  if (!q.allFinite() || !workspace.contains(q, kRounding)) {
+    const double tilt = q.head<2>().cwiseAbs().maxCoeff();
+    throw ConfigError("a tilt of " + shortNumber(tilt) +
+                      " rad is beyond the workspace's tilt_limit of " +
+                      shortNumber(workspace.tilt_limit) + " rad.");
+  }
 }
 
 }  // namespace sac

@@ -227,16 +227,6 @@ void requireUnit(const SessionPlanRecord& record, const Actuator& actuator) {
   }
 }
 
-void requireInWorkspace(const PlannedPose& pose, const Actuator& actuator) {
-  constexpr double kRounding = 1e-9;  // [rad] of a file
-  if (!actuator.workspace.contains(pose.joint_position, kRounding)) {
-    const double tilt = pose.joint_position.head<2>().cwiseAbs().maxCoeff();
-    throw ConfigError("a tilt of " + shortNumber(tilt) +
-                      " rad is beyond the workspace's tilt_limit of " +
-                      shortNumber(actuator.workspace.tilt_limit) + " rad.");
-  }
-}
-
 void requireCoils(const PlannedPose& pose, std::size_t coils) {
   for (const CoilPattern& pattern : pose.excitations()) {
     for (const SignedCoil& coil : pattern) {
@@ -255,7 +245,7 @@ void requireSuits(const SessionPlanRecord& record, const Actuator& actuator) {
   }
   for (std::size_t n = 0; n < record.plan.poses.size(); ++n) {
     try {
-      requireInWorkspace(record.plan.poses[n], actuator);
+      requireInWorkspace(record.plan.poses[n].joint_position, actuator.workspace);
       requireCoils(record.plan.poses[n], actuator.coils.size());
     } catch (const ConfigError& error) {
       throw ConfigError("pose " + std::to_string(numberOf(n)) + ": " + error.what());

@@ -113,6 +113,8 @@ class Planning(unittest.TestCase):
         self.assertRegex(answer.message, "coil")
         nowhere = PosePatterns(joint_position=(math.inf, 0.0, 0.0))
         self.assertIn("joint_position", self.plan(cycle="refine", max_poses=2, first=[nowhere]).message)
+        beyond = PosePatterns(joint_position=(TILT_LIMIT + 0.01, 0.0, 0.0))
+        self.assertIn("tilt_limit", self.plan(cycle="refine", max_poses=2, first=[beyond]).message)
         self.assertEqual(len(self.client.latest("plan_progress").poses), 3)
 
     def test_follows_a_plan_of_a_file(self):

@@ -61,6 +61,9 @@ struct Workspace {
   }
 };
 
+/// Throws ConfigError unless the workspace contains q, rounded as files and messages round it.
+void requireInWorkspace(const Eigen::Vector3d& q, const Workspace& workspace);
+
 /// Torque −(b + c/√(ω² + v²)) ω on a rotor that turns with ω, v = 0.05 rad/s.
 struct RotorFriction {
   double viscous = 0.0;  ///< b [N·m·s/rad]

@@ -166,10 +166,12 @@ bool CalibrationNode::missingPatterns(msg::MissingPatterns::Request& request,
   try {
     // The model never changes while the node runs.
     const CalibrationSession& calibration = session_.calibration();
-    const std::size_t coils = calibration.model().space().coils();
+    const Actuator& nominal = calibration.model().space().nominal();
     PlanProgress progress(calibration.config().estimation.current_threshold);
-    for (const msg::PosePatterns& pose : request.poses) {
-      progress.addPose(poseFromRos(pose, coils));
+    for (const msg::PosePatterns& message : request.poses) {
+      PoseToMeasure pose = poseFromRos(message, nominal.coils.size());
+      requireInWorkspace(pose.joint_position, nominal.workspace);
+      progress.addPose(std::move(pose));
     }
     std::vector<Sample> samples;
     {
@@ -208,6 +210,7 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     PosesToMeasure poses;
     for (const msg::PosePatterns& pose : request.first) {
       poses.push_back(poseFromRos(pose, problem.model->space().coils()));
+      requireInWorkspace(poses.back().joint_position, problem.model->space().nominal().workspace);
     }
     problem.held = &held;
     plan_options = withMeasuredNoise(std::move(plan_options), held);
