@@ -251,6 +251,10 @@ Actuator CalibrationSession::actuator() const {
   return actuator;
 }
 
+double CalibrationSession::worstStddev() const {
+  return sac::worstStddev(model_.space(), state_);
+}
+
 ParameterStddevs CalibrationSession::stddevs() const {
   ParameterStddevs stddevs = identifiedStddevs(model_.space(), state_);
   const ToldDynamics dynamics = toldDynamics(reports_);

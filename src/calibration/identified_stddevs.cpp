@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 
 namespace sac {
 namespace {
@@ -137,6 +140,18 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
     result.coils.push_back({at(coil), at(coil + 1), gainStddev(state, gains.coils[j])});
   }
   return result;
+}
+
+double worstStddev(const ParameterSpace& space, const CalibrationState& state) {
+  const Eigen::VectorXd stddevs = space.reportedStddevs(state.belief.x, state.belief.covariance);
+  double worst = 0.0;
+  for (Eigen::Index p = 0; p < space.effect(); ++p) {
+    if (!state.identified[static_cast<std::size_t>(p)]) {
+      return std::numeric_limits<double>::infinity();
+    }
+    worst = std::max(worst, definedStddev(stddevs[p]));
+  }
+  return worst;
 }
 
 }  // namespace sac

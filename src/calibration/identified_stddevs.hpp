@@ -10,4 +10,8 @@ namespace sac {
 /// identified. A gain is where everything is that it is made of, by a modelled effect.
 ParameterStddevs identifiedStddevs(const ParameterSpace& space, const CalibrationState& state);
 
+/// Of the angle of joints, poles and coils that is known worst [rad], as plans and motions count it
+/// (definedStddev()); infinite where one is not identified.
+double worstStddev(const ParameterSpace& space, const CalibrationState& state);
+
 }  // namespace sac

@@ -69,7 +69,7 @@ bool MotionFollower::isEnough() const {
 }
 
 std::string MotionFollower::inWords() const {
-  return motionInWords(estimate(), groups(), wanted_stddev_, timeLeft());
+  return motionInWords(estimate(), groups(), wanted_stddev_, canBeJudged(), timeLeft());
 }
 
 std::vector<ParameterEstimate> MotionFollower::dynamics() const {

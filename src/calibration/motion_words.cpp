@@ -39,6 +39,7 @@ std::string leftOf(const std::vector<GroupUncertainty>& groups) {
 std::string motionInWords(const LiveEstimate& estimate,
                           const std::vector<GroupUncertainty>& groups,
                           double wanted_stddev,
+                          bool can_be_judged,
                           std::optional<double> time_left) {
   if (estimate.windows == 0) {
     return "No motion yet: let the rotor follow a plan, by run_motion or calibrate_by_motion.";
@@ -53,7 +54,9 @@ std::string motionInWords(const LiveEstimate& estimate,
   const std::string left = leftOf(groups);
   const std::string wanted = format("%.3f mrad", kMilli * wanted_stddev);
   if (left.empty()) {
-    return words + "; all within " + wanted + ".";
+    return words + "; all within " + wanted +
+           (can_be_judged ? "."
+                          : ", by too few windows yet to hold some out, which judge the others.");
   }
   words += "; left to " + wanted + ": " + left;
   return time_left ? words + format(", some %.0f s more.", std::ceil(*time_left)) : words + ".";

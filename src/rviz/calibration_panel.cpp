@@ -248,6 +248,9 @@ void CalibrationPanel::refresh() {
 
 void CalibrationPanel::showCalibration() {
   offerJointCycle();
+  if (!caller_.isBusy()) {
+    auto_capture_->setChecked(model_.capturesByItself());
+  }
   next_step_->setText(QString::fromStdString(model_.nextStep()));
   bars_->setGroups(model_.coverage());
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
@@ -271,12 +274,7 @@ void CalibrationPanel::showAnswer() {
   changed_ = true;
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
   setCallsEnabled(true);
-  if (auto_capture_asked_) {
-    if (!answer->success) {
-      auto_capture_->setChecked(!*auto_capture_asked_);
-    }
-    auto_capture_asked_.reset();
-  }
+  auto_capture_->setChecked(model_.capturesByItself());
 }
 
 void CalibrationPanel::showAge() {
@@ -291,6 +289,10 @@ void CalibrationPanel::showAge() {
 
 void CalibrationPanel::setCallsEnabled(bool enabled) {
   are_calls_enabled_ = enabled;
+  if (!enabled && focusWidget() != nullptr) {
+    // A disabled widget gives it to the next one, to which the panel would scroll.
+    focusWidget()->clearFocus();
+  }
   for (QPushButton* button : buttons_) {
     button->setEnabled(enabled);
   }
@@ -357,7 +359,6 @@ void CalibrationPanel::restore(std::uint32_t revision) {
 void CalibrationPanel::setAutoCapture(bool on) {
   std_srvs::SetBool::Request request;
   request.data = static_cast<std::uint8_t>(on);
-  auto_capture_asked_ = on;
   call<std_srvs::SetBool>("set_auto_capture", request);
 }
 

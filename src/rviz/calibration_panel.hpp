@@ -96,7 +96,6 @@ class CalibrationPanel : public rviz::Panel {
   HandGuide* hand_guide_ = nullptr;
   CoilLook* coil_look_ = nullptr;
   QCheckBox* auto_capture_ = nullptr;
-  std::optional<bool> auto_capture_asked_;  ///< what the running call asks for
   QSpinBox* coil_ = nullptr;
   QLabel* answer_ = nullptr;
   QString called_;       ///< service of the running or the last call

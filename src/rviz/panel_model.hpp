@@ -85,6 +85,8 @@ class PanelModel {
 
   /// Joint angles that differ by at most this from a planned pose are at it [rad].
   double poseTolerance() const { return status_.pose_tolerance; }
+  /// Whether the node captures every dwell by itself.
+  bool capturesByItself() const { return status_.auto_capture != 0; }
 
   /// What to do next, in words.
   std::string nextStep() const;

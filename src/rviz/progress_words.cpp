@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <vector>
 
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
@@ -32,10 +35,11 @@ std::string currentsInWords(const std::vector<std::int32_t>& coils,
   std::string text;
   std::vector<double> others = measured;
   for (const std::int32_t coil : coils) {
-    const std::size_t j = static_cast<std::size_t>(std::abs(coil)) - 1;
-    if (j < measured.size()) {
-      text += (text.empty() ? "" : ", ") + inAmperes(measured[j]);
-      others[j] = 0.0;
+    const auto number = static_cast<std::size_t>(std::abs(std::int64_t{coil}));
+    const std::optional<std::size_t> j = indexOf(number);
+    if (j && *j < measured.size()) {
+      text += (text.empty() ? "" : ", ") + inAmperes(measured[*j]);
+      others[*j] = 0.0;
     }
   }
   double most = 0.0;

@@ -76,7 +76,6 @@ class _Readings:
 class JointReadings(_Readings):
     """The angles of an actuator's joints, in the order of its description."""
 
-    still = 2e-3  # [rad] change while the rotor rests
     quantity = "joint angles"
     device = "joint sensor"
     fixture = "fixture/target"  # topic of a fixture that turns the rotor to a reading
@@ -100,7 +99,6 @@ class JointReadings(_Readings):
 class OrientationReadings(_Readings):
     """The orientation of a rotor without joints, as turns."""
 
-    still = 5e-3  # [rad] likewise: a tracker is noisier than encoders
     quantity = "orientations"
     device = "tracker"
     fixture = "fixture/orientation_target"

@@ -38,14 +38,6 @@ const SampleBuilderOptions& validated(const SampleBuilderOptions& options) {
   return options;
 }
 
-/// Rest is told by the tracker where there are no joint sensors.
-SampleBuilderOptions restOptions(SampleBuilderOptions options, bool has_joints) {
-  if (!has_joints) {
-    options.largest_joint_spread = options.largest_orientation_motion;
-  }
-  return options;
-}
-
 StampFilterOptions stampOptions(const SampleBuilderOptions& options) {
   return {options.largest_gap, options.clock_reset, options.largest_jump};
 }

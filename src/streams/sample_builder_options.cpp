@@ -61,4 +61,11 @@ void validate(const SampleBuilderOptions& options) {
   validateRest(options);
 }
 
+SampleBuilderOptions restOptions(SampleBuilderOptions options, bool has_joints) {
+  if (!has_joints) {
+    options.largest_joint_spread = options.largest_orientation_motion;
+  }
+  return options;
+}
+
 }  // namespace sac

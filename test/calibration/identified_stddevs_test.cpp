@@ -1,6 +1,7 @@
 #include "identified_stddevs.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,21 @@ TEST(IdentifiedStddevs, StandAtTheirValues) {
   EXPECT_NEAR(stddevs.coils[5].azimuth.value_or(0.0),
               3e-4 / std::cos(space.nominal().coils[5].polar),
               1e-9);
+}
+
+TEST(IdentifiedStddevs, TheWorstIsOfTheGeometryAndDefined) {
+  const ParameterSpace space = spaceWith({"torque_bias"});
+  CalibrationState state = nominalState(space, {});
+  for (Eigen::Index p = 0; p < space.effect(); ++p) {
+    EXPECT_EQ(worstStddev(space, state), std::numeric_limits<double>::infinity());
+    identify(state, p, 1e-4);
+  }
+  identify(state, space.joint(2), 3e-4);
+  EXPECT_NEAR(worstStddev(space, state), 3e-4, 1e-9);
+  // On the polar axis an azimuth is anything.
+  identify(state, space.coil(3), 2e-4);
+  state.belief.x[space.coil(3)] = std::acos(0.0) - space.nominal().coils[3].polar;
+  EXPECT_NEAR(worstStddev(space, state), 3e-4, 1e-9);
 }
 
 TEST(IdentifiedStddevs, TellOfTheUnbalance) {

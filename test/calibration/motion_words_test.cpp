@@ -14,9 +14,10 @@ class MotionWords : public ::testing::Test {
   }
 
   std::string words(std::optional<double> time_left = std::nullopt) const {
-    return motionInWords(estimate_, groups_, 1e-4, time_left);
+    return motionInWords(estimate_, groups_, 1e-4, can_be_judged_, time_left);
   }
 
+  bool can_be_judged_ = true;
   LiveEstimate estimate_;
   std::vector<GroupUncertainty> groups_ = {{"joints", "joint_3/offset", 5e-5, 9, 0},
                                            {"poles", "pole_2/polar", 2e-4, 16, 1},
@@ -35,6 +36,8 @@ TEST_F(MotionWords, TellThatNothingIsLeft) {
   estimate_.left_out = 3;
   EXPECT_EQ(words(0.0),
             "12 s of motion: joints 0.050 mrad, 3 of 51 windows left out; all within 0.100 mrad.");
+  can_be_judged_ = false;
+  EXPECT_NE(words(0.0).find("within 0.100 mrad, by too few windows"), std::string::npos);
 }
 
 TEST_F(MotionWords, TellThatNothingIsKnownYet) {

@@ -26,6 +26,7 @@ AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
 # [Hz] of the force/torque sensor and of the emulation, in a fixture: with noise to match it means as much as 1 kHz, and all
 # who listen take less than half of the processor's time.
 FIXTURE_RATE = 400.0
+NEAR_BY_JOINTS, NEAR_BY_TRACKER = 1e-3, 2.5e-3  # [rad] beyond noise and quantisation of readings
 PATIENT_BEATS = 80  # of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
 
 
@@ -161,7 +162,7 @@ class EmulatedLab:
     def is_at(self, target):
         """A reading [rad]; by noise and quantisation it is never at another one exactly."""
         reading = self.readings.fresh()
-        return reading is not None and distance(reading, target) < 0.5 * self.readings.still
+        return reading is not None and distance(reading, target) < (NEAR_BY_JOINTS if self.actuator["joints"] else NEAR_BY_TRACKER)
 
     def move(self, target):
         """Returns when the fixture is seen at the target."""

@@ -5,38 +5,11 @@ import math
 import unittest
 from types import SimpleNamespace
 
-from spherical_actuator_calibration.msg import ActuatorParameters, CoilAxis, JointAxis, PoleAxis
 from spherical_actuator_calibration.session_guide import progress
 from spherical_actuator_calibration.session_guide.options import Options
 from spherical_actuator_calibration.session_guide.session import Session
 
 AT_ZERO = progress.Pose((0.0, 0.0, 0.0), ())
-
-
-class KnownParameters(unittest.TestCase):
-    def setUp(self):
-        self.parameters = ActuatorParameters(
-            joints=[JointAxis(offset_stddev=1e-4, axis_stddev=[2e-4, 3e-4])],
-            poles=[PoleAxis(polar=0.1, polar_stddev=1e-4, azimuth_stddev=2e-4)],
-            coils=[CoilAxis(polar=0.0, polar_stddev=1e-4, azimuth_stddev=2e-4)],
-        )
-
-    def test_are_as_good_as_the_worst(self):
-        self.assertEqual(progress.worst_stddev(self.parameters), 3e-4)
-        self.parameters.coils[0].azimuth_stddev = 5e-4
-        self.assertEqual(progress.worst_stddev(self.parameters), 5e-4)
-        self.parameters.joints = []
-        self.parameters.poles[0].polar_stddev = math.inf
-        self.assertEqual(progress.worst_stddev(self.parameters), math.inf)
-
-    def test_an_azimuth_on_the_polar_axis_does_not_count(self):
-        self.parameters.coils[0].azimuth_stddev = math.pi
-        self.assertLess(progress.worst_stddev(self.parameters), 1e-2)
-
-    def test_an_azimuth_counts_as_plans_and_motions_count_it(self):
-        self.parameters.poles[0].polar = math.radians(60.0)
-        self.parameters.poles[0].azimuth_stddev = 1e-3
-        self.assertAlmostEqual(progress.worst_stddev(self.parameters), 1e-3)
 
 
 class Rehearsal(Session):
@@ -58,9 +31,8 @@ class Rehearsal(Session):
         expected = round((0.5e-3 / wanted_stddev) ** 2) if wanted_stddev else poses
         return [AT_ZERO] * min(poses, expected), "as planned"
 
-    def parameters(self):
-        stddev = 1e-3 / math.sqrt(self.poses)
-        return ActuatorParameters(joints=[JointAxis(offset_stddev=stddev, axis_stddev=[stddev, stddev])])
+    def status(self):
+        return SimpleNamespace(worst_stddev=1e-3 / math.sqrt(self.poses))
 
     # What it does beside.
     def _measure(self, poses):

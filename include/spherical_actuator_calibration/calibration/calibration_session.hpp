@@ -118,6 +118,10 @@ class CalibrationSession {
   Actuator actuator() const;
   /// Standard deviations of its values; absent where a value is not identified.
   ParameterStddevs stddevs() const;
+  /// Of the angle of joints, poles and coils that is known worst [rad], as plans and motions count
+  /// it: an azimuth on the polar axis, which nothing can tell, does not count. Infinite where one
+  /// is not identified.
+  double worstStddev() const;
 
   /// Judges the samples that were held out, or tells how windows of a motion judged it; where both
   /// have a part in what is in force, the worse of both verdicts. Nothing where none was held out.

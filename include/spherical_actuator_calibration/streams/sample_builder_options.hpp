@@ -59,4 +59,7 @@ struct SampleBuilderOptions {
 /// Throws ConfigError that names the field, its value and the allowed range.
 void validate(const SampleBuilderOptions& options);
 
+/// With what tells rest where there are no joint sensors: the tracker, whose turns stand for them.
+SampleBuilderOptions restOptions(SampleBuilderOptions options, bool has_joints);
+
 }  // namespace sac

@@ -141,10 +141,12 @@ bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
 
 bool CalibrationNode::setAutoCapture(std_srvs::SetBool::Request& request,
                                      std_srvs::SetBool::Response& response) {
-  auto_capture_ = request.data != 0;
-  response.success = 1;
-  response.message = auto_capture_ ? "Every dwell is captured by itself from now on."
-                                   : "Dwells are captured on request only.";
+  answer(response, [&] {
+    auto_capture_ = request.data != 0;
+    publishStatus();
+    return auto_capture_ ? "Every dwell is captured by itself from now on."
+                         : "Dwells are captured on request only.";
+  });
   return true;
 }
 
@@ -346,7 +348,7 @@ void CalibrationNode::publishStatus() {
     if (progress.plan_step.empty()) {
       progress.plan_step = motionStep(progress);
     }
-    topics_.publishStatus(session_, progress, graded);
+    topics_.publishStatus(session_, progress, graded, auto_capture_);
   } catch (const std::exception& error) {
     last_error_ = error.what();
     ROS_ERROR_STREAM("The status cannot be published: " << error.what());

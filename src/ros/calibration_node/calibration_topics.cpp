@@ -20,6 +20,7 @@
 #include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/topic_names.hpp"
 #include "spherical_actuator_calibration/ros/node/latched_publishing.hpp"
+#include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
 
 namespace sac {
 namespace {
@@ -92,7 +93,8 @@ void CalibrationTopics::dropResiduals(const std::vector<Sample>& in_use) {
 
 void CalibrationTopics::publishStatus(const LiveSession& session,
                                       const SessionProgress& progress,
-                                      const GradedCalibration& graded) {
+                                      const GradedCalibration& graded,
+                                      bool auto_capture) {
   const CalibrationSession& calibration = session.calibration();
   const EstimationOptions& estimation = calibration.config().estimation;
   const Actuator& nominal = calibration.model().space().nominal();
@@ -114,6 +116,10 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.current_tolerance = tolerance.absolute;
   message.current_tolerance_share = tolerance.share;
   message.pose_tolerance = kPoseTolerance;
+  message.rest_spread =
+      restOptions(calibration.config().samples, nominal.has_joints).largest_joint_spread;
+  message.auto_capture = static_cast<std::uint8_t>(auto_capture);
+  message.worst_stddev = calibration.worstStddev();
   for (const CycleRequest& request : progress.next_cycles) {
     message.next_cycles.push_back(cycleText(request));
   }

@@ -76,7 +76,6 @@ void MotionWatch::publish() {
   }
   message.wanted_stddev = follower_->wantedStddev();
   message.time_left = follower_->timeLeft().value_or(kUnknown);
-  message.can_be_judged = follower_->canBeJudged() ? 1 : 0;
   message.is_enough = follower_->isEnough() ? 1 : 0;
   message.message = follower_->inWords();
   for (const ParameterEstimate& one : follower_->dynamics()) {

@@ -5,7 +5,7 @@ from spherical_actuator_calibration.msg import MotionStatus
 from spherical_actuator_calibration.srv import FollowMotion
 from std_srvs.srv import Trigger
 
-RUNNING = ("approach", "motion", "ending")
+RUNNING = (MotionStatus.APPROACH, MotionStatus.MOTION, MotionStatus.ENDING)
 PATIENCE = 30.0  # [s] for services that must be there
 SILENCE = 3.0  # [s] without a status: the controller has gone
 POLL = 0.05  # [s]
@@ -33,7 +33,7 @@ class Motion:
         if not self._is_begun:
             return
         self._status = message
-        if message.phase == "motion":
+        if message.phase == MotionStatus.MOTION:
             self.errors.append(message.tracking_error)
             self.least_excitation = min(self.least_excitation, message.excitation_share)
 
@@ -67,9 +67,9 @@ class Motion:
                 told = status
                 if status.phase in RUNNING:
                     tell(status)
-                elif status.phase == "done":
+                elif status.phase == MotionStatus.DONE:
                     return status
-                elif status.phase == "none":
+                elif status.phase == MotionStatus.NONE:
                     raise RuntimeError(
                         f"{self._controller} has ended, and was started anew: its commands have ended, and so have the currents."
                     )

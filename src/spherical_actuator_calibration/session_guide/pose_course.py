@@ -106,6 +106,7 @@ class PoseCourse:
         self._account.set(stage=MeasurementProgress.TURNING, is_at_rest=False)
         begin = still_since = self._task.time()
         readings = self._laboratory.readings
+        spread = self._calibration.status().rest_spread
         last = None
         while True:
             joints = readings.fresh()
@@ -114,7 +115,7 @@ class PoseCourse:
             if joints is None:
                 self._account.say_once(f"No {readings.quantity} arrive: check the {readings.device}.")
                 still_since = now
-            elif last is None or progress.distance(joints, last) > readings.still:
+            elif last is None or progress.distance(joints, last) > spread:
                 last, still_since = joints, now
             elif now - still_since >= self._options.rest and not way:
                 self._account.set(is_at_rest=True)

@@ -63,14 +63,6 @@ def joint_stddev(joints):
     return worst if math.isfinite(worst) else 0.0
 
 
-def worst_stddev(parameters):
-    """[rad] of the parameter of an ActuatorParameters that is known worst, as plans count it; infinite where one is not
-    known. An azimuth on the polar axis, which nothing can tell, is stated with half a turn, and does not count."""
-    stated = [stddev for joint in parameters.joints for stddev in (joint.offset_stddev, *joint.axis_stddev)]
-    stated += [s for axis in [*parameters.poles, *parameters.coils] for s in (axis.polar_stddev, axis.azimuth_stddev)]
-    return max(0.0 if math.pi <= stddev < math.inf else stddev for stddev in stated)
-
-
 def in_words(pattern):
     """Coil 3; coils +1 -4."""
     if len(pattern) == 1 and pattern[0] > 0:

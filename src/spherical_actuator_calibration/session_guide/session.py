@@ -162,7 +162,7 @@ class Session:
         wanted = f"{1e3 * self._options.wanted_stddev:.3g} mrad wanted"
         left = self._options.poses - self._training_poses()
         while True:
-            worst = progress.worst_stddev(self._calibration.parameters())
+            worst = self._calibration.status().worst_stddev
             known = f"The worst standard deviation is {1e3 * worst:.3g} mrad, {wanted}"
             if worst <= self._options.wanted_stddev:
                 self._account.say(f"{known}: that is reached.")

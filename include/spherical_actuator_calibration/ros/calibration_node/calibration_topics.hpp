@@ -36,7 +36,8 @@ class CalibrationTopics {
   /// Publishes the last report once more where its grade is another one now.
   void publishStatus(const LiveSession& session,
                      const SessionProgress& progress,
-                     const GradedCalibration& graded);
+                     const GradedCalibration& graded,
+                     bool auto_capture);
   /// `plan`: null where there is none.
   void publishPlan(const PlanProgress* plan);
   void publishSample(const msg::CalibrationSample& sample);
