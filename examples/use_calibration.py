@@ -13,6 +13,8 @@ from spherical_actuator_calibration.calibrated_actuator import CalibratedActuato
 def main(path, *words):
     joints = [float(word) for word in words]
     with CalibratedActuator(path) as actuator:
+        if not actuator.has_uncertainty:
+            print("This description states no uncertainty: nobody has calibrated it, and ± 0 below means that it is not known.")
         pose = actuator.orientation(joints)
         print("orientation", *(f"{q:.6f}" for q in pose.quaternion_xyzw), f"± {pose.stddev:.6f} rad")
         if actuator.coils:

@@ -358,7 +358,8 @@ class Drawing {
              "its error " +
                  times + "; violet cone: 1 sigma " + times +
                  "; ring: gimbal of the joints, about J1, J2, J3" +
-                 "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle",
+                 "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
+                 "or are held out",
              kLegendHeight);
     array_.markers.push_back(legend);
   }

@@ -155,8 +155,17 @@ class ExciteAction(_AtTheBench):
                 raise RuntimeError(f"{in_words(pattern)}: not the current that was commanded: {complaint}.")
             was_there = was_there or is_there
         result = msg.ExciteResult(success=was_there, measured=self._laboratory.currents())
-        result.message = f"{in_words(pattern)}: {'' if was_there else 'not '}excited; the currents are zero again."
+        flowed = "excited" if was_there else f"not the {goal.current:g} A that were commanded, but {self._flowing(pattern)}"
+        result.message = f"{in_words(pattern)}: {flowed}; the currents are zero again."
         return was_there, result
+
+    def _flowing(self, pattern):
+        """What the coils carry, in words."""
+        currents = self._laboratory.currents()
+        measured = [currents[abs(coil) - 1] for coil in pattern if abs(coil) <= len(currents)]
+        if not measured:
+            return "none is measured"
+        return f"{', '.join(f'{current:.3f}' for current in measured)} A, see the limits of the coil driver"
 
     def failure(self, message, _account):
         return msg.ExciteResult(message=message, measured=self._laboratory.currents())

@@ -74,12 +74,21 @@ class Job:
         while not self._is_answered.is_set():
             self._account.changed.wait(PERIOD)
             self._account.changed.clear()
+            if rospy.is_shutdown():  # links go then, which says nothing of the client
+                return
             complaint = "" if self.task.is_cancelled() else self._followers.complaint()
             if complaint:
                 rospy.logwarn("%s: %s Its goal is cancelled.", self.name, printable(complaint))
                 self.cancel(complaint)
             if not self._is_answered.is_set():
-                self._handle.publish_feedback(self._action.feedback(self._account))
+                self._tell()
+
+    def _tell(self):
+        try:
+            self._handle.publish_feedback(self._action.feedback(self._account))
+        except rospy.ROSException:  # its topic was closed at this moment
+            if not rospy.is_shutdown():
+                raise
 
     def _run(self, previous):
         if previous is not None:
