@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
@@ -33,6 +34,9 @@ class CalibrationGrader::Examiner {
         }));
     if (identified_ > 0) {  // else there is nothing to judge
       judge_.emplace(session.heldOutJudge());
+      if (!session.motionEvidence()) {  // which has samples of another time, or its own verdict
+        earlier_judge_.emplace(session.heldOutJudge());
+      }
       shortcoming_ = shortcoming(parameters);
       expected_errors_ = expectedErrors();
     }
@@ -42,6 +46,7 @@ class CalibrationGrader::Examiner {
     if (judge_) {
       const HeldOutValidation& validation = judge_->judge(session_.samples());
       validation_ = validation.samples > 0 ? &validation : nullptr;
+      is_outdated_ = validation_ != nullptr && newestContradict(validation);
     }
     const Grade grade = this->grade();
     return {grade, reason(grade)};
@@ -71,14 +76,41 @@ class CalibrationGrader::Examiner {
 
   bool isContradicted() const {
     return validation_ != nullptr && validation_->hasVerdict() &&
-           (validation_->probability < kLeastProbability || isOutdated());
+           (validation_->probability < kLeastProbability || is_outdated_);
   }
 
-  /// Whether what was held out lately contradicts, though all together may agree. Where a motion
-  /// has told everything, samples are of another time.
-  bool isOutdated() const {
-    return !(last_success_ != nullptr && last_success_->cycle == Cycle::kMotion) &&
-           judgeNewestHeldOut(session_).contradicts;
+  /// Whether the newest held-out samples contradict, by all that those before them tell of the
+  /// parameters, too: among many that agreed they would not show. What they add to the squared
+  /// misfit of all is a chi-square of their own.
+  bool newestContradict(const HeldOutValidation& all) {
+    if (!earlier_judge_ || !takeEarlier()) {
+      return false;
+    }
+    const HeldOutValidation& earlier = earlier_judge_->judge(earlier_);
+    const double freedom = freedomOf(all) - freedomOf(earlier);
+    const double chi_square =
+        all.reduced_chi_square * freedomOf(all) - earlier.reduced_chi_square * freedomOf(earlier);
+    return freedom > 0.0 &&
+           chiSquareProbability(freedom, std::max(chi_square, 0.0)) < kLeastProbability;
+  }
+
+  /// All samples before the newest held-out ones; false where there are no others.
+  bool takeEarlier() {
+    const std::vector<Sample>& samples = session_.samples();
+    std::size_t end = samples.size();
+    for (std::size_t newest = 0; newest < kCheckedSamples && end > earlier_.size();) {
+      newest += samples[--end].validation ? 1U : 0U;
+    }
+    earlier_.insert(earlier_.end(),
+                    samples.begin() + static_cast<std::ptrdiff_t>(earlier_.size()),
+                    samples.begin() + static_cast<std::ptrdiff_t>(end));
+    return std::any_of(
+        earlier_.begin(), earlier_.end(), [](const Sample& one) { return one.validation; });
+  }
+
+  static double freedomOf(const HeldOutValidation& validation) {
+    return 3.0 * static_cast<double>(validation.residuals.size() - validation.unjudged_torques -
+                                     validation.outliers);
   }
 
   /// Torques judge everything, orientations the joint only.
@@ -302,6 +334,9 @@ class CalibrationGrader::Examiner {
   std::string expected_errors_;  ///< see expectedErrors()
   std::optional<HeldOutJudge> judge_;
   const HeldOutValidation* validation_ = nullptr;  ///< of judge_; null: none was held out
+  std::optional<HeldOutJudge> earlier_judge_;      ///< of earlier_
+  std::vector<Sample> earlier_;
+  bool is_outdated_ = false;
   const CycleReport* last_success_ = nullptr;
   const CycleReport* refused_ = nullptr;
 };

@@ -43,7 +43,7 @@ struct Group {
 };
 
 /// The samples in use, with only the newest of the held-out ones held out.
-std::vector<Sample> newestOf(const std::vector<Sample>& samples) {
+std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples) {
   std::vector<Sample> newest;
   for (auto sample = samples.rbegin(); sample != samples.rend() && newest.size() < kCheckedSamples;
        ++sample) {
@@ -116,50 +116,39 @@ std::string boundsInWords(const std::map<std::string, Group>& groups) {
 
 }  // namespace
 
-NewestHeldOut judgeNewestHeldOut(const CalibrationSession& session) {
-  NewestHeldOut newest;
-  newest.samples = newestOf(session.samples());
-  newest.validation = validateHeldOut(session.model(),
-                                      newest.samples,
-                                      session.state(),
-                                      session.config().estimation,
-                                      usualOutlierRate(session));
-  if (!newest.validation.hasVerdict()) {
-    return newest;
-  }
-  const std::map<std::string, Group> groups =
-      groupsOf(newest.samples, newest.validation, session.config().estimation.current_threshold);
-  const double least = kLeastProbability / static_cast<double>(groups.size() + 1);
-  for (const auto& [name, group] : groups) {
-    const double probability = group.probability();
-    if (probability < least) {
-      newest.changed += (newest.changed.empty() ? "" : ", ") + name +
-                        format(" (chi-square %.3g of %.0f, probability %.2g)",
-                               group.chi_square,
-                               group.freedom(),
-                               probability);
-    }
-  }
-  newest.contradicts = !newest.changed.empty() || newest.validation.probability < least;
-  newest.bounds = boundsInWords(groups);
-  return newest;
-}
-
 ValidityCheck checkValidity(const CalibrationSession& session) {
   ValidityCheck check;
-  const NewestHeldOut newest = judgeNewestHeldOut(session);
-  const HeldOutValidation& validation = newest.validation;
+  const std::vector<Sample> newest = newestHeldOut(session.samples());
+  const HeldOutValidation validation = validateHeldOut(session.model(),
+                                                       newest,
+                                                       session.state(),
+                                                       session.config().estimation,
+                                                       usualOutlierRate(session));
   if (!validation.hasVerdict()) {
     check.message =
         "Nothing can be told: capture some poses for validation, 3 or more, and check again.";
     return check;
   }
-  check.is_valid = !newest.contradicts;
+  const std::map<std::string, Group> groups =
+      groupsOf(newest, validation, session.config().estimation.current_threshold);
+  const double least = kLeastProbability / static_cast<double>(groups.size() + 1);
+  std::string changed;
+  for (const auto& [name, group] : groups) {
+    const double probability = group.probability();
+    if (probability < least) {
+      changed += (changed.empty() ? "" : ", ") + name +
+                 format(" (chi-square %.3g of %.0f, probability %.2g)",
+                        group.chi_square,
+                        group.freedom(),
+                        probability);
+    }
+  }
+  check.is_valid = changed.empty() && validation.probability >= least;
   if (check.is_valid) {
     check.message = format(
         "Valid to %s, by %zu held-out samples%s. This holds beside the registrations: frames that "
         "were off when the unit was calibrated, and still are, show in no sample.",
-        newest.bounds.c_str(),
+        boundsInWords(groups).c_str(),
         validation.samples,
         validation.outliers > 0
             ? format(" (%zu outliers, as rare as the others', are not judged)", validation.outliers)
@@ -167,14 +156,13 @@ ValidityCheck checkValidity(const CalibrationSession& session) {
             : "");
     return check;
   }
-  check.message = newest.changed.empty()
-                      ? format(
-                            "Not valid any more: the held-out samples together misfit "
-                            "(probability %.2g).",
-                            validation.probability)
-                      : "Not valid any more: changed are " + newest.changed + ".";
+  check.message = changed.empty() ? format(
+                                        "Not valid any more: the held-out samples together misfit "
+                                        "(probability %.2g).",
+                                        validation.probability)
+                                  : "Not valid any more: changed are " + changed + ".";
   const Actuator in_force = session.model().space().actuatorAt(session.state().belief.x);
-  check.changes = diagnoseWiring(in_force, newest.samples, session.config()).mistakes;
+  check.changes = diagnoseWiring(in_force, newest, session.config()).mistakes;
   for (const Diagnosis& change : check.changes) {
     check.message += " " + change.message;
   }

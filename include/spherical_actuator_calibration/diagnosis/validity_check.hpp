@@ -5,21 +5,9 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
-#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
-#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
-
-/// What the newest held-out samples say of the parameters in force.
-struct NewestHeldOut {
-  std::vector<Sample> samples;
-  HeldOutValidation validation;
-  /// Orientations, torques of a coil, or all together misfit more than by chance.
-  bool contradicts = false;
-  std::string changed;  ///< in words, which of them; empty: none by itself
-  std::string bounds;   ///< in words, what they would have noticed
-};
 
 /// Whether the parameters in force still describe the machine.
 struct ValidityCheck {
@@ -34,12 +22,9 @@ struct ValidityCheck {
 inline constexpr std::size_t kCheckedSamples = 24;
 
 /// Judges the newest held-out samples against the parameters in force: orientations, and torques of
-/// each coil, by a chi-square test each. What came lately would be lost among many older ones.
-NewestHeldOut judgeNewestHeldOut(const CalibrationSession& session);
-
-/// The same in words, and what it may come from. What they would not have noticed is told as the
-/// largest rms error that would have passed with a probability of 1 % (non-central chi-square).
-/// Changes nothing.
+/// each coil, by a chi-square test each. What they would not have noticed is told as the largest
+/// rms error that would have passed with a probability of 1 % (non-central chi-square). Changes
+/// nothing.
 ValidityCheck checkValidity(const CalibrationSession& session);
 
 }  // namespace sac
