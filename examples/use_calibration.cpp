@@ -20,6 +20,9 @@ int main(int argc, char** argv) {
     const sac::CalibratedActuator actuator = sac::CalibratedActuator::load(argv[1]);
     const Eigen::Vector3d joints(std::atof(argv[2]), std::atof(argv[3]), std::atof(argv[4]));
 
+    if (!actuator.hasUncertainty()) {
+      std::puts("No uncertainty is stated: nobody has calibrated this, and ± 0 is not known.");
+    }
     const auto pose = actuator.orientation(joints);
     const Eigen::Quaterniond q(pose.R_stator_rotor);
     std::printf(

@@ -14,7 +14,7 @@ def main(path, *words):
     joints = [float(word) for word in words]
     with CalibratedActuator(path) as actuator:
         if not actuator.has_uncertainty:
-            print("This description states no uncertainty: nobody has calibrated it, and ± 0 below means that it is not known.")
+            print("No uncertainty is stated: nobody has calibrated this, and ± 0 is not known.")
         pose = actuator.orientation(joints)
         print("orientation", *(f"{q:.6f}" for q in pose.quaternion_xyzw), f"± {pose.stddev:.6f} rad")
         if actuator.coils:

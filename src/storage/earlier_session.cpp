@@ -111,7 +111,8 @@ PoseToMeasure& poseOf(const Sample& sample, const Actuator& actuator, PosesToMea
   if (poses.size() == kMostPoses) {
     throw DataError("it has more than " + std::to_string(kMostPoses) + " poses.");
   }
-  return poses.emplace_back(PoseToMeasure{placeOf(sample, actuator), {}, sample.validation});
+  poses.push_back({placeOf(sample, actuator), {}, sample.validation});
+  return poses.back();
 }
 
 EarlierSession sessionOf(const std::vector<Sample>& samples,
