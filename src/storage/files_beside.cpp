@@ -29,6 +29,14 @@ std::string wrongKind(const std::string& path) {
   }
 }
 
+[[noreturn]] void throwBeside(const std::string& path,
+                              const std::string& failure,
+                              const std::string& beside,
+                              const std::string& kind) {
+  throw DataError(path + ": " + failure + ", because " + beside + " is " + kind +
+                  ", not a file; remove it, and try again.");
+}
+
 }  // namespace
 
 void requireFilesBeside(const std::string& path,
@@ -38,8 +46,7 @@ void requireFilesBeside(const std::string& path,
     const std::string beside = file + ending;
     const std::string kind = wrongKind(beside);
     if (!kind.empty()) {
-      throw DataError(path + ": " + failure + ", because " + beside + " is " + kind +
-                      ", not a file; remove it, and try again.");
+      throwBeside(path, failure, beside, kind);
     }
   }
 }
