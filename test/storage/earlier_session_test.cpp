@@ -23,8 +23,8 @@ using database_examples::kDate;
 
 constexpr Eigen::Index kCoils = 24;
 constexpr double kThreshold = 0.05;  // [A]
-const Eigen::Vector3d kHere(0.1, 0.2, 0.3);
-const Eigen::Vector3d kThere(0.4, 0.0, 0.0);
+const Eigen::Vector3d here(0.1, 0.2, 0.3);
+const Eigen::Vector3d there(0.4, 0.0, 0.0);
 
 /// Current [A] of each coil, counted from 0, that has one.
 using Currents = std::vector<std::pair<Eigen::Index, double>>;
@@ -60,28 +60,28 @@ class EarlierSessionTest : public ::testing::Test {
 };
 
 TEST_F(EarlierSessionTest, IsMeasuredAgainAsItWas) {
-  const Eigen::Vector3d nearby = kHere + Eigen::Vector3d(0.01, 0.0, 0.0);
-  measure(kHere, {});
+  const Eigen::Vector3d nearby = here + Eigen::Vector3d(0.01, 0.0, 0.0);
+  measure(here, {});
   measure(nearby, {{0, 2.001}, {3, 0.001}});
   measure(nearby, {{0, -2.001}});
-  measure(kHere, {{1, 1.999}, {2, -2.0}});
-  measure(kHere, {{1, 2.0}, {2, -1.998}});
-  measure(kHere, {{3, 2.0}});
+  measure(here, {{1, 1.999}, {2, -2.0}});
+  measure(here, {{1, 2.0}, {2, -1.998}});
+  measure(here, {{3, 2.0}});
   SessionDatabase(path(), identity_).removeSample(6, kDate);
-  measure(kHere, {{2, 2.0}}, true);
-  measure(kThere, {{2, 2.0}}, true);
+  measure(here, {{2, 2.0}}, true);
+  measure(there, {{2, 2.0}}, true);
   const std::string before = contentOf(path());
   const EarlierSession session = load();
   EXPECT_EQ(session.current, 2.0);
-  const PosesToMeasure expected{{kHere, {{{0, 1}}, {{0, -1}}, {{1, 1}, {2, -1}}}, false},
-                                {kHere, {{{2, 1}}}, true},
-                                {kThere, {{{2, 1}}}, true}};
+  const PosesToMeasure expected{{here, {{{0, 1}}, {{0, -1}}, {{1, 1}, {2, -1}}}, false},
+                                {here, {{{2, 1}}}, true},
+                                {there, {{{2, 1}}}, true}};
   EXPECT_EQ(session.poses, expected);
   EXPECT_EQ(contentOf(path()), before);
 }
 
 TEST_F(EarlierSessionTest, WithoutCurrentsItHasNone) {
-  measure(kHere, {});
+  measure(here, {});
   EXPECT_EQ(load().current, 0.0);
   EXPECT_TRUE(load().poses.at(0).patterns.empty());
 }
@@ -96,7 +96,7 @@ TEST_F(EarlierSessionTest, WhatAHandMetBeyondTheEdgeIsMovedThere) {
 }
 
 TEST_F(EarlierSessionTest, IsReadWhileANodeWorksWithIt) {
-  measure(kHere, {});
+  measure(here, {});
   SessionDatabase database(path(), identity_);
   EXPECT_EQ(load().poses.size(), 1U);
   database.addSample(database_examples::sample(2, kCoils), kDate);
@@ -104,7 +104,7 @@ TEST_F(EarlierSessionTest, IsReadWhileANodeWorksWithIt) {
 }
 
 TEST_F(EarlierSessionTest, OfAnEarlierFormat) {
-  measure(kHere, {{0, 2.0}});
+  measure(here, {{0, 2.0}});
   database_examples::change(
       path(), "ALTER TABLE planned_poses DROP COLUMN validation; PRAGMA user_version = 7");
   EXPECT_EQ(load().poses.size(), 1U);
@@ -114,7 +114,7 @@ TEST_F(EarlierSessionTest, OfAnEarlierFormat) {
 TEST_F(EarlierSessionTest, WhatDoesNotSuitIsRefused) {
   { const SessionDatabase database(path(), identity_); }
   expectRefusal("it holds no samples in use", actuator());
-  measure(kHere, {{23, 2.0}});
+  measure(here, {{23, 2.0}});
   Actuator other = actuator();
   other.coils.pop_back();
   expectRefusal("coil 24 of the 23", other);
@@ -140,7 +140,7 @@ TEST_F(EarlierSessionTest, WhatIsNoSessionIsRefused) {
 }
 
 TEST_F(EarlierSessionTest, WhatIsDamagedOrForeignIsRefused) {
-  measure(kHere, {{0, 2.0}});
+  measure(here, {{0, 2.0}});
   database_examples::change(path(), "UPDATE samples SET joint_2 = 'here'");
   expectRefusal("where a number is wanted", actuator());
   database_examples::change(path(), "CREATE VIEW more AS SELECT * FROM samples");
