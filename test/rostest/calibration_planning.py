@@ -115,6 +115,10 @@ class Planning(unittest.TestCase):
         self.assertIn("joint_position", self.plan(cycle="refine", max_poses=2, first=[nowhere]).message)
         beyond = PosePatterns(joint_position=(TILT_LIMIT + 0.01, 0.0, 0.0))
         self.assertIn("tilt_limit", self.plan(cycle="refine", max_poses=2, first=[beyond]).message)
+        # The actions ask so before they turn anything.
+        answer = self.client.call("missing_patterns", poses=[beyond])
+        self.assertFalse(answer.success)
+        self.assertIn("tilt_limit", answer.message)
         self.assertEqual(len(self.client.latest("plan_progress").poses), 3)
 
     def test_follows_a_plan_of_a_file(self):

@@ -80,7 +80,7 @@ class CalibrationNode {
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
   bool loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response);
-  /// Keeps a plan and follows it, after poses that come before it; the caller holds the session.
+  /// Keeps a plan and follows it; the caller holds the session.
   void adopt(const std::vector<PoseToMeasure>& poses);
   bool missingPatterns(msg::MissingPatterns::Request& request,
                        msg::MissingPatterns::Response& response);
