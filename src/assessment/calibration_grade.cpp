@@ -372,6 +372,10 @@ std::string gradeName(Grade grade) {
   return "failed";
 }
 
+bool isSound(Grade grade) {
+  return grade != Grade::kContradicted && grade != Grade::kFailed;
+}
+
 GradedCalibration gradeCalibration(const CalibrationSession& session) {
   return CalibrationGrader(session).grade();
 }

@@ -200,6 +200,7 @@ void writeOrigin(YamlWriter& writer,
 void writeVerdict(YamlWriter& writer, const CalibrationVerdict& verdict) {
   YamlLine line;
   line.add("grade", gradeName(verdict.graded.grade));
+  line.add("sound", isSound(verdict.graded.grade) ? "true" : "false");
   line.add("sentence", yamlText(verdict.graded.reason));
   writer.entry(1, "verdict", line.text());
   writer.list(1, "next_steps", texts(verdict.next_steps));

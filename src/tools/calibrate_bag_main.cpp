@@ -278,8 +278,7 @@ void writeCertificate(const CalibrationSession& session,
                       const CertificateIssuer& issuer,
                       const std::string& path,
                       OverwritePolicy policy) {
-  const Grade grade = gradeCalibration(session).grade;
-  if (grade == Grade::kFailed || grade == Grade::kContradicted) {
+  if (!isSound(gradeCalibration(session).grade)) {
     std::cout << "Certificate: " << path << " is not written: see the grade.\n";
     return;
   }

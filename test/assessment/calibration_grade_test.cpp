@@ -43,6 +43,14 @@ TEST(CalibrationGrade, HasOneNamePerGrade) {
   EXPECT_EQ(gradeName(Grade::kFailed), "failed");
 }
 
+TEST(CalibrationGrade, OnlyWhatNothingContradictsIsSound) {
+  EXPECT_TRUE(isSound(Grade::kGood));
+  EXPECT_TRUE(isSound(Grade::kUsable));
+  EXPECT_TRUE(isSound(Grade::kNotValidated));
+  EXPECT_FALSE(isSound(Grade::kContradicted));
+  EXPECT_FALSE(isSound(Grade::kFailed));
+}
+
 TEST(CalibrationGrade, GoodNeedsEveryParameterAndHeldOutSamplesThatAgree) {
   const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), wholeCalibration());
   EXPECT_EQ(graded.grade, Grade::kGood) << graded.reason;

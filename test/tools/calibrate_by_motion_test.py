@@ -60,7 +60,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.description = CALIBRATED
         self.started = []  # programs with their arguments
         self.fails = lambda command: False
-        self.grade = "good"
+        self.is_sound = True
         self.tells_nothing = False  # the recordings, of the parameters
         self.gives_parameters = True  # beside a report
         self.module = loaded()
@@ -81,7 +81,7 @@ class CalibrateByMotion(unittest.TestCase):
                 pathlib.Path(words[words.index("--output") + 1]).touch()
             report = pathlib.Path(words[words.index("--report") + 1]) / "report.yaml"
             report.parent.mkdir()
-            report.write_text(f"calibration_report: {{verdict: {{grade: {self.grade}}}}}")
+            report.write_text(f"calibration_report: {{verdict: {{sound: {str(self.is_sound).lower()}}}}}")
         return int(self.fails(words))
 
     def run_with(self, *arguments):
@@ -226,7 +226,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.assertNotIn("--parameters", self.of_program("run_motion")[0])
 
     def test_what_contradicts_is_no_success(self):
-        self.grade = "contradicted"
+        self.is_sound = False
         status, said = self.run_with()
         self.assertEqual(status, 1)
         # What it gave before is there already.

@@ -19,6 +19,8 @@ enum class Grade {
 
 /// good, usable, not_validated, contradicted, failed: as in messages and reports.
 std::string gradeName(Grade grade);
+/// Whether something is identified that nothing contradicts: what may be certified and built on.
+bool isSound(Grade grade);
 
 /// A grade with its reason.
 struct GradedCalibration {
