@@ -24,4 +24,8 @@ std::string shortNumber(double value) {
   return format("%.3g", value);
 }
 
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace sac

@@ -55,11 +55,6 @@ std::string distanceInWords(double stddev, double bound) {
       std::max(0.0, 100.0 * (stddev / bound - 1.0)));
 }
 
-/// 1 pose, 2 poses.
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 bool PlanProgress::add(const Sample& sample) {
@@ -89,10 +84,11 @@ std::string PlanProgress::nextStep() const {
   const Eigen::Vector3d& q = next->pose().joint_position;
   const Eigen::Vector3d degrees = q / kOneDegree;
   std::string text = format(
-      "Go on with the plan, %td of %zu poses are measured: turn the rotor to "
+      "Go on with the plan, %td of %s %s measured: turn the rotor to "
       "%s %.2f, %.2f, %.2f rad (%.0f, %.0f, %.0f deg) and capture%s",
       measured,
-      poses_.size(),
+      counted(poses_.size(), "pose").c_str(),
+      measured == 1 ? "is" : "are",
       has_joints_ ? "joints" : "turns about x, y, z of",
       q.x(),
       q.y(),

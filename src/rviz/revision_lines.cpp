@@ -5,6 +5,7 @@
 
 #include "shown_unit.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
@@ -33,7 +34,7 @@ std::string errorInWords(const msg::Revision& revision) {
   const ShownUnit unit = shownIn(revision.error_unit);
   return number("%.4g", unit.factor * revision.error_before) + " → " +
          withUnit("%.4g", unit.factor * revision.error_after, unit.name) + ", " +
-         std::to_string(revision.samples_used) + " samples";
+         counted(revision.samples_used, "sample");
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(PlanGuidance, LeadsFromPoseToPose) {
             std::string::npos);
   samples.push_back(sampleAt(first + Eigen::Vector3d(0.0, 0.04, 0.0), {0.0, 0.0, 2.0}));
   EXPECT_EQ(planStep(plan, samples, kThreshold),
-            "Go on with the plan, 1 of 2 poses are measured: turn the rotor to joints 0.00, 0.30, "
+            "Go on with the plan, 1 of 2 poses is measured: turn the rotor to joints 0.00, 0.30, "
             "0.00 rad (0, 17, 0 deg) and capture.");
   samples.push_back(sampleAt(second, {0.0, 0.0, 0.0}));
   EXPECT_EQ(planStep(plan, samples, kThreshold), "");

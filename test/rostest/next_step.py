@@ -95,7 +95,7 @@ class NextStep(unittest.TestCase):
         plan = rospy.ServiceProxy(NODE + "/plan_poses", PlanPoses)(cycle="joint", max_poses=4)
         self.assertTrue(plan.success, plan.message)
         for number, pose in enumerate(plan.poses):
-            self.says(f"Go on with the plan, {number} of {len(plan.poses)} poses are measured")
+            self.says(f"Go on with the plan, {number} of {len(plan.poses)} poses {'is' if number == 1 else 'are'} measured")
             self.says(f"joints {pose.joint_position[0]:.2f},")
             self.capture(pose.joint_position)
             if number == 1:

@@ -231,7 +231,7 @@ class ImportOfStreams(Folder):
         self.assertEqual(len(self.messages("calibration_description")), 1)
         # They can be read: bad would be a status of 2.
         result = run(CALIBRATE_BAG, "--output", self.folder / "o.yaml", "--cycles", "joint", self.folder / "out.bag")
-        self.assertIn("1 dwells at rest gave 1 samples", result.stdout)
+        self.assertIn("1 dwell at rest gave 1 sample;", result.stdout)
         self.assertEqual(result.returncode, 1, result.stderr)
 
     def changed(self, part, **changes):

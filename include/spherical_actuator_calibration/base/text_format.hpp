@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace sac {
@@ -9,5 +10,8 @@ std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)
 
 /// Three significant digits, for sentences.
 std::string shortNumber(double value);
+
+/// 1 pose, 2 poses.
+std::string counted(std::size_t count, const std::string& what);
 
 }  // namespace sac

@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
@@ -237,7 +238,7 @@ bool CalibrationNode::loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::R
       for (const PoseToMeasure& pose : plan.poses) {
         response.poses.push_back(poseToRos(pose));
       }
-      return std::to_string(plan.poses.size()) + " poses of " + request.path + " are planned.";
+      return "Planned as in " + request.path + ": " + counted(plan.poses.size(), "pose") + ".";
     });
   } catch (const std::exception& error) {
     response.message = printable(error.what());

@@ -44,9 +44,9 @@ void addStreams(std::vector<std::string>& lines, const RecordedStreamsReport& st
   lines.push_back(describe("measured_torque", report.torques));
   addCount(lines, streams.torques_in_other_frame, "torques in another frame dropped.");
   lines.push_back(describe("coil_currents", report.currents));
-  lines.push_back(std::to_string(report.dwells) + " dwells at rest gave " +
-                  std::to_string(report.samples) + " samples; " + std::to_string(report.discarded) +
-                  " dwells or parts of them gave none.");
+  lines.push_back(counted(report.dwells, "dwell") + " at rest gave " +
+                  counted(report.samples, "sample") + "; " + counted(report.discarded, "dwell") +
+                  " or parts of them gave none.");
   addEvents(lines, report);
 }
 
