@@ -21,6 +21,7 @@ namespace sac {
 namespace {
 
 constexpr int kMostPoses = 100;
+constexpr int kSilenceOfEngine = 2000;  // [ms] after which it has gone: it tells its goals at 5 Hz
 
 /// Names of the joints in the description that the nodes read; `otherwise` where there is none.
 std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
@@ -131,6 +132,15 @@ void HandGuide::listen() {
         guide_.receive(*message);
       },
       tellRefusal("plan_progress")));
+  subscribers_.push_back(subscribeChecked<actionlib_msgs::GoalStatusArray>(
+      node_,
+      "calibration/session/status",
+      kNewest,
+      [this](const actionlib_msgs::GoalStatusArray::ConstPtr& message) {
+        session_heard_.start();
+        guide_.receive(*message);
+      },
+      tellRefusal("calibration/session/status")));
 }
 
 void HandGuide::refresh() {
@@ -162,9 +172,6 @@ void HandGuide::planOrStop() {
 
 void HandGuide::showPlan() {
   if (const auto end = planning_.takeEnd()) {
-    if (end->success) {
-      own_plan_ = end->result.poses;
-    }
     outcome_->setText(QString::fromStdString(end->message));
   } else if (planning_.isRunning()) {
     outcome_->setText(QString::fromStdString(planned_));
@@ -233,9 +240,10 @@ void HandGuide::showMeasurement() {
   }
 }
 
-// To a plan that was made elsewhere whoever made it leads.
+// What a session showed it takes back at its end: then this is told anew.
 void HandGuide::tellTarget() {
-  if (guide_.hasPlan() && !guide_.follows(own_plan_)) {
+  if (guide_.sessionLeads() && !session_heard_.hasExpired(kSilenceOfEngine)) {
+    told_target_.reset();
     return;
   }
   const std::optional<std::array<double, 3>> target = guide_.target();

@@ -62,8 +62,8 @@ class HandGuide : public QWidget {
   EngineAction<msg::CaptureAction> capture_;
   EngineAction<msg::PlanAction> planning_;
   QElapsedTimer planning_since_;
-  std::string planned_;                     ///< how far it is
-  std::vector<msg::PlannedPose> own_plan_;  ///< that was asked for here last
+  std::string planned_;  ///< how far it is
+  QElapsedTimer session_heard_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;

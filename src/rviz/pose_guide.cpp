@@ -87,14 +87,13 @@ void PoseGuide::receive(const sensor_msgs::JointState& message) {
   joints_ = joints;
 }
 
-bool PoseGuide::follows(const std::vector<msg::PlannedPose>& plan) const {
-  return std::equal(poses_.begin(),
-                    poses_.end(),
-                    plan.begin(),
-                    plan.end(),
-                    [](const msg::PoseProgress& one, const msg::PlannedPose& other) {
-                      return one.pose.joint_position == other.joint_position;
-                    });
+void PoseGuide::receive(const actionlib_msgs::GoalStatusArray& message) {
+  using actionlib_msgs::GoalStatus;
+  const auto& goals = message.status_list;
+  session_leads_ = std::any_of(goals.begin(), goals.end(), [](const GoalStatus& goal) {
+    return goal.status == GoalStatus::PENDING || goal.status == GoalStatus::ACTIVE ||
+           goal.status == GoalStatus::PREEMPTING || goal.status == GoalStatus::RECALLING;
+  });
 }
 
 bool PoseGuide::isThere(const msg::PoseProgress& pose) const {
@@ -139,7 +138,8 @@ std::string PoseGuide::advice() const {
   }
   const std::optional<std::size_t> next = this->next();
   if (!next) {
-    return "All " + std::to_string(poses_.size()) + " poses are measured: " +
+    return (poses_.size() == 1 ? "The one pose is measured: "
+                               : "All " + std::to_string(poses_.size()) + " poses are measured: ") +
            (poses_.front().pose.validation != 0 ? "validate." : "calibrate.");
   }
   const msg::PoseProgress& pose = poses_[*next];

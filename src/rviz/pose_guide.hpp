@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include <actionlib_msgs/GoalStatusArray.h>
 #include <geometry_msgs/QuaternionStamped.h>
 #include <sensor_msgs/JointState.h>
 
 #include "spherical_actuator_calibration/PlanProgress.h"
-#include "spherical_actuator_calibration/PlannedPose.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -36,9 +36,12 @@ class PoseGuide {
   /// Orientation of a rotor without joints; of another one it tells nothing here.
   void receive(const geometry_msgs::QuaternionStamped& message);
 
+  /// The goals of the engine's sessions, instead of what was so before.
+  void receive(const actionlib_msgs::GoalStatusArray& message);
+
   bool hasPlan() const { return !poses_.empty(); }
-  /// Whether the plan in force is that of these poses.
-  bool follows(const std::vector<msg::PlannedPose>& plan) const;
+  /// Whether a guided session works: it shows the pose that is next.
+  bool sessionLeads() const { return session_leads_; }
   /// Index of the first pose that is not measured; nothing where none is left.
   std::optional<std::size_t> next() const;
   /// Joint angles of that pose [rad].
@@ -56,6 +59,7 @@ class PoseGuide {
   double tolerance_ = 0.0;  ///< [rad]
   std::array<std::string, 3> names_ = {"joint_1", "joint_2", "joint_3"};
   bool has_joints_ = true;
+  bool session_leads_ = false;
   std::vector<msg::PoseProgress> poses_;
   std::optional<std::array<double, 3>> joints_;
 };

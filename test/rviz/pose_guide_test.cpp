@@ -110,18 +110,23 @@ TEST_F(PoseGuideTest, TellsOfAPlanToJudgeBy) {
   EXPECT_EQ(guide_.advice(), "Pose 1 of 1, held out: the joint angles are silent.");
   to_judge.poses[0].is_measured = 1;
   guide_.receive(to_judge);
-  EXPECT_EQ(guide_.advice(), "All 1 poses are measured: validate.");
+  EXPECT_EQ(guide_.advice(), "The one pose is measured: validate.");
 }
 
-TEST_F(PoseGuideTest, KnowsAPlanByItsPoses) {
-  std::vector<msg::PlannedPose> poses(2);
-  poses[0].joint_position = {0.1, 0.0, -1.0};
-  poses[1].joint_position = {0.3, 0.2, 1.0};
-  EXPECT_TRUE(guide_.follows(poses));
-  poses[1].joint_position[2] = 1.1;
-  EXPECT_FALSE(guide_.follows(poses));
-  poses.pop_back();
-  EXPECT_FALSE(guide_.follows(poses));
+TEST_F(PoseGuideTest, LeavesItToASessionToLeadWhileOneWorks) {
+  using actionlib_msgs::GoalStatus;
+  EXPECT_FALSE(guide_.sessionLeads());
+  actionlib_msgs::GoalStatusArray goals;
+  goals.status_list.resize(2);
+  goals.status_list[0].status = GoalStatus::ABORTED;
+  for (const auto status : {GoalStatus::PENDING, GoalStatus::ACTIVE, GoalStatus::PREEMPTING}) {
+    goals.status_list[1].status = status;
+    guide_.receive(goals);
+    EXPECT_TRUE(guide_.sessionLeads());
+  }
+  goals.status_list[1].status = GoalStatus::PREEMPTED;
+  guide_.receive(goals);
+  EXPECT_FALSE(guide_.sessionLeads());
 }
 
 TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {
