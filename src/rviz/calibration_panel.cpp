@@ -6,6 +6,7 @@
 #include <QTabWidget>
 #include <QTime>
 #include <QVBoxLayout>
+#include <optional>
 
 #include <pluginlib/class_list_macros.hpp>
 #include <std_srvs/SetBool.h>
@@ -274,7 +275,6 @@ void CalibrationPanel::showAnswer() {
   changed_ = true;
   answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
   setCallsEnabled(true);
-  auto_capture_->setChecked(model_.capturesByItself());
 }
 
 void CalibrationPanel::showAge() {

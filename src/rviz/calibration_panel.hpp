@@ -7,7 +7,6 @@
 #include <QPushButton>
 #include <QSpinBox>
 #include <QTimer>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,6 +2,7 @@
 
 #include <QHBoxLayout>
 #include <QHideEvent>
+#include <QTime>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "excitation_limits.hpp"
 #include "named_button.hpp"
+#include "steady_label.hpp"
 
 namespace sac {
 namespace {
@@ -54,7 +56,7 @@ void CoilLook::build() {
   layout->addLayout(row);
   outcome_ = new QLabel;
   outcome_->setWordWrap(true);
-  outcome_->hide();
+  reserveLines(*outcome_, 2);
   layout->addWidget(outcome_);
 }
 
@@ -69,7 +71,7 @@ void CoilLook::exciteOrStop() {
     return;
   }
   if (current_->value() == 0.0) {
-    tell("Choose a current first.");
+    outcome_->setText("Choose a current first.");
     return;
   }
   msg::ExciteGoal goal;
@@ -82,17 +84,14 @@ void CoilLook::exciteOrStop() {
 
 void CoilLook::showExcitation() {
   if (const auto end = excitation_.takeEnd()) {
-    tell(QString::fromStdString(end->message +
-                                (words_.carried().empty() ? "" : "\n" + words_.carried())));
+    outcome_->setText(
+        QTime::currentTime().toString("hh:mm:ss, ") +
+        QString::fromStdString(end->message +
+                               (words_.carried().empty() ? "" : "\n" + words_.carried())));
   } else if (excitation_.isRunning()) {
-    tell(QString::fromStdString(words_.text()));
+    outcome_->setText(QString::fromStdString(words_.text()));
   }
   nameButton(*excite_, excitation_.isRunning() ? "Stop" : "Excite", "F12");
-}
-
-void CoilLook::tell(const QString& text) {
-  outcome_->setText(text);
-  outcome_->show();
 }
 
 // A window that is made small on the screen hides spontaneously.

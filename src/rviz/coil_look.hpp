@@ -31,7 +31,6 @@ class CoilLook : public QWidget {
   void build();
   void exciteOrStop();
   void showExcitation();
-  void tell(const QString& text);
 
   ExcitationWords words_;
   EngineAction<msg::ExciteAction> excitation_;
