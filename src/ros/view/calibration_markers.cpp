@@ -111,7 +111,8 @@ std::vector<SampledDirection> worstOfEach(const std::vector<SampledDirection>& s
 
 /// The axes of one kind, poles or coils, and how they are drawn.
 struct AxisGroup {
-  std::string name;  ///< pole or coil
+  std::string name;    ///< pole or coil
+  std::string letter;  ///< before its numbers
   std::string frame;
   double from;          ///< radius where the arrows begin [m]
   double to;            ///< radius where they end [m]
@@ -140,8 +141,13 @@ class Drawing {
  private:
   void addPoles() {
     const double start = scene_.dimensions.rotor_radius + kArrowGap;
-    const AxisGroup group = {
-        "pole", scene_.frames.rotor, start, start + kArrowLength, start, start + kNominalLength};
+    const AxisGroup group = {"pole",
+                             "P",
+                             scene_.frames.rotor,
+                             start,
+                             start + kArrowLength,
+                             start,
+                             start + kNominalLength};
     for (Eigen::Index i = 0; i < nominal_.poles_rotor.cols(); ++i) {
       addAxis(group,
               i,
@@ -156,7 +162,7 @@ class Drawing {
     // From outside, so that coils and arrows do not hide each other.
     const double end = scene_.dimensions.outer_shell_radius + kArrowGap;
     const AxisGroup group = {
-        "coil", scene_.frames.stator, end + kArrowLength, end, end + kNominalLength, end};
+        "coil", "C", scene_.frames.stator, end + kArrowLength, end, end + kNominalLength, end};
     for (Eigen::Index j = 0; j < nominal_.coils_stator.cols(); ++j) {
       addAxis(group,
               j,
@@ -192,7 +198,7 @@ class Drawing {
     const double outside = std::max({group.to, group.from, group.nominal_from, group.nominal_to});
     drawText(number,
              (outside + kNumberGap) * axis,
-             std::to_string(numberOf(static_cast<std::size_t>(index))),
+             group.letter + std::to_string(numberOf(static_cast<std::size_t>(index))),
              kNumberHeight);
     array_.markers.push_back(number);
 
@@ -357,7 +363,7 @@ class Drawing {
              "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
              "its error " +
                  times + "; violet cone: 1 sigma " + times +
-                 "; ring: gimbal of the joints, about J1, J2, J3" +
+                 "; P: poles, C: coils; ring: gimbal of the joints, about J1, J2, J3" +
                  "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
                  "or are held out",
              kLegendHeight);

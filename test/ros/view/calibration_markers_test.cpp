@@ -255,9 +255,9 @@ TEST(CalibrationMarkers, ADotForEachOrientationThatWasSampled) {
 
 TEST(CalibrationMarkers, NumbersCountAsMessagesDo) {
   const visualization_msgs::MarkerArray array = calibrationMarkers(paperScene());
-  EXPECT_EQ(markerOf(array, "pole numbers", 7).text, "8");
+  EXPECT_EQ(markerOf(array, "pole numbers", 7).text, "P8");
   const Marker& number = markerOf(array, "coil numbers", 0);
-  EXPECT_EQ(number.text, "1");
+  EXPECT_EQ(number.text, "C1");
   // Outside of everything that stands on its axis.
   const auto distance = [](const geometry_msgs::Point& point) {
     return Eigen::Vector3d(point.x, point.y, point.z).norm();
