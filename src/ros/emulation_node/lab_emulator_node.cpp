@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/frame_names.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
@@ -176,8 +177,8 @@ Eigen::Vector3d LabEmulatorNode::targetOf(const geometry_msgs::QuaternionStamped
 void LabEmulatorNode::setTarget(const Eigen::Vector3d& target) {
   constexpr double kRounding = 1e-6;
   if (!target.allFinite() || !truth_.workspace.contains(target, kRounding)) {
-    throw DataError("the target lies outside of the workspace, ±" +
-                    std::to_string(truth_.workspace.tilt_limit) + " rad of tilt.");
+    throw DataError("the target lies outside of the workspace, " +
+                    shortNumber(truth_.workspace.tilt_limit) + " rad of tilt either way.");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   // Joints turn to the very angles, an orientation is reached by the shortest turn.
