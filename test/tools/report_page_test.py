@@ -157,6 +157,12 @@ class ReportPage(unittest.TestCase):
         figures["cycles"].append({**first, "error_history": [0.000011, 0.000099]})
         self.assertIn("33.1 → 0.099 mrad", self.render(figures, "again").text)
 
+    def test_an_error_before_is_that_of_the_drawing(self):
+        figures = copy.deepcopy(self.figures)
+        cycle = next(cycle for cycle in figures["cycles"] if cycle["cycle"] == "joint")
+        figures["cycles"] = [{**cycle, "cycle": "refine", "error_unit": "1"}, cycle]
+        self.assertNotIn("Orientations, before → after", self.render(figures, "refined_first").text)
+
     def test_tells_errors_before_and_after_and_axes_as_vectors(self):
         self.assertIn("Orientations, before → after", self.page.text)
         for axis in self.figures["joint_axes"]:

@@ -85,13 +85,13 @@ class WantedAccuracy(unittest.TestCase):
         session = Repeated(poses=5, wanted_stddev=1e-6)
         session._measure(range(1))
         session._reach_wanted_stddev()
-        self.assertIn("that takes more poses than --poses 5", session.said[-1])
+        self.assertIn("that takes more than 5 poses", session.said[-1])
 
     def test_takes_no_more_poses_than_were_asked_for(self):
         session = self.session(poses=7, wanted_stddev=0.25e-3)
         self.assertEqual(session.poses, 7)
         self.assertIn("1 pose is added", "".join(session.said))
-        self.assertIn("that takes more poses than --poses 7", session.said[-1])
+        self.assertIn("that takes more than 7 poses", session.said[-1])
 
 
 if __name__ == "__main__":

@@ -62,8 +62,10 @@ class Goals(unittest.TestCase):
 
     def test_that_cannot_be_used_are_refused(self):
         for goal in (SessionGoal(poses=2), SessionGoal(current=float("nan")), SessionGoal(settling=float("inf"))):
-            self.assertRaises(OptionError, goals.options_of, goal, "/actuator")
-        self.assertRaises(OptionError, goals.options_of_capture, CaptureGoal(duration=float("nan")), "/actuator")
+            name = next(field for field in goal.__slots__ if getattr(goal, field))
+            self.assertRaisesRegex(OptionError, f"^{name}: ", goals.options_of, goal, "/actuator")
+        no_time = CaptureGoal(duration=float("nan"))
+        self.assertRaisesRegex(OptionError, "^duration: nan is outside", goals.options_of_capture, no_time, "/actuator")
 
     def test_of_a_pose_have_the_signs_of_current_and_pattern(self):
         pattern = CurrentPattern(current=[2.0, 0.0, -2.0])

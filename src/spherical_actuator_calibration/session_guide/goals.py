@@ -6,7 +6,7 @@ import os
 from spherical_actuator_calibration.msg import SessionGoal
 
 from .calibration import excitations_of
-from .options import Options
+from .options import OptionError, Options
 from .progress import Pose
 
 PLAIN = ("seed", "wanted_stddev", "drive_fixture", "skip_linearity")  # zero means zero
@@ -46,14 +46,17 @@ def options_of_capture(goal, ns):
     default = Options()
     settling = goal.settling or Options(drive_fixture=True).rest
     current = abs(goal.current) or default.current
-    return Options(
-        ns=ns,
-        current=current,
-        total_current=max(default.total_current, current),
-        dwell=goal.duration or default.dwell,
-        settling=0.0 if settling < 0.0 else settling,
-        drive_fixture=bool(goal.drive_fixture),
-    )
+    try:
+        return Options(
+            ns=ns,
+            current=current,
+            total_current=max(default.total_current, current),
+            dwell=goal.duration or default.dwell,
+            settling=0.0 if settling < 0.0 else settling,
+            drive_fixture=bool(goal.drive_fixture),
+        )
+    except OptionError as error:
+        raise OptionError("duration" if error.option == "dwell" else error.option, error.reason) from None
 
 
 def pose_of_capture(goal):

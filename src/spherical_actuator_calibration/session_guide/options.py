@@ -10,8 +10,13 @@ FIXTURE_SETTLING = 0.3  # [s] at rest before a capture
 HAND_SETTLING = 3.0  # [s] a hand has to clamp the rotor
 
 
-class OptionError(Exception):
-    """An option that cannot be used; the text names it."""
+class OptionError(ValueError):
+    """An option that cannot be used; the text names it, as whoever stated it knows it."""
+
+    def __init__(self, option, reason):
+        super().__init__(f"{option}: {reason}")
+        self.option = option
+        self.reason = reason
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,14 +57,13 @@ class Options:
         for name, (least, most) in ranges.items():
             value = getattr(self, name)
             if value is not None and not least <= value <= most:
-                option = "--" + name.replace("_", "-")
-                raise OptionError(f"{option}: {value} is outside [{least}, {most}].")
+                raise OptionError(name, f"{value} is outside [{least}, {most}].")
         if self.patterns not in ("single", "weighing"):
-            raise OptionError(f'--patterns: "{self.patterns}" is neither single nor weighing.')
+            raise OptionError("patterns", f'"{self.patterns}" is neither single nor weighing.')
         if self.plan is not None and self.repeat is not None:
-            raise OptionError("--repeat: --plan says already which poses are measured.")
+            raise OptionError("repeat", "a plan says already which poses are measured.")
         if not self.ns.startswith("/") or self.ns.endswith("/"):
-            raise OptionError(f'--ns: "{self.ns}" must begin with a slash and not end with one.')
+            raise OptionError("ns", f'"{self.ns}" must begin with a slash and not end with one.')
 
     @property
     def rest(self):
@@ -141,4 +145,7 @@ def parse(arguments):
     _add_how_it_is_measured(command_line.add_argument, default)
     values = vars(command_line.parse_args(arguments))
     del values["yes"]
-    return Options(**values)
+    try:
+        return Options(**values)
+    except OptionError as error:
+        raise OptionError("--" + error.option.replace("_", "-"), error.reason) from None

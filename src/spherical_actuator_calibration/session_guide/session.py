@@ -168,7 +168,7 @@ class Session:
                 self._account.say(f"{known}: that is reached.")
                 return
             if left <= 0:
-                self._account.say(f"{known}: that takes more poses than --poses {self._options.poses}.")
+                self._account.say(f"{known}: that takes more than {self._options.poses} poses, which were asked for.")
                 return
             count = min(left, FURTHER_POSES)
             self._account.say(f"{known}: {count} {'pose is' if count == 1 else 'poses are'} added.")
