@@ -108,11 +108,12 @@ class Report:
         """Of orientations and torques: before the first cycle that succeeded, by the drawing, and after the last one of
         its kind, which has all samples."""
         cards = []
+        succeeded = [one for one in self._cycles if one["success"] and one["error_history"]]
         for kinds, title in ((("joint", "motion"), "Orientations"), (("poles",), "Torques")):
-            done = [one for one in self._cycles if one["success"] and one["cycle"] in kinds and one["error_history"]]
-            if done and done[0]["error_unit"] != "1":
-                first = done[0]
-                last = [one for one in done if (one["cycle"], one["coil"]) == (first["cycle"], first["coil"])][-1]
+            # After a cycle of all parameters, "before" would not be the drawing.
+            first = next((one for one in succeeded if one["cycle"] in (*kinds, "refine", "motion")), None)
+            if first and first["cycle"] in kinds and first["error_unit"] != "1":
+                last = [one for one in succeeded if (one["cycle"], one["coil"]) == (first["cycle"], first["coil"])][-1]
                 change = change_of(first["error_history"][0], last["error_history"][-1], first["error_unit"])
                 cards.append((f"{title}, before → after", change, f"error, cycle {first['title'].lower()}"))
         return cards
