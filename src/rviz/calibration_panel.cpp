@@ -84,14 +84,19 @@ void CalibrationPanel::build() {
   legend->setText(kLegend);
   layout->addWidget(legend);
   layout->addLayout(makeCaptureRow());
+  // One place for what the engine says: there is little room.
+  auto* outcome = wrappingLabel();
+  reserveLines(*outcome, 2);
   hand_guide_ = new HandGuide(
       node_,
       model_,
       [this] { return validation_->isChecked(); },
-      [this] { return duration_->value(); });
+      [this] { return duration_->value(); },
+      *outcome);
   layout->addWidget(hand_guide_);
-  coil_look_ = new CoilLook(node_);
+  coil_look_ = new CoilLook(node_, *outcome);
   layout->addWidget(coil_look_);
+  layout->addWidget(outcome);
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
   answer_ = wrappingLabel();

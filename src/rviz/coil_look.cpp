@@ -10,7 +10,6 @@
 
 #include "excitation_limits.hpp"
 #include "named_button.hpp"
-#include "steady_label.hpp"
 
 namespace sac {
 namespace {
@@ -29,10 +28,11 @@ QDoubleSpinBox* spinBox(double least, double most, double value, const QString& 
 
 }  // namespace
 
-CoilLook::CoilLook(const ros::NodeHandle& node)
-    : excitation_(node, "calibration/excite", [this](const msg::ExciteFeedback& feedback) {
-        words_.receive(feedback);
-      }) {
+CoilLook::CoilLook(const ros::NodeHandle& node, QLabel& outcome)
+    : excitation_(node,
+                  "calibration/excite",
+                  [this](const msg::ExciteFeedback& feedback) { words_.receive(feedback); }),
+      outcome_(outcome) {
   build();
   showExcitation();
 }
@@ -54,10 +54,6 @@ void CoilLook::build() {
   duration_ = spinBox(kShortestExcitation, msg::ExciteGoal::LONGEST_DURATION, kExcitation, "s");
   row->addWidget(duration_);
   layout->addLayout(row);
-  outcome_ = new QLabel;
-  outcome_->setWordWrap(true);
-  reserveLines(*outcome_, 2);
-  layout->addWidget(outcome_);
 }
 
 void CoilLook::refresh(int coils) {
@@ -71,7 +67,7 @@ void CoilLook::exciteOrStop() {
     return;
   }
   if (current_->value() == 0.0) {
-    outcome_->setText("Choose a current first.");
+    outcome_.setText("Choose a current first.");
     return;
   }
   msg::ExciteGoal goal;
@@ -84,12 +80,11 @@ void CoilLook::exciteOrStop() {
 
 void CoilLook::showExcitation() {
   if (const auto end = excitation_.takeEnd()) {
-    outcome_->setText(
-        QTime::currentTime().toString("hh:mm:ss, ") +
-        QString::fromStdString(end->message +
-                               (words_.carried().empty() ? "" : "\n" + words_.carried())));
+    outcome_.setText(QTime::currentTime().toString("hh:mm:ss, ") +
+                     QString::fromStdString(
+                         end->message + (words_.carried().empty() ? "" : "\n" + words_.carried())));
   } else if (excitation_.isRunning()) {
-    outcome_->setText(QString::fromStdString(words_.text()));
+    outcome_.setText(QString::fromStdString(words_.text()));
   }
   nameButton(*excite_, excitation_.isRunning() ? "Stop" : "Excite", "F12");
 }

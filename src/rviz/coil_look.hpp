@@ -19,7 +19,8 @@ namespace sac {
 /// currents end.
 class CoilLook : public QWidget {
  public:
-  explicit CoilLook(const ros::NodeHandle& node);
+  /// `outcome`, which shows how an excitation goes, outlives it.
+  CoilLook(const ros::NodeHandle& node, QLabel& outcome);
 
   /// Of the actuator; to be called ten times a second.
   void refresh(int coils);
@@ -38,7 +39,7 @@ class CoilLook : public QWidget {
   QSpinBox* coil_ = nullptr;
   QDoubleSpinBox* current_ = nullptr;
   QDoubleSpinBox* duration_ = nullptr;
-  QLabel* outcome_ = nullptr;
+  QLabel& outcome_;
 };
 
 }  // namespace sac

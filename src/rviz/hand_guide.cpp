@@ -49,7 +49,8 @@ std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
 HandGuide::HandGuide(const ros::NodeHandle& node,
                      const PanelModel& model,
                      std::function<bool()> hold_out,
-                     std::function<double()> duration)
+                     std::function<double()> duration,
+                     QLabel& outcome)
     : node_(node),
       model_(model),
       hold_out_(std::move(hold_out)),
@@ -62,7 +63,8 @@ HandGuide::HandGuide(const ros::NodeHandle& node,
                 [this](const msg::PlanFeedback& feedback) {
                   planned_ = "Planning, " + std::to_string(std::lround(feedback.elapsed)) + " s …";
                 }),
-      wanted_pose_(node_.advertise<sensor_msgs::JointState>("wanted_pose", 1, true)) {
+      wanted_pose_(node_.advertise<sensor_msgs::JointState>("wanted_pose", 1, true)),
+      outcome_(outcome) {
   build();
   listen();
   showAdvice();
@@ -98,10 +100,6 @@ void HandGuide::build() {
   current_->setSuffix(" A");
   row->addWidget(current_);
   layout->addLayout(row);
-  outcome_ = new QLabel;
-  outcome_->setWordWrap(true);
-  reserveLines(*outcome_, 2);
-  layout->addWidget(outcome_);
 }
 
 // The newest message counts; rviz delivers it in the thread of the windows.
@@ -172,9 +170,9 @@ void HandGuide::planOrStop() {
 
 void HandGuide::showPlan() {
   if (const auto end = planning_.takeEnd()) {
-    outcome_->setText(QString::fromStdString(end->message));
+    outcome_.setText(QString::fromStdString(end->message));
   } else if (planning_.isRunning()) {
-    outcome_->setText(QString::fromStdString(planned_));
+    outcome_.setText(QString::fromStdString(planned_));
   }
 }
 
@@ -196,7 +194,7 @@ void HandGuide::measure() {
   goal.here = static_cast<std::uint8_t>(!here);
   const std::string refusal = here ? askFor(guide_.pose(*here), goal) : "";
   if (!refusal.empty()) {
-    outcome_->setText(QString::fromStdString(refusal));
+    outcome_.setText(QString::fromStdString(refusal));
     return;
   }
   words_ = ProgressWords();
@@ -234,9 +232,9 @@ std::string HandGuide::askFor(const msg::PoseProgress& pose, msg::CaptureGoal& g
 
 void HandGuide::showMeasurement() {
   if (const auto end = capture_.takeEnd()) {
-    outcome_->setText(QString::fromStdString(end->message));
+    outcome_.setText(QString::fromStdString(end->message));
   } else if (capture_.isRunning()) {
-    outcome_->setText(QString::fromStdString(words_.text()));
+    outcome_.setText(QString::fromStdString(words_.text()));
   }
 }
 

@@ -30,11 +30,13 @@ namespace sac {
 /// turn. Publishes the pose that is next on `wanted_pose`, so that it can be seen.
 class HandGuide : public QWidget {
  public:
-  /// `model` outlives it; `hold_out()` tells whether samples are to judge only.
+  /// `model` and `outcome`, which shows how a plan and a measurement go, outlive it; `hold_out()`
+  /// tells whether samples are to judge only.
   HandGuide(const ros::NodeHandle& node,
             const PanelModel& model,
             std::function<bool()> hold_out,
-            std::function<double()> duration);
+            std::function<double()> duration,
+            QLabel& outcome);
 
   /// To be called ten times a second.
   void refresh();
@@ -73,7 +75,7 @@ class HandGuide : public QWidget {
   QDoubleSpinBox* current_ = nullptr;
   QPushButton* measure_ = nullptr;
   QLabel* advice_ = nullptr;
-  QLabel* outcome_ = nullptr;
+  QLabel& outcome_;
 };
 
 }  // namespace sac
