@@ -94,7 +94,8 @@ TEST(ReportFile, HasNoKeyThatItsPageDoesNotExplain) {
 TEST(ReportFile, TellsVerdictRevisionAndNextSteps) {
   const std::string report = reportOf(calibratedSession(0));
   EXPECT_NE(report.find("  revision: 7\n"), std::string::npos);
-  EXPECT_NE(report.find("  verdict: {grade: not_validated, sound: true, sentence: "), std::string::npos);
+  EXPECT_NE(report.find("  verdict: {grade: not_validated, sound: true, sentence: "),
+            std::string::npos);
   EXPECT_TRUE(anyHolds(blockOf(report, "next_steps"), "Hold out samples"));
   EXPECT_TRUE(blockOf(report, "validation").empty());
 }
