@@ -139,8 +139,8 @@ class ViewedCase(unittest.TestCase):
         cls.addClassCleanup(rviz.wait)
         cls.addClassCleanup(rviz.terminate)
 
-    def press(self, key, done, what, pause=PAUSE):
-        """A key, again after a pause [s] where the panel was still busy, until something is so."""
+    def press(self, keys, done, what, pause=PAUSE):
+        """One key or several, again after a pause [s] where the panel was still busy, until something is so."""
         end = [0.0]
 
         def is_done():
@@ -148,12 +148,13 @@ class ViewedCase(unittest.TestCase):
                 return True
             if time.monotonic() > end[0]:
                 end[0] = time.monotonic() + pause
-                self.key(key)
+                self.key(keys)
             return False
 
         wait_for(is_done, what)
 
-    def key(self, key):
+    def key(self, keys):
+        """Keys one after the other, with a space between their names."""
         environment = {**os.environ, "DISPLAY": self.screen.display}
         windows = subprocess.run(
             ["xdotool", "search", "--onlyvisible", "--class", "rviz"],
@@ -164,7 +165,7 @@ class ViewedCase(unittest.TestCase):
         ).stdout.split()
         for window in windows[:1]:
             subprocess.run(["xdotool", "windowfocus", window], check=False, env=environment)
-        subprocess.run(["xdotool", "key", key], check=True, env=environment)
+        subprocess.run(["xdotool", "key", *keys.split()], check=True, env=environment)
 
 
 class ViewedLabCase(ViewedCase, LabCase):
