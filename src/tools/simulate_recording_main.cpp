@@ -51,13 +51,14 @@ void printSummary(const SimulateRecordingOptions& options,
 }
 
 void simulateRecording(const SimulateRecordingOptions& options) {
-  const Actuator nominal = loadActuator(options.actuator_path);
+  const CalibratedDescription description = loadDescription(options.actuator_path);
+  const Actuator& nominal = description.actuator;
   const Actuator truth = truthOf(nominal, options);
   const SessionPlan plan = planOf(nominal, options);
   requireNewFile(options.output_path, options.bag.overwrite);
   requireNewFile(options.truth_path, options.bag.overwrite);
 
-  SessionBagWriter writer(options.output_path, nominal, options.bag);
+  SessionBagWriter writer(options.output_path, description, options.bag);
   const SimulatedSession session =
       simulateSession(truth, plan, options.simulation, writer, terminalProgress("recording"));
   saveDescription(options.truth_path, {truth}, options.bag.overwrite);

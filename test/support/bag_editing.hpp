@@ -34,7 +34,7 @@ inline void recordSession(const std::string& path,
   SessionBagOptions options;
   options.registration = simulation.registration;
   options.begin = simulation.begin;
-  SessionBagWriter writer(path, actuator, options);
+  SessionBagWriter writer(path, {actuator}, options);
   simulateSession(actuator, plan, simulation, writer);
   writer.close();
 }

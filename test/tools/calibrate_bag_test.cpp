@@ -64,7 +64,7 @@ class CalibrateBag : public testing::Test {
     SessionBagOptions options;
     options.registration = simulation.registration;
     options.begin = simulation.begin;
-    SessionBagWriter writer(bag, nominalUnit(), options);
+    SessionBagWriter writer(bag, {nominalUnit()}, options);
     simulateSession(trueUnit(), planSession(nominalUnit(), plan_options, 1), simulation, writer);
     writer.close();
   }
@@ -350,7 +350,7 @@ TEST_F(CalibrateBag, HelpTellsEveryOption) {
 
 TEST_F(CalibrateBag, RefusesBadUsage) {
   const std::string good = "--actuator " + actuator() + " --output " + output() + " " + session();
-  expectRefusal("--output " + output() + " " + session(), "--actuator is needed");
+  expectRefusal("--output " + output() + " " + POSITIONER_BAG, "--actuator is needed");
   expectRefusal("--urdf x.urdf " + session(), "--urdf and --report need --output");
   expectRefusal("--actuator " + actuator() + " --output " + output(), "recording (BAG) is needed");
   expectRefusal(good + " --cycles joint,pole:1", "The cycle \"pole:1\" is unknown");

@@ -16,6 +16,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
 #include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
 
@@ -119,7 +120,16 @@ TEST_F(SimulateRecording, RecordsEveryTopicAtItsRate) {
   }
   EXPECT_EQ(topics.at("/actuator/parameters"), 1);
   EXPECT_EQ(topics.at("/tf_static"), 1);
-  EXPECT_EQ(topics.size(), 8U);
+  EXPECT_EQ(topics.at("/actuator/calibration_description"), 1);
+  EXPECT_EQ(topics.size(), 9U);
+}
+
+TEST_F(SimulateRecording, HoldsTheDescriptionThatItIsCalibratedFrom) {
+  record("s.bag");
+  const std::string topic = "/actuator/calibration_description";
+  const std::string text = messagesOn<std_msgs::String>(path("s.bag"), topic).at(0).data;
+  EXPECT_EQ(renderDescription(parseDescription(text, topic), topic),
+            renderDescription(loadDescription(kDescription), topic));
 }
 
 TEST_F(SimulateRecording, MessagesNameJointsAndFrames) {
@@ -282,7 +292,8 @@ TEST_F(SimulateRecording, WithoutCoilsThereAreJointsAndTrackerOnly) {
     topics.insert(topic);
   }
   EXPECT_EQ(topics,
-            (std::set<std::string>{"/actuator/joint_states",
+            (std::set<std::string>{"/actuator/calibration_description",
+                                   "/actuator/joint_states",
                                    "/actuator/measured_orientation",
                                    "/actuator/parameters",
                                    "/actuator/tracker/pose",
@@ -343,7 +354,7 @@ TEST(SessionBagWriter, LeavesNothingWithoutClose) {
   SessionBagOptions options;
   options.begin = 1'000'000'000;
   {
-    SessionBagWriter writer(folder.path("s.bag"), loadActuator(kDescription), options);
+    SessionBagWriter writer(folder.path("s.bag"), loadDescription(kDescription), options);
     writer.add(JointMeasurement{options.begin, Eigen::Vector3d::Zero()});
     EXPECT_EQ(writer.messages(), 3U);
     EXPECT_TRUE(fs::exists(folder.path("s.bag.active")));
@@ -355,7 +366,7 @@ TEST(SessionBagWriter, RefusesWhatIsNoFile) {
   SessionBagOptions options;
   options.overwrite = OverwritePolicy::kReplace;
   EXPECT_THROW(
-      SessionBagWriter(fs::temp_directory_path().string(), loadActuator(kDescription), options),
+      SessionBagWriter(fs::temp_directory_path().string(), loadDescription(kDescription), options),
       DataError);
 }
 

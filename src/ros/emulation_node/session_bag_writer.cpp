@@ -12,6 +12,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/exceptions.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include "spherical_actuator_calibration/CoilCurrents.h"
@@ -51,21 +52,24 @@ geometry_msgs::TransformStamped transformMessage(const std::string& parent,
 
 class SessionBagWriter::Recording {
  public:
-  Recording(const std::string& path, const Actuator& nominal, const SessionBagOptions& options)
+  Recording(const std::string& path,
+            const CalibratedDescription& nominal,
+            const SessionBagOptions& options)
       : path_(path),
         active_path_(path + ".active"),
         options_(options),
         bag_(std::make_unique<rosbag::Bag>()),
-        has_joints_(nominal.has_joints) {
+        has_joints_(nominal.actuator.has_joints) {
     requireFree();
-    nameTopics(nominal);
+    nameTopics(nominal.actuator);
     guarded([&] {
       bag_->setCompression(options.compression == BagCompression::kLz4
                                ? rosbag::compression::LZ4
                                : rosbag::compression::Uncompressed);
       bag_->open(active_path_, rosbag::bagmode::Write);
     });
-    writeStart(nominal);
+    writeTransforms(nominal.actuator);
+    writeSetup(nominal);
   }
 
   ~Recording() { abandon(); }
@@ -176,7 +180,7 @@ class SessionBagWriter::Recording {
     }
   }
 
-  void writeStart(const Actuator& nominal) {
+  void writeTransforms(const Actuator& nominal) {
     const ros::Time begin = stampToRos(options_.begin);
     const FrameNames& frames = options_.frames;
     const Registration& registration = options_.registration;
@@ -189,12 +193,20 @@ class SessionBagWriter::Recording {
           transformMessage(frames.rotor, frames.ft_sensor, registration.X_rotor_sensor, begin));
     }
     writeLatched(transforms, begin);
+  }
+
+  /// What the nodes tell of the actuator from the start.
+  void writeSetup(const CalibratedDescription& nominal) {
+    const ros::Time begin = stampToRos(options_.begin);
+    Topic<std_msgs::String> description{topicPrefix(options_.ns) + kDescriptionTopic};
+    description.message.data = renderDescription(nominal, description.name);
+    writeLatched(description, begin);
 
     Topic<msg::ActuatorParameters> parameters{topicPrefix(options_.ns) + "parameters"};
-    parameters.message = parametersToRos(nominal);
+    parameters.message = parametersToRos(nominal.actuator);
     parameters.message.source = msg::ActuatorParameters::NOMINAL;
     parameters.message.header.stamp = begin;
-    parameters.message.header.frame_id = frames.stator;
+    parameters.message.header.frame_id = options_.frames.stator;
     writeLatched(parameters, begin);
   }
 
@@ -245,7 +257,7 @@ class SessionBagWriter::Recording {
 };
 
 SessionBagWriter::SessionBagWriter(const std::string& path,
-                                   const Actuator& nominal,
+                                   const CalibratedDescription& nominal,
                                    const SessionBagOptions& options)
     : recording_(std::make_unique<Recording>(path, nominal, options)) {}
 

@@ -81,7 +81,7 @@ class Reader {
     const bool are_recorded = topics_.isRecorded(group, TopicRole::kSamples);
     if (options_.source == SampleSource::kSamples && !are_recorded) {
       throw DataError(pathsOf(group) + ": the topic " + topics_.name(TopicRole::kSamples) +
-                      " was not recorded; take the samples from the streams.");
+                      " was not recorded; --from streams takes the samples from the streams.");
     }
     return are_recorded;
   }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/emulation/session_simulator.hpp"
 #include "spherical_actuator_calibration/measurement/registration.hpp"
@@ -27,15 +27,15 @@ struct SessionBagOptions {
   std::string ns = "/actuator";  ///< namespace of the actuator's topics
   FrameNames frames;
   Registration registration;  ///< recorded on /tf_static, and used for the measured_* topics
-  Stamp begin = 0;            ///< of the session: stamp of /tf_static and of the parameters
+  Stamp begin = 0;            ///< of the session: stamp of what is latched
   BagCompression compression = BagCompression::kLz4;
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };
 
 /// Records the measurements of a session in a rosbag, as a recorder on a live system would: the raw
 /// streams, measured_orientation and measured_torque as the bridge derives them, at the start the
-/// nominal parameters and the registrations on /tf_static, both latched. Each message is recorded a
-/// little later than its stamp, by the latency of its stream.
+/// description, its parameters, and the registrations on /tf_static, all latched. Each message is
+/// recorded a little later than its stamp, by the latency of its stream.
 ///
 /// The bag is written under a temporary name ("….active") and has its own from close() on; without
 /// close() nothing remains. Throws DataError, naming the file, when it exists already and the
@@ -43,7 +43,7 @@ struct SessionBagOptions {
 class SessionBagWriter : public MeasurementSink {
  public:
   SessionBagWriter(const std::string& path,
-                   const Actuator& nominal,
+                   const CalibratedDescription& nominal,
                    const SessionBagOptions& options);
   ~SessionBagWriter() override;
 
