@@ -83,9 +83,10 @@ void LiveScene::receive(const sensor_msgs::JointState& message) {
   if (message.position.size() == kJoints) {
     wanted = Eigen::Vector3d(message.position.data());
   }
-  if (wanted && !wanted->allFinite()) {
+  if ((wanted && !wanted->allFinite()) || message.header.stamp < wanted_stamp_) {
     return;
   }
+  wanted_stamp_ = message.header.stamp;
   changed_ = changed_ || wanted != scene_.wanted_joint_position;
   scene_.wanted_joint_position = wanted;
 }

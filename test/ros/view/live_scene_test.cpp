@@ -177,5 +177,21 @@ TEST(LiveScene, TheWantedPoseComesAndGoes) {
   EXPECT_FALSE(scene.scene().wanted_joint_position);
 }
 
+TEST(LiveScene, OfPosesThatPanelAndEngineToldTheLastCounts) {
+  LiveScene scene = paperScene();
+  sensor_msgs::JointState next;
+  next.header.stamp = ros::Time(20.0);
+  next.position = {0.1, 0.2, 0.3};
+  sensor_msgs::JointState taken_back;
+  taken_back.header.stamp = ros::Time(10.0);
+  scene.receive(next);
+  scene.receive(taken_back);
+  EXPECT_TRUE(scene.scene().wanted_joint_position);
+  taken_back.header.stamp = ros::Time(30.0);
+  scene.receive(taken_back);
+  scene.receive(next);
+  EXPECT_FALSE(scene.scene().wanted_joint_position);
+}
+
 }  // namespace
 }  // namespace sac

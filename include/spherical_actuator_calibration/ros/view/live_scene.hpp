@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include <ros/time.h>
 #include <sensor_msgs/JointState.h>
 
 #include "spherical_actuator_calibration/ActuatorParameters.h"
@@ -33,7 +34,8 @@ class LiveScene {
   void receive(const msg::CoilCurrents& message);
   void receive(const msg::CalibrationSample& message);
   void receive(const msg::CalibrationStatus& message);
-  /// The wanted pose: raw angles of all joints in their order, or none.
+  /// The wanted pose: raw angles of all joints in their order, or none. Panel and engine both tell
+  /// it, latched: of what comes in any order, the last stamp counts.
   void receive(const sensor_msgs::JointState& message);
 
   /// The samples in use; it asks for them where topics do not tell.
@@ -57,6 +59,7 @@ class LiveScene {
   CalibrationScene scene_;
   SampleMirror samples_;
   std::map<std::uint32_t, Residual> residuals_;  ///< of the last report, by sample
+  ros::Time wanted_stamp_;
   bool changed_ = true;
 };
 
