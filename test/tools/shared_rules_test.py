@@ -1,0 +1,95 @@
+#!/usr/bin/python3
+"""Rules that programs in Python have beside the core: each answers as the core does (shared_rules_main.cpp)."""
+
+import importlib.machinery
+import importlib.util
+import json
+import os
+import pathlib
+import subprocess
+import unittest
+
+import numpy
+import yaml
+from spherical_actuator_calibration import rotor_readings
+from spherical_actuator_calibration.session_guide.options import Options
+from spherical_actuator_calibration.session_guide.progress import Pose, are_carried, excited_coils
+from spherical_actuator_calibration.session_tables import export
+from spherical_actuator_calibration.session_tables.history import ERROR_UNITS
+from spherical_actuator_calibration.unit_quaternion import normalised
+
+EXACT = 1e-12
+
+
+def program(name):
+    """A program of scripts/ as a module."""
+    path = pathlib.Path(os.environ["SOURCE"]) / "scripts" / name
+    loader = importlib.machinery.SourceFileLoader(name, str(path))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+class SharedRules(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        told = subprocess.run(os.environ["SHARED_RULES"], stdout=subprocess.PIPE, check=True, text=True).stdout
+        cls.cases = {}
+        for line in told.splitlines():
+            case = json.loads(line)
+            cls.cases.setdefault(case["rule"], []).append((case["given"], case["answer"]))
+
+    def hold(self, rule, answer):
+        """Exactly as the core; where it says yes or no, of both there are many."""
+        cases = self.cases[rule]
+        for given, expected in cases:
+            with self.subTest(rule=rule, given=given):
+                self.assertEqual(answer(*given), expected)
+        if len(cases) > 100 and isinstance(cases[0][1], bool):
+            yes = sum(expected for _, expected in cases)
+            self.assertTrue(0.1 < yes / len(cases) < 0.9, f"{rule}: {yes} of {len(cases)} say yes")
+
+    def hold_angles(self, rule, answer):
+        for given, expected in self.cases[rule]:
+            with self.subTest(rule=rule, given=given):
+                numpy.testing.assert_allclose(answer(*given), expected, rtol=0.0, atol=EXACT)
+
+    def test_a_coil_carries_its_current(self):
+        self.hold("are_carried", are_carried)
+
+    def test_a_coil_counts_as_excited(self):
+        self.hold("excited_coils", lambda *given: list(excited_coils(*given)))
+
+    def test_a_reading_is_at_a_pose(self):
+        self.hold("is_at", lambda pose, reading, tolerance: Pose(pose, ()).is_at(reading, tolerance))
+
+    def test_turns_of_a_rotor_without_joints(self):
+        self.hold_angles("turns_of", lambda xyzw: rotor_readings.turns_of(*xyzw))
+        self.assertEqual(list(rotor_readings.TURNS), [name for _, name in self.cases["turn_name"]])
+
+    def test_quaternions_of_rotations(self):
+        def answer(rotation):
+            x, y, z, w = export.quaternion(rotation)
+            return numpy.array([x, y, z, w])
+
+        for (rotation,), xyzw in self.cases["quaternion"]:
+            expected = numpy.array(xyzw) * (1.0 if xyzw[3] >= 0.0 else -1.0)
+            numpy.testing.assert_allclose(answer(rotation), expected, rtol=0.0, atol=EXACT)
+
+    def test_what_is_a_unit_quaternion(self):
+        self.hold("is_unit", lambda xyzw: normalised(xyzw)[0] is not None)
+
+    def test_units_of_errors(self):
+        self.hold("error_unit", ERROR_UNITS.get)
+
+    def test_what_is_a_drawing(self):
+        is_as_drawn = program("calibrate_by_motion").is_as_drawn
+        self.hold("is_as_drawn", lambda text: is_as_drawn(yaml.safe_load(text)))
+        self.assertIn(False, [answer for _, answer in self.cases["is_as_drawn"]])
+
+    def test_defaults(self):
+        self.hold("default", lambda name: getattr(Options(), name))
+
+
+if __name__ == "__main__":
+    unittest.main()
