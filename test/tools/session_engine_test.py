@@ -72,9 +72,34 @@ class Goals(unittest.TestCase):
         goal = CaptureGoal(pose=PlannedPose(coils=[1, 3], patterns=[pattern]), current=-1.5, validation=True)
         self.assertEqual(goals.pose_of_capture(goal), Pose((0.0, 0.0, 0.0), ((-1, 3),), True))
         self.assertEqual(goals.options_of_capture(goal, "/actuator").current, 1.5)
+        self.assertEqual(goals.options_of_capture(CaptureGoal(pose=goal.pose), "/actuator").current, 2.0)
         self.assertEqual(goals.checked_pattern((3, -1), 3), (-1, 3))
         for coils in ((), (4,), (1, -1), (0,)):
             self.assertRaises(ValueError, goals.checked_pattern, coils, 3)
+
+
+class CapturedPatterns(unittest.TestCase):
+    @staticmethod
+    def goal(*patterns, **fields):
+        return CaptureGoal(pose=PlannedPose(patterns=[CurrentPattern(current=list(p)) for p in patterns]), **fields)
+
+    def test_carry_the_current_that_they_state(self):
+        weak = self.goal((0.3, 0.0, -0.3), (0.0, 0.3, 0.0))
+        goals.require_patterns(weak.pose, 3)
+        self.assertEqual(goals.options_of_capture(weak, "/actuator").current, 0.3)
+        weak.current = -0.5
+        self.assertEqual(goals.options_of_capture(weak, "/actuator").current, 0.5)
+
+    def test_of_several_currents_are_refused(self):
+        uneven = self.goal((1.0, 2.0, 0.0))
+        self.assertRaisesRegex(OptionError, "from 1 to 2 A", goals.options_of_capture, uneven, "/actuator")
+        uneven.current = 1.5
+        self.assertEqual(goals.options_of_capture(uneven, "/actuator").current, 1.5)
+
+    def test_that_are_not_of_the_actuator_are_refused(self):
+        for currents in ((1.0, 0.0), (0.0, 0.0, 0.0), (1.0, float("nan"), 0.0)):
+            pose = self.goal((1.0, 0.0, 0.0), currents).pose
+            self.assertRaisesRegex(OptionError, "pattern 2", goals.require_patterns, pose, 3)
 
 
 class Following(unittest.TestCase):

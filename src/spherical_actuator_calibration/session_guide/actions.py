@@ -9,7 +9,7 @@ from spherical_actuator_calibration import msg
 from spherical_actuator_calibration.msg import MeasurementProgress, SessionResult
 
 from .calibration import PlanError
-from .goals import checked_pattern, options_of, options_of_capture, pose_of_capture
+from .goals import checked_pattern, options_of, options_of_capture, pose_of_capture, require_patterns
 from .options import OptionError, Options
 from .pose_course import POLL, SLOW, PoseCourse
 from .progress import Pose, in_words
@@ -95,9 +95,15 @@ class CaptureAction(_AtTheBench):
     name = "capture"
     type = msg.CaptureAction
 
+    def __init__(self, ns, calibration, laboratory, coils):
+        super().__init__(ns, calibration, laboratory)
+        self._coils = coils
+
     def work(self, goal, task, account):
-        self._take(task, account)
+        if not goal.here:
+            require_patterns(goal.pose, self._coils)
         options = options_of_capture(goal, self._ns)
+        self._take(task, account)
         course = PoseCourse(self._calibration, self._laboratory, options, task, account)
         if goal.here:
             course.measure_here(bool(goal.validation))

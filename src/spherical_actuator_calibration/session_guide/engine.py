@@ -78,7 +78,7 @@ class Engine:
         bench = Calibration(ns, console, topics)
         self._lanes = [Lane() for _ in range(3)]
         actions = (
-            (CaptureAction(ns, bench, self._laboratory), 0),
+            (CaptureAction(ns, bench, self._laboratory, coils), 0),
             (ExciteAction(ns, bench, self._laboratory, coils), 0),
             (SessionAction(ns, bench, self._laboratory, actuator), 0),
             (PlanAction(Calibration(ns, console, topics)), 1),

@@ -1,6 +1,7 @@
 """Goals of the actions: what they leave at zero is as the options have it by default."""
 
 import dataclasses
+import math
 import os
 
 from spherical_actuator_calibration.msg import SessionGoal
@@ -45,7 +46,7 @@ def options_of_capture(goal, ns):
     """Options of a CaptureGoal. Raises OptionError."""
     default = Options()
     settling = goal.settling or Options(drive_fixture=True).rest
-    current = abs(goal.current) or default.current
+    current = abs(goal.current) or _current_of_patterns(goal.pose) or default.current
     try:
         return Options(
             ns=ns,
@@ -64,6 +65,30 @@ def pose_of_capture(goal):
     sign = -1 if goal.current < 0.0 else 1
     excitations = tuple(tuple(sign * coil for coil in pattern) for pattern in excitations_of(goal.pose))
     return Pose(tuple(goal.pose.joint_position), excitations, bool(goal.validation))
+
+
+def _current_of_patterns(planned):
+    """[A] that every excited coil has in patterns of a PlannedPose, 0 where it has none. Raises OptionError where they
+    differ: a capture has one."""
+    currents = {abs(current) for pattern in planned.patterns for current in pattern.current} - {0.0}
+    if len(currents) > 1:
+        raise OptionError(
+            "pose.patterns",
+            f"excited coils have from {min(currents):g} to {max(currents):g} A, and a capture has one current for all: "
+            "state it as current, or capture them one after the other.",
+        )
+    return currents.pop() if currents else 0.0
+
+
+def require_patterns(planned, count):
+    """Raises OptionError unless each pattern of a PlannedPose has a current for each of so many coils, one at least not
+    zero."""
+    for number, pattern in enumerate(planned.patterns, 1):
+        currents = pattern.current
+        if len(currents) != count:
+            raise OptionError("pose.patterns", f"pattern {number} has {len(currents)} currents for {count} coils.")
+        if not all(map(math.isfinite, currents)) or not any(currents):
+            raise OptionError("pose.patterns", f"pattern {number} has no current, or one that is no number.")
 
 
 def checked_pattern(coils, count):
