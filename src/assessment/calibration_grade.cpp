@@ -177,12 +177,8 @@ class CalibrationGrader::Examiner {
   /// Of the last successful cycle, and of those before it that it does not make up for.
   std::vector<std::string> doubtsInForce() const {
     std::vector<std::string> doubts;
-    const std::vector<CycleReport>& reports = session_.reports();
-    for (auto report = reports.rbegin(); report != reports.rend(); ++report) {
-      const bool is_mended = std::any_of(reports.rbegin(), report, [&](const CycleReport& later) {
-        return mends(later, *report);
-      });
-      if (report->success && !is_mended) {
+    for (const CycleReport* report : unmended(session_.reports())) {
+      if (report->success) {
         doubts.insert(doubts.end(), report->doubts.begin(), report->doubts.end());
       }
     }

@@ -139,17 +139,31 @@ const CycleReport& CalibrationSession::run(const CycleRequest& request) {
 }
 
 bool CalibrationSession::isComplete() const {
-  const auto is_mended = [this](std::size_t failed) {
-    return std::any_of(reports_.begin() + static_cast<std::ptrdiff_t>(failed),
-                       reports_.end(),
-                       [&](const CycleReport& later) { return mends(later, reports_[failed]); });
-  };
-  for (std::size_t n = 0; n < reports_.size(); ++n) {
-    if (!is_mended(n)) {
-      return false;
+  const std::vector<const CycleReport*> last = unmended(reports_);
+  return std::all_of(last.begin(), last.end(), [](const auto* one) { return one->success; }) &&
+         openParameters().empty();
+}
+
+bool CalibrationSession::isSettled() const {
+  const std::vector<const CycleReport*> last = unmended(reports_);
+  return std::none_of(
+             last.begin(), last.end(), [](const auto* one) { return one->contradicted; }) &&
+         openParameters().empty();
+}
+
+std::set<std::uint32_t> CalibrationSession::fittedSamples() const {
+  std::set<std::uint32_t> ids;
+  for (const CycleReport* report : unmended(reports_)) {
+    if (!report->success || report->cycle == Cycle::kMotion) {
+      continue;  // the residuals of a motion are of its windows
+    }
+    for (const SampleResidual& residual : report->residuals) {
+      if (!residual.rejected) {
+        ids.insert(residual.id);
+      }
     }
   }
-  return openParameters().empty();
+  return ids;
 }
 
 std::vector<std::string> CalibrationSession::openParameters() const {

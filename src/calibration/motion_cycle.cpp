@@ -35,7 +35,8 @@ std::string refusal(const CalibrationModel& model, const MotionRecording* record
            "none of. Calibrate from rests.";
   }
   if (recording == nullptr || recording->empty()) {
-    return "No motion is recorded: joint_states and coil_currents are needed together.";
+    return "No motion is recorded: the rotor has to move while joint_states and coil_currents "
+           "come.";
   }
   return {};
 }

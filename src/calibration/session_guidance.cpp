@@ -7,6 +7,7 @@
 
 #include "cycle_demand.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
@@ -133,6 +134,9 @@ class Guide {
       return "Do not use the parameters: the grade says what contradicts them. Call diagnose, look "
              "at the rejected samples, then calibrate with more poses and call validate again.";
     }
+    if (progress_.removed > 0 && progress_.samples > 0) {
+      return removalStep();
+    }
     if (!progress_.judged) {
       return validationStep();
     }
@@ -143,6 +147,19 @@ class Guide {
     }
     return progress_.saved ? "Nothing is left to do: the calibration is complete and saved."
                            : "Call save: held-out samples agree.";
+  }
+
+  /// The parameters still have the effect of what was removed.
+  std::string removalStep() const {
+    const Cycle cycle = model_.hasTorqueModel() ? Cycle::kRefine : Cycle::kJoint;
+    const bool is_possible = std::any_of(
+        progress_.next_cycles.begin(), progress_.next_cycles.end(), [&](const CycleRequest& next) {
+          return next.cycle == cycle;
+        });
+    return (is_possible ? "Call " : "Capture at new poses, then call ") +
+           std::string(cycle == Cycle::kRefine ? "refine" : "calibrate_joint") + ": " +
+           counted(progress_.removed, "sample") + " that the parameters rest on " +
+           (progress_.removed == 1 ? "was" : "were") + " removed.";
   }
 
   std::string validationStep() const {

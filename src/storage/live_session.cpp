@@ -1,7 +1,9 @@
 #include "spherical_actuator_calibration/storage/live_session.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -205,7 +207,8 @@ SessionProgress LiveSession::progress() const {
   progress.refused = !reports.empty() && reports.back().contradicted &&
                      reports.back().cycle != Cycle::kPoles && reports.back().cycle != Cycle::kCoil;
   // A session without a cycle leaves nothing open that it was asked for, and is not done.
-  progress.complete = progress.isAllIdentified() && is_complete_;
+  progress.complete = progress.isAllIdentified() && is_settled_;
+  progress.removed = removed_;
   return progress;
 }
 
@@ -223,7 +226,12 @@ const GradedCalibration& LiveSession::grade() const {
 void LiveSession::countAnew() {
   counter_.emplace(session_.model(), session_.state(), session_.config().estimation);
   counter_->add(session_.samples());
-  is_complete_ = session_.isComplete();
+  is_settled_ = session_.isSettled();
+  std::set<std::uint32_t> fitted = session_.fittedSamples();
+  for (const Sample& sample : session_.samples()) {
+    fitted.erase(sample.id);
+  }
+  removed_ = fitted.size();
   grader_.reset();
   grade_.reset();
 }

@@ -79,6 +79,22 @@ TEST(SessionGuidance, OnlyWhatIsGoodIsDone) {
   }
 }
 
+TEST(SessionGuidance, ParametersThatRestOnRemovedSamplesAreNotDone) {
+  CalibrationSession session = paperSession();
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  ASSERT_TRUE(session.run({Cycle::kRefine}).success);
+  SessionProgress progress = progressOf(session);
+  progress.refined = progress.judged = progress.good = progress.saved = true;
+  progress.removed = 1;
+  EXPECT_EQ(nextStep(session, progress),
+            "Call refine: 1 sample that the parameters rest on was removed.");
+  progress.removed = 2;
+  progress.next_cycles.clear();
+  EXPECT_EQ(nextStep(session, progress),
+            "Capture at new poses, then call refine: 2 samples that the parameters rest on were "
+            "removed.");
+}
+
 TEST(SessionGuidance, WhatIsContradictedIsNeverDone) {
   CalibrationSession session = paperSession();
   for (const CycleRequest& request : progressOf(session).next_cycles) {

@@ -96,7 +96,7 @@ void expectUpToDate(const LiveSession& session, const char* after) {
   const GradedCalibration grade = gradeCalibration(calibration);
   EXPECT_EQ(session.grade().grade, grade.grade) << after;
   EXPECT_EQ(session.grade().reason, grade.reason) << after;
-  EXPECT_EQ(progress.complete, anew.isAllIdentified() && calibration.isComplete()) << after;
+  EXPECT_EQ(progress.complete, anew.isAllIdentified() && calibration.isSettled()) << after;
   EXPECT_EQ(describe(session.linearity()),
             describe(torqueLinearity(calibration.samples(), calibration.config())))
       << after;
@@ -172,6 +172,26 @@ TEST_F(LiveSessionTest, TellsOfARefusedCycleUntilItIsMended) {
   }
   ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
   EXPECT_FALSE(session.progress().refused);
+}
+
+TEST_F(LiveSessionTest, CountsWhatTheParametersRestOnAndWasRemoved) {
+  LiveSession session = open();
+  addAll(session);
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).success);
+  ASSERT_TRUE(session.run({Cycle::kRefine}, kDate).success);
+  Sample held_out = samples().back();
+  held_out.validation = true;
+  held_out.stamp += 100'000'000'000;
+  const std::uint32_t judge = session.addSample(held_out, kDate).id;
+  ASSERT_TRUE(session.removeSample(judge, kDate));
+  EXPECT_EQ(session.progress().removed, 0U);
+  ASSERT_TRUE(session.removeSample(2, kDate));
+  ASSERT_TRUE(session.removeSample(5, kDate));
+  EXPECT_EQ(session.progress().removed, 2U);
+  session.restore(2, kDate);
+  EXPECT_EQ(session.progress().removed, 2U);
+  ASSERT_TRUE(session.run({Cycle::kRefine}, kDate).success);
+  EXPECT_EQ(session.progress().removed, 0U);
 }
 
 std::string toldOf(const LiveSession& session) {
@@ -324,7 +344,7 @@ TEST_F(LiveSessionTest, OnlyARefinementCountsAsRefined) {
 }
 
 // Of what was never asked for nothing is open, and nothing is known.
-TEST_F(LiveSessionTest, IsCompleteOnceAllIsIdentifiedAndNoFailureIsLeft) {
+TEST_F(LiveSessionTest, IsCompleteOnceAllIsIdentifiedAndNothingContradicts) {
   LiveSession session = open();
   EXPECT_FALSE(session.progress().complete);
   scenarios::Generator generator(3);
@@ -337,9 +357,17 @@ TEST_F(LiveSessionTest, IsCompleteOnceAllIsIdentifiedAndNoFailureIsLeft) {
   EXPECT_FALSE(session.progress().complete);
   ASSERT_TRUE(session.run({Cycle::kRefine}, kDate).success);
   EXPECT_TRUE(session.progress().complete);
-  // Nothing has moved, and no refinement tells what a motion would.
+  // Nothing has moved: that takes nothing away, and no further pose would mend it.
   ASSERT_FALSE(session.run({Cycle::kMotion}, kDate).success);
-  EXPECT_TRUE(session.progress().isAllIdentified());
+  EXPECT_TRUE(session.progress().complete);
+  for (Sample sample : samples()) {
+    sample.stamp += 100'000'000'000;
+    if (sample.has_orientation) {
+      sample.R_stator_rotor.transposeInPlace();
+      session.addSample(sample, kDate);
+    }
+  }
+  ASSERT_TRUE(session.run({Cycle::kJoint}, kDate).contradicted);
   EXPECT_FALSE(session.progress().complete);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,12 @@ class CalibrationSession {
   /// True when every cycle succeeded, or a later one of its kind or a refinement did, and
   /// openParameters() is empty.
   bool isComplete() const;
+  /// True when none of the cycles contradicts the samples, or a later one mended it, and
+  /// openParameters() is empty: one that was refused for want of data takes nothing away.
+  bool isSettled() const;
+  /// Ids of the training samples that the parameters of this session's cycles rest on, with those
+  /// that are not in use any more.
+  std::set<std::uint32_t> fittedSamples() const;
   /// Parameters that some cycle was to estimate and none could.
   std::vector<std::string> openParameters() const;
 

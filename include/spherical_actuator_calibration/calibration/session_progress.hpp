@@ -40,10 +40,11 @@ struct SessionProgress {
   bool poles_done = false;                    ///< poles are identified
   std::vector<bool> coil_done;                ///< per coil
   bool refined = false;                       ///< by the refinement, since the last other cycle
-  bool complete = false;                      ///< all is identified, and isComplete() (session)
+  bool complete = false;                      ///< all is identified, and isSettled() (session)
   bool saved = false;                         ///< the parameters in force are in a file
   bool refused = false;                       ///< the last cycle: samples contradict something
   bool contradicted = false;                  ///< held-out samples disagree with what is in force
+  std::size_t removed = 0;                    ///< of fittedSamples() (session): not in use any more
   bool judged = false;                        ///< they agree, and judge all of it
   bool good = false;                          ///< and nothing else speaks against it
   std::string plan_step;  ///< of the plan or the motion that is followed; empty: none
@@ -68,7 +69,7 @@ class ProgressCounter {
   void add(const std::vector<Sample>& samples);
 
   /// What samples and parameters tell of the progress; `refined`, `complete`, `saved`,
-  /// `refused`, `contradicted`, `judged`, `good` and `plan_step` are not in them.
+  /// `refused`, `contradicted`, `removed`, `judged`, `good` and `plan_step` are not in them.
   SessionProgress progress() const;
 
  private:

@@ -108,7 +108,8 @@ class LiveSession {
   CalibrationSession session_;
   // Kept up to date, as they are asked for at every capture.
   std::optional<ProgressCounter> counter_;
-  bool is_complete_ = false;
+  bool is_settled_ = false;
+  std::size_t removed_ = 0;                          ///< samples that the parameters rest on
   mutable std::optional<CalibrationGrader> grader_;  ///< nothing: not asked for yet
   mutable std::optional<GradedCalibration> grade_;   ///< nothing: not asked for since it changed
   LinearitySearch linearity_search_;

@@ -123,6 +123,10 @@ bool CalibrationNode::listSamples(msg::ListSamples::Request& /*request*/,
 bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
                                    msg::RemoveSample::Response& response) {
   answer(response, [&] {
+    const std::vector<Sample>& samples = session_.calibration().samples();
+    const bool is_held_out = std::any_of(samples.begin(), samples.end(), [&](const Sample& one) {
+      return one.id == request.id && one.validation;
+    });
     if (!session_.removeSample(request.id, utcDate())) {
       throw DataError("Sample " + std::to_string(request.id) +
                       " is not in use: list_samples shows those that are.");
@@ -134,7 +138,8 @@ bool CalibrationNode::removeSample(msg::RemoveSample::Request& request,
     topics_.dropResiduals(session_.calibration().samples());
     publishStatus();
     return "Sample " + std::to_string(request.id) +
-           " is out of use; run the cycles again to be rid of its effect.";
+           (is_held_out ? " is out of use: the other held-out samples judge without it."
+                        : " is out of use; run the cycles again to be rid of its effect.");
   });
   return true;
 }

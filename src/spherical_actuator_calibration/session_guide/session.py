@@ -41,6 +41,8 @@ class Session:
             self._account.say(f"The calibration is not complete: {FURTHER_POSES} poses are added.")
             self._measure(self._plan(FURTHER_POSES, self._options.wanted_stddev))
             is_complete = self._estimate()
+        if not is_complete:
+            self._account.say(f"It is still not complete. {self._calibration.status().next_step}")
         if is_complete and self._options.wanted_stddev:
             self._reach_wanted_stddev()
         return self._conclude() and is_complete
