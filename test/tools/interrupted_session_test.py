@@ -5,7 +5,7 @@ import unittest
 
 from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
-from spherical_actuator_calibration.session_guide.options import Options
+from spherical_actuator_calibration.session_guide.options import OptionError, Options
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.session import Session
 from spherical_actuator_calibration.session_guide.task import Task
@@ -49,6 +49,26 @@ class Bench:
 
     def capture(self, pose, *patterns):
         self.held += [Measured(pose.joints, pattern, pose.validation) for pattern in patterns]
+
+
+    @staticmethod
+    def load_plan(_source):
+        return [Pose((0.1, 0.0, 0.0), ((1,),))], 1.5
+
+
+class SessionsOfAPlan(unittest.TestCase):
+    @staticmethod
+    def session(**options):
+        return Session(Bench(), None, ACTUATOR, Options(validation_poses=0, plan="plan.yaml", **options), Task(), Account())
+
+    def test_take_its_current(self):
+        for options in ({}, {"current": 1.5}):
+            session = self.session(**options)
+            self.assertEqual(len(session._wanted_poses()), 1)
+            self.assertEqual(session._course.current, 1.5)
+
+    def test_are_not_made_with_another_one(self):
+        self.assertRaisesRegex(OptionError, "plan.yaml has its coils at 1.5 A", self.session(current=1.0)._wanted_poses)
 
 
 class InterruptedSessions(unittest.TestCase):

@@ -56,6 +56,7 @@ class Goals(unittest.TestCase):
         for options in (
             Options(),
             Options(validation_poses=0, settling=0.0, seed=0),
+            Options(current=2.0, total_current=3.0),
             Options(poses=5, settling=1.5, patterns="weighing", drive_fixture=True, repeat="/a/session.db"),
         ):
             self.assertEqual(goals.options_of(goals.goal_of(options), "/actuator"), options)

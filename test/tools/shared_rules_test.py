@@ -88,7 +88,7 @@ class SharedRules(unittest.TestCase):
         self.assertIn(False, [answer for _, answer in self.cases["is_as_drawn"]])
 
     def test_defaults(self):
-        self.hold("default", lambda name: getattr(Options(), name))
+        self.hold("default", lambda name: Options().excitation if name == "current" else getattr(Options(), name))
 
 
 if __name__ == "__main__":

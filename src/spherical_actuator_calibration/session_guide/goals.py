@@ -7,7 +7,7 @@ import os
 from spherical_actuator_calibration.msg import SessionGoal
 
 from .calibration import excitations_of
-from .options import OptionError, Options
+from .options import CURRENT, OptionError, Options
 from .progress import Pose
 
 PLAIN = ("seed", "wanted_stddev", "drive_fixture", "skip_linearity")  # zero means zero
@@ -39,6 +39,8 @@ def goal_of(options):
             values[field] = os.path.abspath(value) if value else ""
         elif field in WITH_NONE:
             values[field] = 0 if value is None else value or -1
+        elif value is None:
+            values[field] = 0
     return SessionGoal(**values)
 
 
@@ -46,7 +48,7 @@ def options_of_capture(goal, ns):
     """Options of a CaptureGoal. Raises OptionError."""
     default = Options()
     settling = goal.settling or Options(drive_fixture=True).rest
-    current = abs(goal.current) or _current_of_patterns(goal.pose) or default.current
+    current = abs(goal.current) or _current_of_patterns(goal.pose) or CURRENT
     try:
         return Options(
             ns=ns,

@@ -7,6 +7,7 @@ from spherical_actuator_calibration.command_line import parser
 
 
 FIXTURE_SETTLING = 0.3  # [s] at rest before a capture
+CURRENT = 2.0  # [A] of an excited coil where nobody states one
 HAND_SETTLING = 3.0  # [s] a hand has to clamp the rotor
 
 
@@ -27,7 +28,7 @@ class Options:
     poses: int = 10
     validation_poses: int = 2
     coils_per_validation_pose: int = 2
-    current: float = 2.0
+    current: typing.Optional[float] = None  # None: that of the plan, or CURRENT
     patterns: str = "single"  # several coils at once do not tell which of them is wired wrongly
     total_current: float = 8.0
     dwell: float = 0.5
@@ -47,7 +48,7 @@ class Options:
             "validation_poses": (0, 1000),
             "coils_per_validation_pose": (1, 1000),
             "current": (0.01, 1000.0),
-            "total_current": (self.current, 1e6),
+            "total_current": (self.excitation, 1e6),
             "dwell": (0.05, 600.0),
             "settling": (0.0, 600.0),
             "current_timeout": (1.0, 3600.0),
@@ -66,6 +67,11 @@ class Options:
             raise OptionError("ns", f'"{self.ns}" must begin with a slash and not end with one.')
 
     @property
+    def excitation(self):
+        """[A] of an excited coil, where no plan states it."""
+        return CURRENT if self.current is None else self.current
+
+    @property
     def rest(self):
         """[s] before a capture."""
         if self.settling is not None:
@@ -82,7 +88,7 @@ def _add_what_is_measured(add, default):
         default=default.validation_poses,
         help="poses that judge the result (%(default)s)",
     )
-    add("--current", type=float, default=default.current, help="of an excited coil [A] (%(default)s)")
+    add("--current", type=float, default=default.current, help=f"of an excited coil [A] ({CURRENT}, or that of a plan)")
     add(
         "--patterns",
         default=default.patterns,

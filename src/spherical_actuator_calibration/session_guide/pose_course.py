@@ -26,7 +26,7 @@ class PoseCourse:
         self._options = options
         self._task = task
         self._account = account
-        self.current = options.current  # [A] of an excited coil
+        self.current = options.excitation  # [A] of an excited coil
         self.samples = []  # that were captured
 
     def to_capture(self, poses):

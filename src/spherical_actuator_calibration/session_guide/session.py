@@ -4,6 +4,7 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 
 from . import progress
 from .linearity import LinearityTest
+from .options import OptionError
 from .pose_course import PoseCourse
 from .progress import Progress
 
@@ -89,7 +90,10 @@ class Session:
         source = self._options.plan or self._options.repeat
         if not source:
             return []
-        poses, self._course.current = self._calibration.load_plan(source)
+        poses, current = self._calibration.load_plan(source)
+        if self._options.current not in (None, current):
+            raise OptionError("current", f"{source} has its coils at {current:g} A: leave it away, or plan with another one.")
+        self._course.current = current
         self._account.say(f"{len(poses)} poses of {source}, coils at {self._course.current:g} A.")
         return poses
 
