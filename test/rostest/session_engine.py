@@ -131,7 +131,11 @@ class SessionEngine(LabCase):
         self.assertTrue(program.says("Interrupted; currents are zero."), program.lines)
 
     def second_is_refused(self):
-        for name, goal in (("session", msg.SessionGoal(**GOAL)), ("excite", msg.ExciteGoal(coils=[1], current=1.0))):
+        for name, goal in (
+            ("session", msg.SessionGoal(**GOAL)),
+            ("excite", msg.ExciteGoal(coils=[1], current=1.0)),
+            ("plan", msg.PlanGoal(max_poses=3)),
+        ):
             second = self.action(name)
             second.send_goal(goal)
             result = self.result(second, GoalStatus.REJECTED)

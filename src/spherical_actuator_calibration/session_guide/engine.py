@@ -19,9 +19,11 @@ ENDING = 1.0  # [s] for goals under way to be answered at the end
 
 
 class Lane:
-    """Actions that do not go together: it takes one goal at a time, and refuses others with a sentence."""
+    """Actions that do not go together: it takes one goal at a time, and refuses others with a sentence; while an action of
+    another lane works, too, which is `heeded`, a lane and the name of an action."""
 
-    def __init__(self):
+    def __init__(self, heeded=None):
+        self._heeded = heeded
         self._servers = {}
         self._lock = threading.Lock()
         self._job = None
@@ -41,16 +43,28 @@ class Lane:
 
     def _take(self, handle, action):
         with self._lock:
-            job = self._job
-            is_free = job is None or not job.is_running()
-            if is_free:
-                self._job = Job(handle, self._servers[action.name], action, job)
+            previous = self._job
+            job = self.running() or self._heeded_job()
+            if job is None:
+                self._job = Job(handle, self._servers[action.name], action, previous)
                 handle.set_accepted()
                 self._job.start()
-        if not is_free:
+        if job is not None:
             message = f"{printable(job.client)} is at it, by the action {job.name}: cancel that, or wait for its end."
             rospy.logwarn("%s of %s is refused: %s", action.name, printable(client_of(handle)), message)
             handle.set_rejected(action.failure(message, Account()), message)
+
+    def running(self):
+        """The job under way; None where there is none."""
+        job = self._job
+        return job if job is not None and job.is_running() else None
+
+    def _heeded_job(self):
+        if self._heeded is None:
+            return None
+        lane, name = self._heeded
+        job = lane.running()
+        return job if job is not None and job.name == name else None
 
     def _cancel(self, handle):
         with self._lock:
@@ -61,8 +75,8 @@ class Lane:
     def close(self, reason):
         """Cancels what is under way."""
         with self._lock:
-            job = self._job
-        if job is not None and job.is_running():
+            job = self.running()
+        if job is not None:
             job.cancel(reason)
             job.join(ENDING)
 
@@ -76,16 +90,20 @@ class Engine:
         console = Terminal()
         topics = Topics(ns)
         bench = Calibration(ns, console, topics)
-        self._lanes = [Lane() for _ in range(3)]
+        at_the_bench = Lane()
+        # A plan of somebody else would take the place of the one that a session follows.
+        planning = Lane(heeded=(at_the_bench, SessionAction.name))
+        saving = Lane()
+        self._lanes = (at_the_bench, planning, saving)
         actions = (
-            (CaptureAction(ns, bench, self._laboratory, coils), 0),
-            (ExciteAction(ns, bench, self._laboratory, coils), 0),
-            (SessionAction(ns, bench, self._laboratory, actuator), 0),
-            (PlanAction(Calibration(ns, console, topics)), 1),
-            (SaveAction(Calibration(ns, console, topics)), 2),
+            (CaptureAction(ns, bench, self._laboratory, coils), at_the_bench),
+            (ExciteAction(ns, bench, self._laboratory, coils), at_the_bench),
+            (SessionAction(ns, bench, self._laboratory, actuator), at_the_bench),
+            (PlanAction(Calibration(ns, console, topics)), planning),
+            (SaveAction(Calibration(ns, console, topics)), saving),
         )
         for action, lane in actions:
-            self._lanes[lane].serve(ns, action)
+            lane.serve(ns, action)
         self._revisions = Revisions(ns)
 
     def close(self):
