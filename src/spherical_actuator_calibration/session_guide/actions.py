@@ -158,10 +158,10 @@ class ExciteAction(_AtTheBench):
             is_there = self._carry(pattern, goal.current)
             if not is_there and (was_there or task.time() > begin + SLOW):
                 complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
-                raise RuntimeError(f"{in_words(pattern)}: not the current that was commanded: {complaint}.")
+                raise RuntimeError(f"{in_words(pattern)}: {self._missed(goal.current, pattern)}: {complaint}.")
             was_there = was_there or is_there
         result = msg.ExciteResult(success=was_there, measured=self._laboratory.currents())
-        flowed = "excited" if was_there else f"not the {goal.current:g} A that were commanded, but {self._flowing(pattern)}"
+        flowed = "excited" if was_there else self._missed(goal.current, pattern)
         result.message = f"{in_words(pattern)}: {flowed}; the currents are zero again."
         return was_there, result
 
@@ -172,6 +172,9 @@ class ExciteAction(_AtTheBench):
         if not measured:
             return "none is measured"
         return f"{', '.join(f'{current:.3f}' for current in measured)} A, see the limits of the coil driver"
+
+    def _missed(self, current, pattern):
+        return f"not the {current:g} A that were commanded, but {self._flowing(pattern)}"
 
     def failure(self, message, _account):
         return msg.ExciteResult(message=message, measured=self._laboratory.currents())
