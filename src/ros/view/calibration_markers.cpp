@@ -362,8 +362,8 @@ class Drawing {
              "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
              "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
              "its error " +
-                 times + "; violet cone: 1 sigma " + times +
-                 "; P: poles, C: coils; ring: gimbal of the joints, about J1, J2, J3" +
+                 times + "; violet cone: 1 sigma " + times + "; P: poles, C: coils" +
+                 (scene_.nominal.has_joints ? "; ring: gimbal of the joints, about J1, J2, J3" : "") +
                  "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
                  "or are held out",
              kLegendHeight);
