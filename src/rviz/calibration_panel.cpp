@@ -4,7 +4,6 @@
 #include <QMessageBox>
 #include <QScrollArea>
 #include <QTabWidget>
-#include <QTime>
 #include <QVBoxLayout>
 #include <optional>
 
@@ -19,6 +18,7 @@
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "steady_label.hpp"
+#include "wheel_guard.hpp"
 
 namespace sac {
 namespace {
@@ -26,8 +26,8 @@ namespace {
 constexpr int kPeriod = 100;              // [ms] between two looks at what has come
 constexpr int kTicksOfHealth = 5;         // looks between two pictures of the health
 constexpr int kNarrowest = 380;           // [px]
+constexpr double kShortestCapture = 0.2;  // [s]; the node takes no shorter one
 constexpr double kLongestCapture = 60.0;  // [s]
-constexpr qint64 kFreshAnswer = 60000;    // [ms] in which an answer is of now
 constexpr const char* kLegend =
     "<small>streams: <span style='color:#1b9e4b'>●</span> good <span "
     "style='color:#d98200'>●</span> "
@@ -85,27 +85,24 @@ void CalibrationPanel::build() {
   layout->addWidget(legend);
   layout->addLayout(makeCaptureRow());
   // One place for what the engine says: there is little room.
-  auto* outcome = wrappingLabel();
-  reserveLines(*outcome, 2);
+  outcome_ = new OutcomeLabel;
   hand_guide_ = new HandGuide(
       node_,
       model_,
       [this] { return validation_->isChecked(); },
       [this] { return duration_->value(); },
-      *outcome);
+      *outcome_);
   layout->addWidget(hand_guide_);
-  coil_look_ = new CoilLook(node_, *outcome);
+  coil_look_ = new CoilLook(node_, *outcome_);
   layout->addWidget(coil_look_);
-  layout->addWidget(outcome);
+  layout->addWidget(outcome_);
   layout->addLayout(makeCycleRow());
   layout->addLayout(makeFileRow());
-  answer_ = wrappingLabel();
-  answer_->hide();
-  layout->addWidget(answer_);
   grade_ = wrappingLabel();
-  grade_->setStyleSheet("font-weight: bold;");
+  reserveLines(*grade_, 3);
   layout->addWidget(grade_);
   layout->addWidget(makeResults(), 1);
+  WheelGuard::protect(*content);
 }
 
 QPushButton* CalibrationPanel::addButton(QLayout* row,
@@ -127,7 +124,7 @@ QLayout* CalibrationPanel::makeCaptureRow() {
   button->setStyleSheet(kPrimaryStyle);
   connect(button, &QPushButton::clicked, this, &CalibrationPanel::capture);
   duration_ = new QDoubleSpinBox;
-  duration_->setRange(0.1, kLongestCapture);
+  duration_->setRange(kShortestCapture, kLongestCapture);
   duration_->setSingleStep(0.1);
   duration_->setDecimals(1);
   duration_->setValue(1.0);
@@ -239,8 +236,9 @@ void CalibrationPanel::feed(const std::string& topic) {
 void CalibrationPanel::refresh() {
   showAnswer();
   hand_guide_->refresh();
-  coil_look_->refresh(static_cast<int>(model_.coils()));
-  revisions_->refresh(model_.revision());
+  coil_look_->refresh(static_cast<int>(model_.coils()), hand_guide_->bench());
+  outcome_->age();
+  revisions_->refresh(model_.revision(), model_.revisionNumber());
   motion_->refresh();
   if (ticks_++ % kTicksOfHealth == 0) {
     const ros::WallTime now = ros::WallTime::now();
@@ -260,7 +258,10 @@ void CalibrationPanel::showCalibration() {
   next_step_->setText(QString::fromStdString(model_.nextStep()));
   bars_->setGroups(model_.coverage());
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
-  grade_->setText(QString::fromStdString(model_.grade() + " (" + model_.revision() + ")"));
+  const std::string reason = model_.gradeReason() + " (" + model_.revision() + ")";
+  grade_->setText(QString("<b>%1</b> <small>%2</small>")
+                      .arg(QString::fromStdString(model_.grade()).toHtmlEscaped(),
+                           QString::fromStdString(reason).toHtmlEscaped()));
   parameters_->fill(model_.parameters());
   estimates_->fill(model_.estimates());
   samples_->fill(model_.samples());
@@ -269,26 +270,13 @@ void CalibrationPanel::showCalibration() {
 
 void CalibrationPanel::showAnswer() {
   const std::optional<ServiceAnswer> answer = caller_.takeAnswer();
-  if (!answer) {
-    showAge();
-    return;
-  }
-  answer_->setText(QTime::currentTime().toString("hh:mm:ss") + ", " + called_ + ": " +
-                   QString::fromStdString(answer->message));
-  answer_->show();
-  since_.start();
-  changed_ = true;
-  answer_->setStyleSheet(answer->success ? "color: #1b7f3b;" : "color: #c62828;");
-  setCallsEnabled(true);
-}
-
-void CalibrationPanel::showAge() {
-  if (caller_.isBusy()) {
-    answer_->show();
-    answer_->setText(QString("%1 runs, %2 s …").arg(called_).arg(since_.elapsed() / 1000));
-  } else if (since_.isValid() && since_.elapsed() > kFreshAnswer) {
-    answer_->setStyleSheet("color: #80868d;");
-    since_.invalidate();
+  if (answer) {
+    outcome_->showEnd(called_ + ": " + QString::fromStdString(answer->message),
+                      answer->success ? OutcomeLabel::Ending::kGood : OutcomeLabel::Ending::kBad);
+    changed_ = true;
+    setCallsEnabled(true);
+  } else if (caller_.isBusy()) {
+    outcome_->showCourse(QString("%1 runs, %2 s …").arg(called_).arg(since_.elapsed() / 1000));
   }
 }
 
@@ -318,10 +306,9 @@ void CalibrationPanel::call(const std::string& service, const typename Service::
   }
   called_ = QString::fromStdString(service);
   since_.start();
-  answer_->setStyleSheet("");
   setCallsEnabled(false);
   caller_.call<Service>(node_.resolveName("calibration/" + service), request);
-  showAge();
+  showAnswer();
 }
 
 void CalibrationPanel::capture() {

@@ -20,6 +20,7 @@
 #include "hand_guide.hpp"
 #include "health_view.hpp"
 #include "motion_view.hpp"
+#include "outcome_label.hpp"
 #include "panel_model.hpp"
 #include "parameter_table.hpp"
 #include "revision_table.hpp"
@@ -58,9 +59,8 @@ class CalibrationPanel : public rviz::Panel {
 
   void refresh();
   void showCalibration();
+  /// How long a call runs, or what came of it.
   void showAnswer();
-  /// How long a call runs; an answer of long ago turns grey.
-  void showAge();
 
   void setCallsEnabled(bool enabled);
   /// Level 1 is not offered where there is nothing to calibrate.
@@ -96,9 +96,9 @@ class CalibrationPanel : public rviz::Panel {
   CoilLook* coil_look_ = nullptr;
   QCheckBox* auto_capture_ = nullptr;
   QSpinBox* coil_ = nullptr;
-  QLabel* answer_ = nullptr;
+  OutcomeLabel* outcome_ = nullptr;
   QString called_;       ///< service of the running or the last call
-  QElapsedTimer since_;  ///< its begin, or its answer
+  QElapsedTimer since_;  ///< its begin
   QLabel* grade_ = nullptr;
   ParameterTable* parameters_ = nullptr;
   ParameterTable* estimates_ = nullptr;

@@ -2,7 +2,6 @@
 
 #include <QHBoxLayout>
 #include <QHideEvent>
-#include <QTime>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -28,7 +27,7 @@ QDoubleSpinBox* spinBox(double least, double most, double value, const QString& 
 
 }  // namespace
 
-CoilLook::CoilLook(const ros::NodeHandle& node, QLabel& outcome)
+CoilLook::CoilLook(const ros::NodeHandle& node, OutcomeLabel& outcome)
     : excitation_(node,
                   "calibration/excite",
                   [this](const msg::ExciteFeedback& feedback) { words_.receive(feedback); }),
@@ -56,8 +55,9 @@ void CoilLook::build() {
   layout->addLayout(row);
 }
 
-void CoilLook::refresh(int coils) {
+void CoilLook::refresh(int coils, Bench bench) {
   coil_->setRange(1, std::max(1, coils));
+  excite_->setEnabled(bench == Bench::kFree || excitation_.isRunning());
   showExcitation();
 }
 
@@ -67,7 +67,7 @@ void CoilLook::exciteOrStop() {
     return;
   }
   if (current_->value() == 0.0) {
-    outcome_.setText("Choose a current first.");
+    outcome_.showEnd("Choose a current first.", OutcomeLabel::Ending::kBad);
     return;
   }
   msg::ExciteGoal goal;
@@ -80,11 +80,11 @@ void CoilLook::exciteOrStop() {
 
 void CoilLook::showExcitation() {
   if (const auto end = excitation_.takeEnd()) {
-    outcome_.setText(QTime::currentTime().toString("hh:mm:ss, ") +
-                     QString::fromStdString(
-                         end->message + (words_.carried().empty() ? "" : "\n" + words_.carried())));
+    outcome_.showEnd(QString::fromStdString(
+                         end->message + (words_.carried().empty() ? "" : "\n" + words_.carried())),
+                     end->success ? OutcomeLabel::Ending::kGood : OutcomeLabel::Ending::kBad);
   } else if (excitation_.isRunning()) {
-    outcome_.setText(QString::fromStdString(words_.text()));
+    outcome_.showCourse(QString::fromStdString(words_.text()));
   }
   nameButton(*excite_, excitation_.isRunning() ? "Stop" : "Excite", "F12");
 }

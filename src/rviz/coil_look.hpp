@@ -1,7 +1,6 @@
 #pragma once
 
 #include <QDoubleSpinBox>
-#include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
 #include <QWidget>
@@ -9,6 +8,8 @@
 #include <ros/node_handle.h>
 
 #include "engine_action.hpp"
+#include "outcome_label.hpp"
+#include "pose_guide.hpp"
 #include "progress_words.hpp"
 #include "spherical_actuator_calibration/ExciteAction.h"
 
@@ -20,10 +21,10 @@ namespace sac {
 class CoilLook : public QWidget {
  public:
   /// `outcome`, which shows how an excitation goes, outlives it.
-  CoilLook(const ros::NodeHandle& node, QLabel& outcome);
+  CoilLook(const ros::NodeHandle& node, OutcomeLabel& outcome);
 
-  /// Of the actuator; to be called ten times a second.
-  void refresh(int coils);
+  /// Coils of the actuator, and whether they are to be had; to be called ten times a second.
+  void refresh(int coils, Bench bench);
 
  protected:
   void hideEvent(QHideEvent* event) override;
@@ -39,7 +40,7 @@ class CoilLook : public QWidget {
   QSpinBox* coil_ = nullptr;
   QDoubleSpinBox* current_ = nullptr;
   QDoubleSpinBox* duration_ = nullptr;
-  QLabel& outcome_;
+  OutcomeLabel& outcome_;
 };
 
 }  // namespace sac

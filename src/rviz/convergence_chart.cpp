@@ -18,7 +18,7 @@ ConvergenceChart::ConvergenceChart(QWidget* parent)
     : QChartView(parent),
       line_(new QLineSeries),
       iterations_(new QValueAxis),
-      errors_(new QLogValueAxis) {
+      errors_(new LogAxis) {
   line_->setPointsVisible(true);
   iterations_->setLabelFormat("%d");
   iterations_->setTitleText("iteration");
@@ -26,8 +26,6 @@ ConvergenceChart::ConvergenceChart(QWidget* parent)
   iterations_->setRange(0.0, 1.0);
   iterations_->setTickInterval(1.0);
   iterations_->setTickType(QValueAxis::TicksDynamic);
-  errors_->setLabelFormat("%.0e");
-  errors_->setBase(10.0);
   // The chart owns line and axes.
   chart()->legend()->hide();
   chart()->addSeries(line_);
@@ -45,11 +43,11 @@ void ConvergenceChart::setHistory(const QString& title, const std::vector<double
   if (errors.empty()) {
     return;
   }
-  double smallest = errors.front();
-  double largest = kSmallestError;
+  double smallest = std::max(kSmallestError, errors.front());
+  double largest = smallest;
   for (std::size_t n = 0; n < errors.size(); ++n) {
     const double error = std::max(kSmallestError, errors[n]);
-    line_->append(static_cast<double>(n), error);
+    line_->append(static_cast<double>(n), LogAxis::place(error));
     smallest = std::min(smallest, error);
     largest = std::max(largest, error);
   }
@@ -57,8 +55,7 @@ void ConvergenceChart::setHistory(const QString& title, const std::vector<double
   constexpr double kMostTicks = 10.0;
   iterations_->setTickInterval(std::ceil(last / kMostTicks));
   iterations_->setRange(0.0, last);
-  errors_->setRange(std::pow(10.0, std::floor(std::log10(smallest))),
-                    std::pow(10.0, std::floor(std::log10(largest)) + 1.0));
+  errors_->cover(smallest, largest);
 }
 
 }  // namespace sac

@@ -4,15 +4,15 @@
 
 #include <QtCharts/QChartView>
 #include <QtCharts/QLineSeries>
-#include <QtCharts/QLogValueAxis>
 #include <QtCharts/QValueAxis>
+
+#include "log_axis.hpp"
 
 namespace sac {
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
 using QtCharts::QChartView;
 using QtCharts::QLineSeries;
-using QtCharts::QLogValueAxis;
 using QtCharts::QValueAxis;
 #endif
 
@@ -29,7 +29,7 @@ class ConvergenceChart : public QChartView {
  private:
   QLineSeries* line_;
   QValueAxis* iterations_;
-  QLogValueAxis* errors_;
+  LogAxis* errors_;
 };
 
 }  // namespace sac

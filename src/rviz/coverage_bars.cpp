@@ -11,8 +11,9 @@ namespace {
 
 // Sizes [px].
 constexpr int kTitleWidth = 44;
-constexpr int kRowHeight = 42;
-constexpr int kBarHeight = 26;
+constexpr int kBarHeight = 22;
+constexpr int kNumberHeight = 16;  // below bars that have one
+constexpr int kSpacing = 4;
 constexpr double kGap = 2.0;
 constexpr double kWidestBar = 60.0;
 
@@ -33,6 +34,13 @@ QString numberOf(const CoverageBar& bar) {
   const std::size_t underline = bar.name.find_last_of('_');
   return underline == std::string::npos ? QString()
                                         : QString::fromStdString(bar.name.substr(underline + 1));
+}
+
+int heightOf(const CoverageGroup& group) {
+  const bool is_numbered = std::any_of(group.bars.begin(), group.bars.end(), [](const auto& bar) {
+    return !numberOf(bar).isEmpty();
+  });
+  return kBarHeight + (is_numbered ? kNumberHeight : kSpacing);
 }
 
 QString describe(const CoverageBar& bar) {
@@ -56,7 +64,11 @@ void CoverageBars::setGroups(std::vector<CoverageGroup> groups) {
 }
 
 QSize CoverageBars::sizeHint() const {
-  return {300, kRowHeight * static_cast<int>(groups_.size())};
+  int height = 0;
+  for (const CoverageGroup& group : groups_) {
+    height += heightOf(group);
+  }
+  return {300, height};
 }
 
 std::vector<CoverageBars::Place> CoverageBars::places() const {
@@ -71,7 +83,7 @@ std::vector<CoverageBars::Place> CoverageBars::places() const {
       places.push_back({QRectF(left, top, std::max(1.0, pitch - kGap), kBarHeight), &bar});
       left += pitch;
     }
-    top += kRowHeight;
+    top += heightOf(group);
   }
   return places;
 }
@@ -85,7 +97,7 @@ void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
     painter.drawText(QRectF(0.0, top, kTitleWidth, kBarHeight),
                      Qt::AlignVCenter | Qt::AlignLeft,
                      QString::fromStdString(group.title));
-    top += kRowHeight;
+    top += heightOf(group);
   }
   painter.setFont(small);
   for (const Place& place : places()) {
@@ -99,7 +111,7 @@ void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
     painter.drawText(QRectF(place.area.left() - kGap,
                             place.area.bottom(),
                             place.area.width() + 2.0 * kGap,
-                            kRowHeight - kBarHeight - 2),
+                            kNumberHeight - 2),
                      Qt::AlignTop | Qt::AlignHCenter,
                      numberOf(*place.bar));
   }

@@ -44,13 +44,18 @@ std::array<std::string, 3> jointNames(const ros::NodeHandle& node,
   return names;
 }
 
+template <typename End>
+OutcomeLabel::Ending endingOf(const End& end) {
+  return end.success ? OutcomeLabel::Ending::kGood : OutcomeLabel::Ending::kBad;
+}
+
 }  // namespace
 
 HandGuide::HandGuide(const ros::NodeHandle& node,
                      const PanelModel& model,
                      std::function<bool()> hold_out,
                      std::function<double()> duration,
-                     QLabel& outcome)
+                     OutcomeLabel& outcome)
     : node_(node),
       model_(model),
       hold_out_(std::move(hold_out)),
@@ -139,10 +144,21 @@ void HandGuide::listen() {
         guide_.receive(*message);
       },
       tellRefusal("calibration/session/status")));
+  subscribers_.push_back(subscribeChecked<msg::SessionActionFeedback>(
+      node_,
+      "calibration/session/feedback",
+      kNewest,
+      [this](const msg::SessionActionFeedback::ConstPtr& message) {
+        session_ = sessionInWords(message->feedback.progress);
+      },
+      tellRefusal("calibration/session/feedback")));
 }
 
 void HandGuide::refresh() {
   guide_.judgeBy(model_.poseTolerance());
+  if (session_heard_.hasExpired(kSilenceOfEngine)) {
+    guide_.receive(actionlib_msgs::GoalStatusArray());
+  }
   if (!model_.hasJoints()) {
     guide_.followOrientations();
   }
@@ -170,9 +186,9 @@ void HandGuide::planOrStop() {
 
 void HandGuide::showPlan() {
   if (const auto end = planning_.takeEnd()) {
-    outcome_.setText(QString::fromStdString(end->message));
+    outcome_.showEnd(QString::fromStdString(end->message), endingOf(*end));
   } else if (planning_.isRunning()) {
-    outcome_.setText(QString::fromStdString(planned_));
+    outcome_.showCourse(QString::fromStdString(planned_));
   }
 }
 
@@ -194,7 +210,7 @@ void HandGuide::measure() {
   goal.here = static_cast<std::uint8_t>(!here);
   const std::string refusal = here ? askFor(guide_.pose(*here), goal) : "";
   if (!refusal.empty()) {
-    outcome_.setText(QString::fromStdString(refusal));
+    outcome_.showEnd(QString::fromStdString(refusal), OutcomeLabel::Ending::kBad);
     return;
   }
   words_ = ProgressWords();
@@ -232,15 +248,15 @@ std::string HandGuide::askFor(const msg::PoseProgress& pose, msg::CaptureGoal& g
 
 void HandGuide::showMeasurement() {
   if (const auto end = capture_.takeEnd()) {
-    outcome_.setText(QString::fromStdString(end->message));
+    outcome_.showEnd(QString::fromStdString(end->message), endingOf(*end));
   } else if (capture_.isRunning()) {
-    outcome_.setText(QString::fromStdString(words_.text()));
+    outcome_.showCourse(QString::fromStdString(words_.text()));
   }
 }
 
 // What a session showed it takes back at its end: then this is told anew.
 void HandGuide::tellTarget() {
-  if (guide_.sessionLeads() && !session_heard_.hasExpired(kSilenceOfEngine)) {
+  if (guide_.bench() == Bench::kInSession) {
     told_target_.reset();
     return;
   }
@@ -259,14 +275,15 @@ void HandGuide::tellTarget() {
 }
 
 void HandGuide::showAdvice() {
-  const QString advice = QString::fromStdString(guide_.advice());
+  const bool is_free = guide_.bench() == Bench::kFree;
+  const QString advice = QString::fromStdString(is_free ? guide_.advice() : session_);
   if (advice != advice_->text()) {
     advice_->setText(advice);
   }
   nameButton(*measure_, capture_.isRunning() ? "Stop" : "Measure pose", "F3");
   nameButton(*plan_, planning_.isRunning() ? "Stop" : "Plan", "F2");
-  measure_->setEnabled(!planning_.isRunning());
-  plan_->setEnabled(!capture_.isRunning());
+  measure_->setEnabled(capture_.isRunning() || (is_free && !planning_.isRunning()));
+  plan_->setEnabled(planning_.isRunning() || (is_free && !capture_.isRunning()));
 }
 
 }  // namespace sac

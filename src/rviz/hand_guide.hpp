@@ -17,11 +17,13 @@
 #include <ros/subscriber.h>
 
 #include "engine_action.hpp"
+#include "outcome_label.hpp"
 #include "panel_model.hpp"
 #include "pose_guide.hpp"
 #include "progress_words.hpp"
 #include "spherical_actuator_calibration/CaptureAction.h"
 #include "spherical_actuator_calibration/PlanAction.h"
+#include "spherical_actuator_calibration/SessionAction.h"
 
 namespace sac {
 
@@ -36,10 +38,12 @@ class HandGuide : public QWidget {
             const PanelModel& model,
             std::function<bool()> hold_out,
             std::function<double()> duration,
-            QLabel& outcome);
+            OutcomeLabel& outcome);
 
   /// To be called ten times a second.
   void refresh();
+  /// Whether a guided session works, as of the last refresh().
+  Bench bench() const { return guide_.bench(); }
 
  private:
   void build();
@@ -66,6 +70,7 @@ class HandGuide : public QWidget {
   QElapsedTimer planning_since_;
   std::string planned_;  ///< how far it is
   QElapsedTimer session_heard_;
+  std::string session_;  ///< how far it is
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher wanted_pose_;
   std::optional<std::array<double, 3>> told_target_;
@@ -75,7 +80,7 @@ class HandGuide : public QWidget {
   QDoubleSpinBox* current_ = nullptr;
   QPushButton* measure_ = nullptr;
   QLabel* advice_ = nullptr;
-  QLabel& outcome_;
+  OutcomeLabel& outcome_;
 };
 
 }  // namespace sac

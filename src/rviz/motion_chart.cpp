@@ -8,10 +8,12 @@
 
 #include <QtCharts/QChart>
 #include <QtCharts/QLegend>
+#include <QtCharts/QLegendMarker>
 
 namespace sac {
 namespace {
 
+constexpr double kShortest = 5.0;  // [s] of an axis, so that its whole numbers differ
 constexpr const char* kColours[] = {"#1565c0", "#8e24aa", "#ef6c00"};
 
 void paint(QLineSeries& line, const char* colour, Qt::PenStyle dashes) {
@@ -27,13 +29,12 @@ MotionChart::MotionChart(QWidget* parent)
     : QChartView(parent),
       wanted_(new QLineSeries),
       seconds_(new QValueAxis),
-      stddevs_(new QLogValueAxis) {
+      stddevs_(new LogAxis) {
   seconds_->setLabelFormat("%.0f");
   seconds_->setTitleText("motion [s]");
-  seconds_->setRange(0.0, 1.0);
-  stddevs_->setLabelFormat("%g");
-  stddevs_->setBase(10.0);
+  seconds_->setRange(0.0, kShortest);
   stddevs_->setTitleText("std [mrad]");
+  stddevs_->cover(0.1, 1.0);
   // The chart owns lines and axes.
   chart()->addAxis(seconds_, Qt::AlignBottom);
   chart()->addAxis(stddevs_, Qt::AlignLeft);
@@ -67,23 +68,24 @@ void MotionChart::setCurves(const std::vector<UncertaintyCurve>& curves, double 
       lines_[n]->setName(QString::fromStdString(curve.group));
       for (std::size_t k = 0; k < curve.seconds.size(); ++k) {
         const double stddev = kMilli * curve.stddevs[k];
-        points.append(QPointF(curve.seconds[k], stddev));
+        points.append(QPointF(curve.seconds[k], LogAxis::place(stddev)));
         last = std::max(last, curve.seconds[k]);
         least = std::min(least, stddev);
         most = std::max(most, stddev);
       }
     }
     lines_[n]->replace(points);
+    // A rotor without joints has a curve less.
+    chart()->legend()->markers(lines_[n]).front()->setVisible(!lines_[n]->name().isEmpty());
   }
-  last = std::max(last, 1.0);
+  last = std::max(last, kShortest);
   seconds_->setRange(0.0, last);
   seconds_->applyNiceNumbers();
-  stddevs_->setRange(std::pow(10.0, std::floor(std::log10(least))),
-                     std::pow(10.0, std::floor(std::log10(most)) + 1.0));
+  stddevs_->cover(least, most);
   wanted_->clear();
   if (wanted_stddev > 0.0) {
-    wanted_->append(0.0, kMilli * wanted_stddev);
-    wanted_->append(seconds_->max(), kMilli * wanted_stddev);
+    wanted_->append(0.0, LogAxis::place(kMilli * wanted_stddev));
+    wanted_->append(seconds_->max(), LogAxis::place(kMilli * wanted_stddev));
   }
 }
 

@@ -21,7 +21,7 @@ class MotionChart : public QChartView {
   std::vector<QLineSeries*> lines_;
   QLineSeries* wanted_;
   QValueAxis* seconds_;
-  QLogValueAxis* stddevs_;
+  LogAxis* stddevs_;
 };
 
 }  // namespace sac

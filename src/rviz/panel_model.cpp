@@ -166,7 +166,7 @@ std::string PanelModel::revision() const {
 }
 
 std::string PanelModel::grade() const {
-  return status_.grade.empty() ? "" : "Grade: " + status_.grade + ". " + status_.grade_reason;
+  return status_.grade.empty() ? "" : "Grade: " + status_.grade + ".";
 }
 
 std::vector<ParameterLine> PanelModel::parameters() const {

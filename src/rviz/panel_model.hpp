@@ -92,8 +92,10 @@ class PanelModel {
   std::string nextStep() const;
   /// Parameters in force: revision, and where they come from.
   std::string revision() const;
-  /// What the calibration is worth: its grade, and why.
+  std::uint32_t revisionNumber() const { return parameters_.revision; }
+  /// What the calibration is worth: "Grade: good.", and why.
   std::string grade() const;
+  const std::string& gradeReason() const { return status_.grade_reason; }
   /// The parameters in force; what is not identified has no value to show.
   std::vector<ParameterLine> parameters() const;
   /// The parameters that the last cycle was free to change.

@@ -6,18 +6,13 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "signed_degrees.hpp"
 #include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
-
-std::string inDegrees(double angle) {
-  return (angle < 0.0 ? "−" : "+") + format("%.1f°", std::abs(angle) / kOneDegree);
-}
 
 /// Turns about x, then y, then z [rad] of a unit quaternion.
 std::array<double, 3> turnsOf(const geometry_msgs::Quaternion& q) {
@@ -90,10 +85,11 @@ void PoseGuide::receive(const sensor_msgs::JointState& message) {
 void PoseGuide::receive(const actionlib_msgs::GoalStatusArray& message) {
   using actionlib_msgs::GoalStatus;
   const auto& goals = message.status_list;
-  session_leads_ = std::any_of(goals.begin(), goals.end(), [](const GoalStatus& goal) {
+  const bool works = std::any_of(goals.begin(), goals.end(), [](const GoalStatus& goal) {
     return goal.status == GoalStatus::PENDING || goal.status == GoalStatus::ACTIVE ||
            goal.status == GoalStatus::PREEMPTING || goal.status == GoalStatus::RECALLING;
   });
+  bench_ = works ? Bench::kInSession : Bench::kFree;
 }
 
 bool PoseGuide::isThere(const msg::PoseProgress& pose) const {
@@ -158,7 +154,7 @@ std::string PoseGuide::advice() const {
   for (std::size_t k = 0; k < joints_->size(); ++k) {
     const double left = angleDifference(wanted[k], (*joints_)[k]);
     if (std::abs(left) > tolerance_) {
-      turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + inDegrees(left);
+      turns += (turns.empty() ? "" : ", ") + names_[k] + " by " + signedDegrees(left);
     }
   }
   return which + "turn " + turns + ".";

@@ -15,6 +15,9 @@
 
 namespace sac {
 
+/// Whether coils and poses are to be had, or a guided session works with them.
+enum class Bench { kFree, kInSession };
+
 /// Leads a hand through the plan in force: which pose is next, how far the rotor is from it, and
 /// what the calibration node says is missing there. Knows no windows.
 class PoseGuide {
@@ -40,8 +43,8 @@ class PoseGuide {
   void receive(const actionlib_msgs::GoalStatusArray& message);
 
   bool hasPlan() const { return !poses_.empty(); }
-  /// Whether a guided session works: it shows the pose that is next.
-  bool sessionLeads() const { return session_leads_; }
+  /// A guided session shows by itself the pose that is next.
+  Bench bench() const { return bench_; }
   /// Index of the first pose that is not measured; nothing where none is left.
   std::optional<std::size_t> next() const;
   /// Joint angles of that pose [rad].
@@ -59,7 +62,7 @@ class PoseGuide {
   double tolerance_ = 0.0;  ///< [rad]
   std::array<std::string, 3> names_ = {"joint_1", "joint_2", "joint_3"};
   bool has_joints_ = true;
-  bool session_leads_ = false;
+  Bench bench_ = Bench::kFree;
   std::vector<msg::PoseProgress> poses_;
   std::optional<std::array<double, 3>> joints_;
 };

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "signed_degrees.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -57,7 +58,44 @@ std::string stageInWords(const MeasurementProgress& progress) {
                                 : "Measuring with coil " + coilsInWords(progress) + " …";
 }
 
+/// What a session does that is not at a pose.
+std::string courseInWords(const MeasurementProgress& progress) {
+  if (progress.stage == MeasurementProgress::PLANNING) {
+    return "Planning …";
+  }
+  if (progress.stage == MeasurementProgress::ESTIMATING) {
+    return "Calibrating …";
+  }
+  if (progress.stage == MeasurementProgress::SAVING) {
+    return "Validating and saving …";
+  }
+  return progress.stage == MeasurementProgress::ENDED ? "It ends …" : "It begins …";
+}
+
+/// "Turn joint_1 by +12.3°, joint_3 by −4.0°."; empty where the rotor is at the pose.
+std::string wayInWords(const MeasurementProgress& progress) {
+  std::string turns;
+  for (std::size_t k = 0; k < progress.way.size() && k < progress.joint_names.size(); ++k) {
+    if (std::abs(progress.way[k]) > progress.tolerance) {
+      turns += (turns.empty() ? "Turn " : ", ") + printable(progress.joint_names[k]) + " by " +
+               signedDegrees(progress.way[k]);
+    }
+  }
+  return turns.empty() ? "" : turns + ".";
+}
+
 }  // namespace
+
+std::string sessionInWords(const MeasurementProgress& progress) {
+  const std::string leads = "A guided session leads";
+  if (progress.pose == 0) {
+    return leads + ". " + courseInWords(progress);
+  }
+  const std::string way = wayInWords(progress);
+  return leads + ", pose " + std::to_string(progress.pose) + " of " +
+         std::to_string(progress.poses) + (progress.held_out != 0 ? ", held out. " : ". ") +
+         (way.empty() ? stageInWords(progress) : way);
+}
 
 void ProgressWords::receive(const MeasurementProgress& progress) {
   text_ = stageInWords(progress);

@@ -22,6 +22,10 @@ class ProgressWords {
   std::string text_ = "Measuring …";
 };
 
+/// What the feedback of a guided session tells, so that nobody at the panel works against it: which
+/// pose, what is under way, and which way a hand is still to turn the rotor.
+std::string sessionInWords(const msg::MeasurementProgress& progress);
+
 /// What the feedback of an excitation tells, likewise: what the coils carry by the amplifier's own
 /// measurement, not what they were commanded.
 class ExcitationWords {

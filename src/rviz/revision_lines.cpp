@@ -39,7 +39,8 @@ std::string errorInWords(const msg::Revision& revision) {
 
 }  // namespace
 
-std::vector<RevisionLine> revisionLines(const std::vector<msg::Revision>& revisions) {
+std::vector<RevisionLine> revisionLines(const std::vector<msg::Revision>& revisions,
+                                        std::uint32_t in_force) {
   std::vector<RevisionLine> lines;
   lines.reserve(revisions.size());
   for (const msg::Revision& revision : revisions) {
@@ -47,7 +48,8 @@ std::vector<RevisionLine> revisionLines(const std::vector<msg::Revision>& revisi
     line.number = revision.number;
     line.restorable = revision.restorable != 0;
     line.name = (line.restorable ? "" : printable(folderOf(revision.session)) + " ") +
-                std::to_string(revision.number);
+                std::to_string(revision.number) +
+                (line.restorable && line.number == in_force ? ", in force" : "");
     line.date = printable(readable(revision.date));
     line.origin = printable(revision.origin);
     line.error = printable(errorInWords(revision));

@@ -13,7 +13,8 @@ namespace sac {
 struct RevisionLine {
   std::uint32_t number = 0;
   bool restorable = false;
-  std::string name;    ///< its number, or the folder of another session and the number there
+  std::string name;    ///< its number, or the folder of another session and the number there; that
+                       ///< of the one in force says so
   std::string date;    ///< as it is told, without T and Z: UTC
   std::string origin;  ///< what made it
   std::string error;   ///< before → after, with its unit; empty where no cycle made it
@@ -26,7 +27,9 @@ struct RevisionLine {
   }
 };
 
-/// The newest first, `revisions` as list_revisions tells them.
-std::vector<RevisionLine> revisionLines(const std::vector<msg::Revision>& revisions);
+/// The newest first, `revisions` as list_revisions tells them; `in_force`: number of the one in
+/// force, which is of the session that can be restored from.
+std::vector<RevisionLine> revisionLines(const std::vector<msg::Revision>& revisions,
+                                        std::uint32_t in_force);
 
 }  // namespace sac

@@ -13,16 +13,15 @@ RevisionTable::RevisionTable(const ros::NodeHandle& node,
                              std::function<void(std::uint32_t)> restore)
     : node_(node),
       restore_(new QPushButton),
-      trouble_(new QLabel),
-      table_(choiceTable({"revision", "date (UTC)", "made by", "error", "drift"})) {
+      note_(new QLabel),
+      table_(choiceTable({"revision", "date (UTC)", "error", "drift", "made by"})) {
   restore_->setToolTip("Put the chosen revision of the parameters back in force, as a new one");
-  trouble_->setWordWrap(true);
-  trouble_->setStyleSheet("color: #c62828;");
-  trouble_->hide();
+  note_->setWordWrap(true);
+  note_->hide();
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(restore_);
-  layout->addWidget(trouble_);
+  layout->addWidget(note_);
   layout->addWidget(table_);
   connect(table_, &QTableWidget::itemSelectionChanged, this, [this] { showChoice(); });
   connect(restore_, &QPushButton::clicked, this, [this, restore = std::move(restore)] {
@@ -33,21 +32,29 @@ RevisionTable::RevisionTable(const ros::NodeHandle& node,
   showChoice();
 }
 
-void RevisionTable::refresh(const std::string& in_force) {
+void RevisionTable::refresh(const std::string& in_force, std::uint32_t number) {
   if (const std::optional<ServiceAnswer> answer = caller_.takeAnswer()) {
-    trouble_->setText(QString::fromStdString(answer->message));
-    trouble_->setVisible(!answer->success || answer->is_partial);
+    const bool is_trouble = !answer->success || answer->is_partial;
+    note_->setStyleSheet("color: #c62828;");
+    showNote(is_trouble ? QString::fromStdString(answer->message) : QString());
     if (answer->success) {
-      fill(revisionLines(answer->revisions));
+      fill(revisionLines(answer->revisions, number));
     }
   }
   is_old_ = is_old_ || in_force != in_force_;
   in_force_ = in_force;
   if (is_old_ && isVisible() && !caller_.isBusy()) {
     is_old_ = false;
+    note_->setStyleSheet("");
+    showNote("Reading the sessions …");
     caller_.call<msg::ListRevisions>(node_.resolveName("calibration/list_revisions"),
                                      msg::ListRevisions::Request());
   }
+}
+
+void RevisionTable::showNote(const QString& text) {
+  note_->setText(text);
+  note_->setVisible(!text.isEmpty());
 }
 
 void RevisionTable::showEvent(QShowEvent* event) {
@@ -67,7 +74,7 @@ void RevisionTable::fill(std::vector<RevisionLine> lines) {
   int row = 0;
   for (const RevisionLine& line : lines_) {
     int column = 0;
-    for (const std::string& text : {line.name, line.date, line.origin, line.error, line.drift}) {
+    for (const std::string& text : {line.name, line.date, line.error, line.drift, line.origin}) {
       auto* item = new QTableWidgetItem(QString::fromStdString(text));
       item->setToolTip(item->text());
       table_->setItem(row, column++, item);

@@ -23,9 +23,9 @@ class RevisionTable : public QWidget {
   /// `restore` is called with the revision that the operator has chosen.
   RevisionTable(const ros::NodeHandle& node, std::function<void(std::uint32_t)> restore);
 
-  /// To be called ten times a second with the revision in force, in words; where it is another one,
-  /// the engine is asked for the list.
-  void refresh(const std::string& in_force);
+  /// To be called ten times a second with the revision in force, in words and its number; where it
+  /// is another one, the engine is asked for the list.
+  void refresh(const std::string& in_force, std::uint32_t number);
   QPushButton* restoreButton() const { return restore_; }
 
  protected:
@@ -34,6 +34,8 @@ class RevisionTable : public QWidget {
 
  private:
   void fill(std::vector<RevisionLine> lines);
+  /// Above the list, which stays; empty: nothing.
+  void showNote(const QString& text);
   void showChoice();
   std::optional<std::uint32_t> chosen() const;
 
@@ -43,7 +45,7 @@ class RevisionTable : public QWidget {
   bool is_old_ = false;
   std::vector<RevisionLine> lines_;
   QPushButton* restore_;
-  QLabel* trouble_;
+  QLabel* note_;
   QTableWidget* table_;
 };
 

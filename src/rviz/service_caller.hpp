@@ -3,13 +3,17 @@
 #include <chrono>
 #include <cstdint>
 #include <future>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <ros/node_handle.h>
 #include <ros/service.h>
+#include <ros/service_client.h>
 
 #include "spherical_actuator_calibration/ListRevisions.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
@@ -24,22 +28,34 @@ struct ServiceAnswer {
   bool is_partial = false;               ///< some are left out; the message tells which
 };
 
-/// Calls one service at a time, aside, so that a window stays alive during a long cycle.
+/// Calls one service at a time, aside, so that a window stays alive during a long cycle. Its end
+/// does not wait for an answer: what the service does goes on.
 class ServiceCaller {
  public:
+  ServiceCaller() = default;
+  ~ServiceCaller() {
+    while (answer_.valid() &&
+           answer_.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+      link_->cut();
+    }
+  }
+  ServiceCaller(const ServiceCaller&) = delete;
+  ServiceCaller& operator=(const ServiceCaller&) = delete;
+
   bool isBusy() const { return answer_.valid(); }
 
   /// Starts a call. Precondition: !isBusy().
   template <typename Service>
   void call(const std::string& name, const typename Service::Request& request) {
-    answer_ = std::async(std::launch::async, [name, request]() -> ServiceAnswer {
+    link_ = std::make_shared<Link>();
+    answer_ = std::async(std::launch::async, [name, request, link = link_]() -> ServiceAnswer {
       Service service;
       service.request = request;
       constexpr bool kTellAbsence = false;
       if (!ros::service::exists(name, kTellAbsence)) {
         return {false, "Nobody answers (" + name + "): is its node running?", {}};
       }
-      if (!ros::service::call(name, service)) {
+      if (!link->open<Service>(name) || !link->client().call(service)) {
         return {false, "The connection to " + name + " was lost before its answer.", {}};
       }
       ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
@@ -61,6 +77,33 @@ class ServiceCaller {
   }
 
  private:
+  /// A connection of its own, which another thread can cut: a call of a node that stands still
+  /// would be waited for.
+  class Link {
+   public:
+    template <typename Service>
+    bool open(const std::string& name) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      constexpr bool kPersistent = true;
+      if (!is_cut_) {
+        client_ = ros::NodeHandle().serviceClient<Service>(name, kPersistent);
+      }
+      return client_.isValid();
+    }
+    ros::ServiceClient client() const { return client_; }
+    void cut() {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_cut_ = true;
+      client_.shutdown();
+    }
+
+   private:
+    std::mutex mutex_;
+    ros::ServiceClient client_;
+    bool is_cut_ = false;
+  };
+
+  std::shared_ptr<Link> link_;
   std::future<ServiceAnswer> answer_;
 };
 

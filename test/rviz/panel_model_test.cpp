@@ -156,7 +156,8 @@ TEST(PanelModel, ShowsTheGradeThatItIsTold) {
   status.grade_reason = "Nothing judges it.";
   status.next_step = "Capture.";
   panel.receive(status);
-  EXPECT_EQ(panel.grade(), "Grade: not_validated. Nothing judges it.");
+  EXPECT_EQ(panel.grade(), "Grade: not_validated.");
+  EXPECT_EQ(panel.gradeReason(), "Nothing judges it.");
   EXPECT_EQ(panel.nextStep(), "Capture.");
 }
 

@@ -115,18 +115,18 @@ TEST_F(PoseGuideTest, TellsOfAPlanToJudgeBy) {
 
 TEST_F(PoseGuideTest, LeavesItToASessionToLeadWhileOneWorks) {
   using actionlib_msgs::GoalStatus;
-  EXPECT_FALSE(guide_.sessionLeads());
+  EXPECT_EQ(guide_.bench(), Bench::kFree);
   actionlib_msgs::GoalStatusArray goals;
   goals.status_list.resize(2);
   goals.status_list[0].status = GoalStatus::ABORTED;
   for (const auto status : {GoalStatus::PENDING, GoalStatus::ACTIVE, GoalStatus::PREEMPTING}) {
     goals.status_list[1].status = status;
     guide_.receive(goals);
-    EXPECT_TRUE(guide_.sessionLeads());
+    EXPECT_EQ(guide_.bench(), Bench::kInSession);
   }
   goals.status_list[1].status = GoalStatus::PREEMPTED;
   guide_.receive(goals);
-  EXPECT_FALSE(guide_.sessionLeads());
+  EXPECT_EQ(guide_.bench(), Bench::kFree);
 }
 
 TEST_F(PoseGuideTest, MeetsAPoseAsNearAsTheNodeSays) {

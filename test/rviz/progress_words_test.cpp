@@ -43,6 +43,26 @@ TEST(ProgressWords, TellWhatDisturbsUntilTheNextCapture) {
   EXPECT_EQ(words.text(), "Measuring without current …\nThe rotor moves.");
 }
 
+TEST(SessionWords, TellPoseStageAndTheWayOfAHand) {
+  msg::MeasurementProgress progress;
+  progress.stage = msg::MeasurementProgress::PLANNING;
+  EXPECT_EQ(sessionInWords(progress), "A guided session leads. Planning …");
+  progress.stage = msg::MeasurementProgress::TURNING;
+  progress.pose = 3;
+  progress.poses = 8;
+  progress.joint_names = {"roll", "pitch", "yaw"};
+  progress.way = {0.2, 0.01, -0.1};
+  progress.tolerance = 0.05;
+  EXPECT_EQ(sessionInWords(progress),
+            "A guided session leads, pose 3 of 8. Turn roll by +11.5°, yaw by −5.7°.");
+  progress.way = {0.02, 0.01, -0.01};
+  progress.held_out = 1;
+  progress.stage = msg::MeasurementProgress::CAPTURING;
+  progress.coils = {5};
+  EXPECT_EQ(sessionInWords(progress),
+            "A guided session leads, pose 3 of 8, held out. Measuring with coil 5 …");
+}
+
 msg::ExciteFeedback excited(std::int32_t coil, bool carries, std::vector<double> measured) {
   msg::ExciteFeedback feedback;
   feedback.progress.stage = msg::MeasurementProgress::EXCITING;

@@ -28,7 +28,7 @@ TEST(RevisionLines, TellErrorsInTheUnitsOfTheOtherTables) {
   joint.samples_used = 40;
   msg::Revision refined = joint;
   refined.error_unit = "1";
-  const std::vector<RevisionLine> lines = revisionLines({joint, refined});
+  const std::vector<RevisionLine> lines = revisionLines({joint, refined}, 7);
   EXPECT_EQ(lines[1].error, "50 → 2 mrad, 40 samples");
   EXPECT_EQ(lines[0].error, "0.05 → 0.002, 40 samples");
   EXPECT_EQ(lines[0].date, "2026-03-01 10:20:30");
@@ -37,8 +37,8 @@ TEST(RevisionLines, TellErrorsInTheUnitsOfTheOtherTables) {
 TEST(RevisionLines, BeginWithTheNewestAndNameOtherSessions) {
   msg::Revision old = revision(2, false);
   old.drift = "furthest";
-  const std::vector<RevisionLine> lines = revisionLines({old, revision(0, true)});
-  EXPECT_EQ(lines[0].name, "0");
+  const std::vector<RevisionLine> lines = revisionLines({old, revision(2, true)}, 2);
+  EXPECT_EQ(lines[0].name, "2, in force");
   EXPECT_TRUE(lines[0].restorable);
   EXPECT_EQ(lines[0].error, "");
   EXPECT_EQ(lines[1].name, "unit-7_march 2");
