@@ -357,16 +357,17 @@ class Drawing {
   void addLegend() {
     Marker legend = emptyMarker(scene_.frames.stator, "legend", 0, kInk);
     const std::string times = "x " + shortNumber(scene_.magnification);
-    drawText(legend,
-             (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
-             "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
-             "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
-             "its error " +
-                 times + "; violet cone: 1 sigma " + times + "; P: poles, C: coils" +
-                 (scene_.nominal.has_joints ? "; ring: gimbal of the joints, about J1, J2, J3" : "") +
-                 "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
-                 "or are held out",
-             kLegendHeight);
+    drawText(
+        legend,
+        (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
+        "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
+        "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
+        "its error " +
+            times + "; violet cone: 1 sigma " + times + "; P: poles, C: coils" +
+            (scene_.nominal.has_joints ? "; ring: gimbal of the joints, about J1, J2, J3" : "") +
+            "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
+            "or are held out",
+        kLegendHeight);
     array_.markers.push_back(legend);
   }
 
