@@ -140,6 +140,8 @@ class SessionEngine(LabCase):
             second.send_goal(goal)
             result = self.result(second, GoalStatus.REJECTED)
             self.assertIn("is at it, by the action session: cancel that, or wait for its end.", result.message)
+            # A link to an engine that ends later would be taken for one to the next.
+            second.action_client.stop()
 
     def check_feedback(self, progress):
         self.assertEqual(progress.joint_names, ["joint_1", "joint_2", "joint_3"])
