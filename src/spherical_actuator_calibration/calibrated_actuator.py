@@ -9,6 +9,7 @@ thousand times a second. SI units; torques in the rotor frame; joint angles are 
 asked at the unit quaternion that the tracker measures, in their place, and not for its orientation.
 """
 
+import contextlib
 import os
 import subprocess
 import typing
@@ -16,6 +17,7 @@ import typing
 from .programs import program as program_path
 
 PROGRAM = "actuator_model"
+PATIENCE = 2.0  # [s] for it to end by itself
 
 
 class Orientation(typing.NamedTuple):
@@ -38,7 +40,7 @@ class Currents(typing.NamedTuple):
 
 
 class CalibratedActuator:
-    """Not for several threads at a time."""
+    """Not for several threads at a time. Ctrl-C leaves it usable, unless it came in the middle of a question."""
 
     def __init__(self, description, program=None):
         """`program`: path of actuator_model, where ROS does not know the package. Raises ValueError with what is wrong
@@ -50,6 +52,9 @@ class CalibratedActuator:
             stderr=subprocess.PIPE,
             text=True,
             bufsize=1,
+            # Ctrl-C reaches all of a terminal's session; who catches it may have a last current to ask for. The end of
+            # its standard input ends the program, also where this one is killed.
+            start_new_session=True,
         )
         words = self._process.stdout.readline().split()
         if not words:
@@ -60,9 +65,16 @@ class CalibratedActuator:
         self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
 
     def close(self):
+        """Ends the program; what is asked later raises RuntimeError."""
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
-            pipe.close()
-        self._process.wait()
+            # What could not be written any more is flushed once more.
+            with contextlib.suppress(OSError):
+                pipe.close()
+        try:
+            self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
 
     def __enter__(self):
         return self
@@ -72,14 +84,27 @@ class CalibratedActuator:
 
     def _ask(self, question, *numbers):
         words = [question, *(repr(float(number)) for group in numbers for number in group)]
-        self._process.stdin.write(" ".join(words) + "\n")
-        self._process.stdin.flush()
-        answer = self._process.stdout.readline()
+        answer = self._answer(" ".join(words) + "\n")
         if not answer:
             raise RuntimeError(f"{PROGRAM} has ended")
         if answer.startswith("error: "):
             raise ValueError(answer[len("error: ") :].strip())
         return answer.split()
+
+    def _answer(self, line):
+        """Empty where there is none any more."""
+        if self._process.stdin.closed:
+            return ""
+        try:
+            self._process.stdin.write(line)
+            self._process.stdin.flush()
+            return self._process.stdout.readline()
+        except OSError:
+            return ""
+        except BaseException:
+            # What is left of this answer would be taken for that to the next question.
+            self.close()
+            raise
 
     def orientation(self, joints):
         """At joint readings [rad]."""

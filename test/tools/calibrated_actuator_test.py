@@ -3,15 +3,21 @@
 
 import csv
 import os
+import pathlib
+import signal
 import subprocess
+import sys
 import tempfile
+import time
 import unittest
+from unittest import mock
 
 from spherical_actuator_calibration.calibrated_actuator import CalibratedActuator
 
 PROGRAMS = os.environ["PROGRAMS"]
 SOURCE = os.environ["SOURCE"]
 NOMINAL = os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml")
+PATIENCE = 30.0  # [s]
 JOINTS, TORQUE = [0.1, -0.2, 0.7], [0.05, -0.03, 0.04]
 
 
@@ -56,6 +62,72 @@ class Asked(unittest.TestCase):
             self.assertAlmostEqual(sum(q * q for q in actuator.orientation(JOINTS).quaternion_xyzw), 1.0, 12)
         with self.assertRaisesRegex(ValueError, "no_such.yaml"):
             opened("no_such.yaml")
+
+
+def children(process):
+    """Numbers of the processes that it started and has not reaped."""
+    return pathlib.Path(f"/proc/{process}/task/{process}/children").read_text(encoding="utf-8").split()
+
+
+class Interrupted(unittest.TestCase):
+    # In a session of its own, as that of a terminal, whose Ctrl-C reaches all of its foreground.
+    PROGRAM = (
+        "import signal, sys\n"
+        "from spherical_actuator_calibration.calibrated_actuator import CalibratedActuator\n"
+        "with CalibratedActuator(*sys.argv[1:]) as actuator:\n"
+        "    try:\n"
+        "        print('ready', flush=True)\n"
+        "        signal.pause()\n"
+        "    except KeyboardInterrupt:\n"
+        "        print(actuator.currents([0.05, -0.03, 0.04], [0.1, -0.2, 0.7]).outcome)\n"
+    )
+
+    def started(self):
+        command = [sys.executable, "-c", self.PROGRAM, NOMINAL, os.path.join(PROGRAMS, "actuator_model")]
+        process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        return process
+
+    def test_who_catches_the_signal_goes_on_asking(self):
+        process = self.started()
+        os.killpg(process.pid, signal.SIGINT)
+        out, errors = process.communicate(timeout=PATIENCE)
+        self.assertEqual((out, errors, process.returncode), ("reached\n", "", 0))
+
+    def test_the_program_does_not_outlive_who_is_killed(self):
+        process = self.started()
+        (child,) = children(process.pid)
+        process.kill()
+        until = time.monotonic() + PATIENCE
+        while os.path.exists(f"/proc/{child}/exe") and time.monotonic() < until:
+            time.sleep(0.01)
+        self.assertFalse(os.path.exists(f"/proc/{child}/exe"))
+
+    def test_where_the_program_is_dead_every_question_says_so(self):
+        before = children(os.getpid())
+        with opened(NOMINAL) as actuator:
+            (child,) = set(children(os.getpid())) - set(before)
+            os.kill(int(child), signal.SIGKILL)
+            for _ in range(3):
+                with self.assertRaisesRegex(RuntimeError, "actuator_model has ended"):
+                    actuator.currents(TORQUE, JOINTS)
+        with self.assertRaisesRegex(RuntimeError, "actuator_model has ended"):
+            actuator.orientation(JOINTS)
+        self.assertEqual(children(os.getpid()), before)
+
+    def test_no_answer_is_taken_for_that_to_another_question(self):
+        with opened(NOMINAL) as actuator:
+            with mock.patch.object(actuator, "_process", wraps=actuator._process) as process:  # pylint: disable=protected-access
+                process.stdin.closed = False
+                process.stdout.readline.side_effect = KeyboardInterrupt
+                with self.assertRaises(KeyboardInterrupt):
+                    actuator.torque(JOINTS, [0.0] * actuator.coils)
+            with self.assertRaisesRegex(RuntimeError, "actuator_model has ended"):
+                actuator.orientation(JOINTS)
 
 
 if __name__ == "__main__":
