@@ -127,6 +127,7 @@ void initializeRos(int argc, char** argv) {
             "register_frames",
             ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
   handleTerminationSignals();
+  endStartAfterSignal();
 }
 
 CalibratedDescription describedActuator(const std::string& ns) {
@@ -139,6 +140,7 @@ std::vector<TrackedPose> takePosesLive(const CalibratedDescription& description,
   ros::NodeHandle node(options.ns);
   LivePoses poses(description, config, options);
   poses.subscribe(node);
+  endStart();
   std::printf(
       "Turn the rotor, by hand or by coils, and let it rest for %.1f s in each of %zu poses; "
       "Ctrl-C ends with those that are taken.\n",

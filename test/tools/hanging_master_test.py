@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A coil driver that starts obeys signals, whichever of its requests the master does not answer any more."""
+"""What starts obeys signals, whichever of its requests the master does not answer any more, and where there is none."""
 
 import os
 import pathlib
@@ -14,11 +14,16 @@ import xmlrpc.server
 import yaml
 from rosmaster.master_api import ROSMasterHandler
 
-PROGRAM = pathlib.Path(os.environ["PROGRAMS"]) / "coil_driver"
+PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
 CONFIG = pathlib.Path(os.environ["SOURCE"]) / "config"
+NOWHERE = "http://127.0.0.1:1"  # where no master listens
 PATIENCE = 60.0  # [s]
 LAST = ("registerSubscriber", "/coil_command")  # of the start: the control loop runs from there on
 NEVER = 10**6
+
+
+def environment(master):
+    return {**os.environ, "ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1"}
 
 
 class Server(socketserver.ThreadingMixIn, xmlrpc.server.SimpleXMLRPCServer):
@@ -73,8 +78,8 @@ class Trial:
     def __init__(self, hangs_at):
         self.master = Master(hangs_at)
         self.driver = subprocess.Popen(
-            [PROGRAM],
-            env={**os.environ, "ROS_MASTER_URI": self.master.uri, "ROS_IP": "127.0.0.1"},
+            [PROGRAMS / "coil_driver"],
+            env=environment(self.master.uri),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -108,6 +113,29 @@ class HangingMaster(unittest.TestCase):
             trial.signal(trial.master.hangs)
         until = time.monotonic() + PATIENCE
         self.assertEqual([request for trial, request in zip(trials, requests) if not trial.ends(until)], [])
+
+class NoMaster(unittest.TestCase):
+    def register_frames(self, *options):
+        """Once it has told that it waits."""
+        process = subprocess.Popen(
+            [PROGRAMS / "register_frames", *options],
+            env=environment(NOWHERE),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        self.assertIn("Failed to contact master", process.stderr.readline())
+        return process
+
+    def test_who_takes_poses_live_ends_at_a_signal(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for options in ((), ("--actuator", CONFIG / "pm_spherical_8x24.yaml")):
+                with self.subTest(signal=number, options=options):
+                    process = self.register_frames(*options)
+                    process.send_signal(number)
+                    self.assertEqual(process.wait(PATIENCE), 1)
 
 
 if __name__ == "__main__":

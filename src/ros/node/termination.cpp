@@ -59,14 +59,6 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-// The time of a signal that came before ends; the time that endWithin() gives goes on.
-void endStart() {
-  if (g_is_starting != 0) {
-    g_is_starting = 0;
-    ::alarm(0);
-  }
-}
-
 // Memory may be what is wanting: nothing here asks for any.
 [[noreturn]] void endInOrder() {
   constexpr char kWords[] = "An exception that nobody catches: the node ends.\n";
@@ -99,6 +91,14 @@ void handleTerminationSignals() {
 
 void endStartAfterSignal() {
   g_is_starting = 1;
+}
+
+// The time of a signal that came before ends; the time that endWithin() gives goes on.
+void endStart() {
+  if (g_is_starting != 0) {
+    g_is_starting = 0;
+    ::alarm(0);
+  }
 }
 
 bool terminationRequested() {

@@ -13,6 +13,9 @@ void handleTerminationSignals();
 /// may be asking a master that never answers.
 void endStartAfterSignal();
 
+/// The start is over: before a loop of one's own that looks for signals.
+void endStart();
+
 /// True once one of these signals came.
 bool terminationRequested();
 
