@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "command_line.hpp"
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
@@ -18,7 +19,7 @@ namespace sac {
 namespace {
 
 constexpr char kIntroduction[] =
-    "Usage: actuator_model --actuator CALIBRATED.yaml\n\n"
+    "Usage: actuator_model --actuator CALIBRATED.yaml [--describe]\n\n"
     "Answers questions about a calibrated actuator, a line for each line of the standard input;\n"
     "other programs ask it through a pipe, those in Python by the module calibrated_actuator.\n"
     "  orientation q1 q2 q3          -> qx qy qz qw stddev supported\n"
@@ -30,6 +31,9 @@ constexpr char kIntroduction[] =
     "All are in rad, A and N.m, torques in the rotor frame; outcome is reached, limited or\n"
     "singular. What cannot be "
     "answered is \"error: the reason\".\n"
+    "With --describe it answers none, and prints the description as recordings and session "
+    "databases\n"
+    "hold it: a table of the torque curve is in it.\n"
     "Exit status: 0 at the end of the input; 2 bad usage or unreadable description.\n\n";
 
 /// Numbers of one question.
@@ -155,6 +159,10 @@ bool nextLine(std::string& line) {
   return !line.empty() || std::cin.good();
 }
 
+void printDescription(const std::string& path) {
+  std::cout << renderDescription(loadDescription(path), path);
+}
+
 void serve(const std::string& path) {
   const CalibratedActuator actuator = CalibratedActuator::load(path);
   std::cout << "ready " << (actuator.hasTorqueModel() ? actuator.coils() : 0) << " "
@@ -180,8 +188,10 @@ int main(int argc, char** argv) {
     std::string path;
     sac::CommandLine line(sac::kIntroduction);
     line.addRequired("actuator", path, "YAML", "description, usually a calibrated one");
+    bool is_described = false;
+    line.addSwitch("describe", is_described, "print the description, and answer no questions");
     if (line.parse(argc, argv, std::cout)) {
-      sac::serve(path);
+      is_described ? sac::printDescription(path) : sac::serve(path);
     }
     return sac::kToolSuccess;
   });

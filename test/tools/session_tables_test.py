@@ -171,6 +171,47 @@ class ImportOfSamples(Folder):
         self.write("actuator.yaml", "actuator: [1\n")
         self.refused("actuator.yaml:2: this is not valid YAML", path)
 
+    def test_the_table_of_the_torque_curve_is_in_the_description(self):
+        self.description(2)
+        (self.folder / "curves").mkdir()
+        points = [(float(k), 0.01 * k * (30.0 - k)) for k in range(31)]
+        self.write("curves/curve.csv", "".join(f"{angle!r},{torque!r}\n" for angle, torque in points))
+        path = self.folder / "actuator.yaml"
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content["actuator"]["torque_curve"] = {"angle_unit": "deg", "table": "curves/curve.csv"}
+        self.write(path.name, yaml.safe_dump(content))
+        table = self.write("s.csv", "joint_1,joint_2,joint_3\n1,2,3\n")
+        result = self.import_csv(table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (text,) = self.messages("calibration_description")
+        curve = yaml.safe_load(text.data)["actuator"]["torque_curve"]["table"]
+        np.testing.assert_allclose(curve["torques"], [torque for _, torque in points], rtol=1e-15)
+        (self.folder / "out.bag").unlink()
+        (self.folder / "curves" / "curve.csv").unlink()
+        self.refused("curve.csv: cannot be read", table)
+
+    def test_a_description_that_calibrate_bag_would_refuse_is_refused(self):
+        table = self.write("s.csv", "joint_1,joint_2,joint_3\n1,2,3\n")
+        path = self.description(2)
+        plain = path.read_text(encoding="utf-8")
+        for serial in ("007", "1.10"):
+            self.write(path.name, plain.replace("unit-7", serial))
+            self.refused(f'actuator.serial: "{serial}" is not a string', table)
+        # A number of YAML 1.1 alone, and a text for the core.
+        for serial in ('"007"', "1_000"):
+            self.write(path.name, plain.replace("unit-7", serial))
+            self.assertEqual(self.import_csv("--force", table).returncode, 0)
+            self.assertEqual(self.messages("parameters")[0].serial, serial.strip('"'))
+        (self.folder / "out.bag").unlink()
+        self.write(path.name, plain.replace("name: positioner", "name: 42"))
+        self.refused('actuator.name: "42" is not a string', table)
+        self.write(path.name, plain.replace("polarity: 1", "polarity: 3"))
+        self.refused("actuator.poles[0].polarity", table)
+        self.write(path.name, plain.replace("name: axis_0", "name: [a]"))
+        self.refused("actuator.joints[0].name", table)
+        self.write(path.name, "- 1\n")
+        self.refused(path.name, table)
+
 
 class ImportOfStreams(Folder):
     """A model of a session in the formats of three neighbours, by the file of the example."""

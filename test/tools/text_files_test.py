@@ -201,7 +201,9 @@ class Programs(Folder):
     def test_nested_documents(self):
         for name in ("deep_lists.yaml", "deep_flow.yaml"):
             (self.folder / name).write_text(HOSTILE[name], encoding="utf-8")
-            self.expect_refusal("import_csv", "--actuator", name, "--output", "o.bag", "s.csv", part="64 deep")
+            self.expect_refusal("import_csv", "--actuator", name, "--output", "o.bag", "s.csv", part=name)
+            arguments = ("--actuator", ACTUATOR, "--output", "o.bag", "--streams", name)
+            self.expect_refusal("import_csv", *arguments, part="64 deep")
             self.expect_refusal("render_report", name, "o.html", part="64 deep")
         self.expect_refusal("plot_study", "deep_lists.yaml", "o.png", part="64 deep")
 

@@ -1,6 +1,7 @@
 """Recordings that calibrate_bag reads, made of tables."""
 
 import os
+import subprocess
 
 import genpy
 import rosbag
@@ -9,16 +10,36 @@ from std_msgs.msg import String
 from spherical_actuator_calibration.msg import ActuatorParameters
 from spherical_actuator_calibration.text_files import (
     LARGEST_CONFIGURATION,
-    LARGEST_DESCRIPTION,
     parsed_yaml,
-    read_text,
     read_yaml,
     require_separate_files,
 )
 
+from ..programs import program
 from .sample_messages import SPACING, SampleTable
 from .stream_messages import streams_of
 from .table import TableError
+
+
+DESCRIBER = "actuator_model"
+
+
+def described(path):
+    """Text of a description as the calibration node records it: of what the core accepts, with the table of its torque
+    curve in it. Raises TableError in the words of the core."""
+    said = subprocess.run(
+        [program(DESCRIBER), f"--actuator={path}", "--describe"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        errors="replace",
+        check=False,
+    )
+    if said.returncode != 0:
+        words = said.stderr.strip() or f"{DESCRIBER} ended with status {said.returncode}."
+        raise TableError(words[len(DESCRIBER) + 2 :] if words.startswith(f"{DESCRIBER}: ") else words)
+    return said.stdout
 
 
 class Recording:
@@ -28,17 +49,8 @@ class Recording:
         self.path = path
         self._active = path + ".active"
         self._prefix = "/" + ns.strip("/") + "/" if ns.strip("/") else "/"
-        self._text = read_text(actuator_path, LARGEST_DESCRIPTION)
-        content = parsed_yaml(self._text, actuator_path)
-        if not isinstance(content, dict) or not isinstance(content.get("actuator"), dict):
-            raise TableError(f"{actuator_path}: it is no description: the key actuator is missing.")
-        self.actuator = content["actuator"]
-        joints = self.actuator.get("joints")
-        are_maps = isinstance(joints, list) and all(isinstance(joint, dict) for joint in joints)
-        if not isinstance(self.actuator.get("name"), str) or not (are_maps and all("name" in joint for joint in joints)):
-            raise TableError(f"{actuator_path}: it is no description: actuator and joints need names.")
-        if not isinstance(self.actuator.get("coils", []), list):
-            raise TableError(f"{actuator_path}: it is no description: coils is no list.")
+        self._text = described(actuator_path)
+        self.actuator = parsed_yaml(self._text, actuator_path)["actuator"]
         self._bag = None
 
     def __enter__(self):
@@ -65,15 +77,12 @@ class Recording:
     def describe(self, stamp):
         """Says whose recording it is, and by which description."""
         # Of which only the unit is read.
-        unit = ActuatorParameters(actuator=self.actuator["name"], serial=str(self.actuator.get("serial", "")))
+        unit = ActuatorParameters(actuator=self.actuator["name"], serial=self.actuator.get("serial", ""))
         unit.header.stamp = stamp
         unit.header.frame_id = "stator"
         unit.source = "nominal"
         self.write("parameters", stamp, unit)
-        # One that names another file would say nothing without it.
-        curve = self.actuator.get("torque_curve")
-        if not isinstance(curve, dict) or not isinstance(curve.get("table"), str):
-            self.write("calibration_description", stamp, String(data=self._text))
+        self.write("calibration_description", stamp, String(data=self._text))
 
 
 def record_samples(recording, path):
