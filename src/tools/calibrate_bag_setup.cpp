@@ -5,6 +5,18 @@
 #include "spherical_actuator_calibration/ros/recording/recorded_setup.hpp"
 
 namespace sac {
+namespace {
+
+/// What is off by manufacture makes no drawing "not valid any more".
+void requireCalibrated(const CalibrateBagSetup& setup, const CalibrateBagOptions& options) {
+  if (!setup.start.calibration) {
+    throw ConfigError("--check judges a calibrated description, and " +
+                      options.actuator_path.value_or("the recorded description") +
+                      " is a drawing: give by --actuator what a calibration has written.");
+  }
+}
+
+}  // namespace
 
 CalibrateBagSetup readSetup(const CalibrateBagOptions& options, const OpenRecordings& recordings) {
   const RecordedSetup recorded =
@@ -23,6 +35,9 @@ CalibrateBagSetup readSetup(const CalibrateBagOptions& options, const OpenRecord
   } else {
     throw ConfigError("--actuator is needed: the recordings hold no description (topic " +
                       topicPrefix(options.ns) + kDescriptionTopic + ").");
+  }
+  if (options.check) {
+    requireCalibrated(setup, options);
   }
   if (options.config_path) {
     setup.config = loadCalibrationConfig(*options.config_path);

@@ -1,10 +1,7 @@
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -58,13 +55,15 @@ class CalibrateBag : public testing::Test {
     shared = nullptr;
   }
 
-  static void record(const std::string& bag, const SimulationOptions& simulation) {
+  static void record(const std::string& bag,
+                     const SimulationOptions& simulation,
+                     const CalibratedDescription& described = {nominalUnit()}) {
     SessionPlanOptions plan_options;
     plan_options.validation_poses = 0;
     SessionBagOptions options;
     options.registration = simulation.registration;
     options.begin = simulation.begin;
-    SessionBagWriter writer(bag, {nominalUnit()}, options);
+    SessionBagWriter writer(bag, described, options);
     simulateSession(trueUnit(), planSession(nominalUnit(), plan_options, 1), simulation, writer);
     writer.close();
   }
@@ -217,9 +216,10 @@ TEST_F(CalibrateBag, RealPositionerMissesTheAxisThatItHasNot) {
 }
 
 TEST_F(CalibrateBag, TellsWhatOfTheConfigurationHasNoEffectOnSamples) {
-  const std::string config = path("config.yaml");
-  std::ofstream(config) << "dwell: {rest_window: 0.4}\nmeans: {smallest_count: 12}\n"
-                           "currents: {threshold: 0.06}\n";
+  const std::string config =
+      folder_.write("config.yaml",
+                    "dwell: {rest_window: 0.4}\nmeans: {smallest_count: 12}\n"
+                    "currents: {threshold: 0.06}\n");
   const std::string options = "--config " + config + " --output " + output() + " --force ";
   const std::string idle = "dwell.rest_window, means.smallest_count of the configuration";
   const Outcome samples =
@@ -309,6 +309,15 @@ TEST_F(CalibrateBag, ValidatesWithHeldOutSamples) {
   EXPECT_LT(record.validation->torque_rms.value(), 1e-2);
 }
 
+TEST_F(CalibrateBag, JudgesACalibrationAndNoDrawing) {
+  expectRefusal("--check " + session(), "the recorded description is a drawing");
+  expectRefusal("--check --actuator " + actuator() + " " + session(), actuator() + " is a drawing");
+  ASSERT_EQ(calibrate("").status, 0);
+  EXPECT_EQ(run("--check --actuator " + output() + " " + session()).status, 0);
+  record(path("again.bag"), {}, loadDescription(output()));
+  EXPECT_EQ(run("--check " + path("again.bag")).status, 0);
+}
+
 TEST_F(CalibrateBag, TellsWhenNoSampleWasFound) {
   const std::string config = folder_.write("config.yaml", "means: {smallest_duration: 60.0}\n");
   const Outcome outcome = calibrate("--config " + config);
@@ -331,20 +340,11 @@ TEST_F(CalibrateBag, ReplacesFilesOnlyWhenForced) {
 TEST_F(CalibrateBag, HelpTellsEveryOption) {
   const Outcome outcome = run("--help");
   EXPECT_EQ(outcome.status, 0);
-  for (const std::string option : {"--actuator",
-                                   "--config",
-                                   "--ns",
-                                   "--from",
-                                   "--cycles",
-                                   "--output",
-                                   "--urdf",
-                                   "--urdf-template",
-                                   "--report",
-                                   "--truth",
-                                   "--date",
-                                   "--force",
-                                   "Exit status"}) {
-    EXPECT_NE(outcome.output.find(option), std::string::npos) << option;
+  std::istringstream words(
+      "--actuator --check --config --ns --from --cycles --output --urdf --urdf-template --report "
+      "--truth --date --force Exit");
+  for (std::string word; words >> word;) {
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
   }
 }
 
