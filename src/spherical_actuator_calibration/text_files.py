@@ -236,6 +236,13 @@ def require_writable(path):
         raise _unwritable(path, error) from error
 
 
+def require_new_file(path, force):
+    """The same, and where there is anything that `force` does not let it replace."""
+    if os.path.lexists(path) and not force:
+        raise TextFileError(f"{path}: the file exists already; choose another name or give --force.")
+    require_writable(path)
+
+
 def write_text(path, text):
     """Replaces a file by text in UTF-8: it has its whole content or, whatever happens, the one of before. Raises
     TextFileError."""

@@ -1,5 +1,6 @@
 """Recordings that calibrate_bag reads, made of tables."""
 
+import contextlib
 import os
 import subprocess
 
@@ -10,6 +11,7 @@ from std_msgs.msg import String
 from spherical_actuator_calibration.msg import ActuatorParameters
 from spherical_actuator_calibration.text_files import (
     LARGEST_CONFIGURATION,
+    other_kind,
     parsed_yaml,
     read_yaml,
     require_separate_files,
@@ -54,18 +56,34 @@ class Recording:
         self._bag = None
 
     def __enter__(self):
+        kind = other_kind(self._active, follow=False)
+        if kind:
+            raise TableError(f"{self._active}: is {kind}, not a file; remove it.")
         try:
             self._bag = rosbag.Bag(self._active, "w")
         except OSError as error:
-            raise TableError(f"{self.path}: cannot be written: {error.strerror}.") from error
+            raise self._unwritable(error) from error
         return self
 
-    def __exit__(self, kind, _error, _trace):
-        self._bag.close()
-        if kind is None:
-            os.replace(self._active, self.path)
-        else:
+    def __exit__(self, _kind, error, _trace):
+        try:
+            if error is None:
+                self._bag.close()
+                os.replace(self._active, self.path)
+        except OSError as failure:
+            error = failure
+        if error is None:
+            return
+        # On a full disk its end cannot be written either.
+        with contextlib.suppress(OSError):
+            self._bag.close()
+        with contextlib.suppress(OSError):
             os.unlink(self._active)
+        if isinstance(error, OSError):
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error):
+        return TableError(f"{self.path}: cannot be written: {error.strerror or error}.")
 
     def files(self):
         """That it writes, and by which option."""

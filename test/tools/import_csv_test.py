@@ -1,0 +1,47 @@
+#!/usr/bin/python3
+"""What import_csv refuses, and that it leaves nothing behind."""
+
+import os
+import unittest
+
+from session_tables_case import SOURCE, Folder, run
+
+
+class Output(Folder):
+    def setUp(self):
+        super().setUp()
+        self.description(0)
+        self.table = self.write("s.csv", "\n".join(["joint_1,joint_2,joint_3"] + ["1,2,3"] * 1000) + "\n")
+        self.out = self.folder / "out.bag"
+        self.command = [SOURCE / "scripts/import_csv", "--actuator", self.folder / "actuator.yaml", self.table]
+
+    def refuses(self, output, words, *options):
+        """As a program, which can be given up on."""
+        said = run("timeout", "60", *self.command, "--output", output, *options)
+        self.assertEqual((said.returncode, said.stderr), (2, f"import_csv: {words}\n"))
+
+    def test_on_a_full_disk_the_file_is_named_and_nothing_left(self):
+        said = run("bash", "-c", 'ulimit -f 8 && exec "$@"', "bash", *self.command, "--output", self.out)
+        words = f"import_csv: {self.out}: cannot be written: File too large.\n"
+        self.assertEqual((said.returncode, said.stderr), (2, words))
+        self.assertEqual(list(self.folder.glob("*.bag*")), [])
+
+    def test_what_is_no_file_is_not_replaced(self):
+        pipe, link = self.folder / "pipe", self.folder / "link"
+        os.mkfifo(pipe)
+        link.symlink_to("nowhere")
+        for target in (self.folder, pipe):
+            self.refuses(target, f"{target}: this is not a regular file; choose another name.", "--force")
+        self.refuses(link, f"{link}: the file exists already; choose another name or give --force.")
+        missing = self.folder / "no" / "out.bag"
+        self.refuses(missing, f"{missing}: cannot be written: No such file or directory.")
+        active = self.folder / "out.bag.active"
+        active.symlink_to("precious")
+        self.refuses(self.out, f"{active}: is a symbolic link, not a file; remove it.")
+        active.unlink()
+        os.mkfifo(active)
+        self.refuses(self.out, f"{active}: is a FIFO, not a file; remove it.")
+
+
+if __name__ == "__main__":
+    unittest.main()
