@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 """What import_csv refuses, and that it leaves nothing behind."""
 
+import math
 import os
 import unittest
 
+import yaml
 from session_tables_case import SOURCE, Folder, run
 
 
@@ -41,6 +43,32 @@ class Output(Folder):
         active.unlink()
         os.mkfifo(active)
         self.refuses(self.out, f"{active}: is a FIFO, not a file; remove it.")
+
+
+class Streams(Folder):
+    """Of an entry or a file that holds something else than was expected."""
+
+    def expect(self, part, stamp="2", **changes):
+        self.description(0)
+        self.write("joints.csv", f"t,a,b,c\n1,1,2,3\n{stamp},1,2,3\n")
+        entry = {"file": "joints.csv", "stream": "joint_states", "time": {"column": "t"}, "values": ["a", "b", "c"]}
+        entry.update(changes)
+        self.refused(part, "--streams", self.write("i.yaml", yaml.safe_dump({"streams": [entry]})))
+
+    def test_times_of_any_size(self):
+        place = "joints.csv:3: column 1 (t): "
+        for time in ("1e9999999", "1e999999999999999999999", "nan", "x"):
+            self.expect(f'{place}"{time}" is not a time.', time)
+        for time in ("1e400", "-1e400", "1e-9999999", "inf", "1e10", "0"):
+            self.expect("s is no stamp: they lie between 0 and 2^32 s", time)
+
+    def test_values_of_another_type(self):
+        for unit in (["rad"], {"rad": 1}, 1):
+            self.expect("i.yaml: streams[0].unit: it is one of rad, mrad, deg.", unit=unit)
+            self.expect("i.yaml: streams[0].time.unit: it is one of s, ms, us, ns.", time={"column": "t", "unit": unit})
+        self.expect("i.yaml: streams[0].time.offset: it is a number", time={"column": "t", "offset": math.nan})
+        orientation = {"stream": "measured_orientation", "values": ["a", "b", "c", "t"]}
+        self.expect("[0].rotor_marker: it is a list of 4 finite numbers", **orientation, rotor_marker=[0, 0, 0, math.inf])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Messages of the streams of other people's CSV files, as a YAML file describes them (doc/recordings.md)."""
 
 import decimal
+import math
 import os
 
 import genpy
@@ -9,6 +10,7 @@ from sensor_msgs.msg import JointState
 
 from spherical_actuator_calibration.msg import CoilCurrents
 
+from ..text_files import excerpt
 from ..unit_quaternion import normalised
 from .columns import UNITS
 from .sample_messages import LATEST, unit_quaternion
@@ -94,11 +96,11 @@ class Stream:
         if unknown or "column" not in time:
             self._fail("time", "it has the keys column, unit (s, ms, us or ns) and offset [s].")
         unit = time.get("unit", "s")
-        if unit not in UNITS["s"]:
+        if not isinstance(unit, str) or unit not in UNITS["s"]:
             self._fail("time.unit", f"it is one of {', '.join(UNITS['s'])}.")
         ticks = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}[unit]
         offset = time.get("offset", 0)
-        if not isinstance(offset, (int, float)) or isinstance(offset, bool) or abs(offset) > 2**32:
+        if not isinstance(offset, (int, float)) or isinstance(offset, bool) or not abs(offset) <= 2**32:
             self._fail("time.offset", "it is a number of seconds.")
         return self._table.column(self._name(time["column"], "time.column")), ticks, decimal.Decimal(str(offset)) * 10**9
 
@@ -114,15 +116,16 @@ class Stream:
         columns = [self._table.column(self._name(name, key)) for name in names]
         told = self._entry.get(unit_key)
         if told is not None:
-            if told not in UNITS[unit]:
+            if not isinstance(told, str) or told not in UNITS[unit]:
                 self._fail(unit_key, f"it is one of {', '.join(UNITS[unit])}.")
             return columns, [UNITS[unit][told]] * width
         return columns, [self._table.factor(column, unit) for column in columns]
 
     def _numbers(self, key, count, fallback=None):
         values = self._get(key, list, fallback)
-        if len(values) != count or not all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in values):
-            self._fail(key, f"it is a list of {count} numbers.")
+        are_numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in values)
+        if len(values) != count or not are_numbers:
+            self._fail(key, f"it is a list of {count} finite numbers.")
         return [float(value) for value in values]
 
     def _rotation(self, values, key):
@@ -134,12 +137,14 @@ class Stream:
     def _stamp(self, row):
         text = row.text(self._time)
         try:
-            ticks = int((decimal.Decimal(text) * self._time_factor + self._offset).to_integral_value())
-        except (decimal.InvalidOperation, ValueError, OverflowError):
-            row.fail(f'"{text[:40]}" is not a time.', self._time)
-        if not 0 < ticks <= LATEST:
-            row.fail(f"{ticks * 1e-9:g} s is no stamp: they lie between 0 and 2^32 s; mend it by time.offset.", self._time)
-        return genpy.Time(0, ticks)
+            ticks = (decimal.Decimal(text) * self._time_factor + self._offset).to_integral_value()
+            is_stamp = 0 < ticks <= LATEST
+        except ArithmeticError:  # of decimal: no number, none to compare, or one beyond its exponents
+            row.fail(f'"{excerpt(text, 40)}" is not a time.', self._time)
+        if not is_stamp:
+            seconds = float(ticks) * 1e-9
+            row.fail(f"{seconds:g} s is no stamp: they lie between 0 and 2^32 s; mend it by time.offset.", self._time)
+        return genpy.Time(0, int(ticks))
 
     def messages(self):
         """Stamp and message of each line; lines without values, of a tracker that sees nothing, are left out."""
