@@ -45,6 +45,38 @@ class Output(Folder):
         self.refuses(self.out, f"{active}: is a FIFO, not a file; remove it.")
 
 
+class Tables(Folder):
+    HEADINGS = "joint_1,joint_2,joint_3\n"
+
+    def setUp(self):
+        super().setUp()
+        self.description(0)
+
+    def angles(self, text):
+        result = self.import_csv("--force", self.write("s.csv", text))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return [tuple(sample.joint_position) for sample in self.messages("samples")]
+
+    def test_remarks_and_empty_lines_before_the_headings_are_left_out(self):
+        rows = "1,2,3\n4,5,6\n"
+        for before in ("# by hand\n", "\n\n# a, b, c\n,,\n", "#\n"):
+            self.assertEqual(self.angles(before + self.HEADINGS + rows), [(1, 2, 3), (4, 5, 6)])
+        # As numpy writes them.
+        self.assertEqual(self.angles("# " + self.HEADINGS + rows), [(1, 2, 3), (4, 5, 6)])
+        self.assertEqual(self.angles("# one remark, and\n# " + self.HEADINGS + rows), [(1, 2, 3), (4, 5, 6)])
+
+    def test_another_separator_is_named(self):
+        for separator, name in ((";", "semicolons"), ("\t", "tabs")):
+            text = (self.HEADINGS + "1,2,3\n").replace(",", separator)
+            (self.folder / "out.bag").unlink(missing_ok=True)
+            self.refused(f"s.csv:1: {name} separate the headings", self.write("s.csv", text))
+
+    def test_numbers_of_python_alone_are_none(self):
+        for text in ("1_0", "\u0661"):
+            self.refused(f'"{text}" is not a number.', self.write("s.csv", self.HEADINGS + f"1,2,{text}\n"))
+        self.refused("is not a whole number", self.write("s.csv", "id," + self.HEADINGS + "1_0,1,2,3\n"))
+
+
 class Streams(Folder):
     """Of an entry or a file that holds something else than was expected."""
 
@@ -57,7 +89,7 @@ class Streams(Folder):
 
     def test_times_of_any_size(self):
         place = "joints.csv:3: column 1 (t): "
-        for time in ("1e9999999", "1e999999999999999999999", "nan", "x"):
+        for time in ("1e9999999", "1e999999999999999999999", "nan", "1_0", "x"):
             self.expect(f'{place}"{time}" is not a time.', time)
         for time in ("1e400", "-1e400", "1e-9999999", "inf", "1e10", "0"):
             self.expect("s is no stamp: they lie between 0 and 2^32 s", time)

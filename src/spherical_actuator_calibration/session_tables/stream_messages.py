@@ -14,7 +14,7 @@ from ..text_files import excerpt
 from ..unit_quaternion import normalised
 from .columns import UNITS
 from .sample_messages import LATEST, unit_quaternion
-from .table import Table, TableError
+from .table import Table, TableError, parsed
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
 KEYS = {"file", "stream", "headings", "separator", "time", "values", "unit"}
@@ -137,9 +137,9 @@ class Stream:
     def _stamp(self, row):
         text = row.text(self._time)
         try:
-            ticks = (decimal.Decimal(text) * self._time_factor + self._offset).to_integral_value()
+            ticks = (parsed(text, decimal.Decimal) * self._time_factor + self._offset).to_integral_value()
             is_stamp = 0 < ticks <= LATEST
-        except ArithmeticError:  # of decimal: no number, none to compare, or one beyond its exponents
+        except (ArithmeticError, ValueError):  # of decimal: no number, none to compare, or one beyond its exponents
             row.fail(f'"{excerpt(text, 40)}" is not a time.', self._time)
         if not is_stamp:
             seconds = float(ticks) * 1e-9

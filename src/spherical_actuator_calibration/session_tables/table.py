@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import math
 
 from spherical_actuator_calibration.text_files import excerpt, read_bytes
@@ -10,6 +11,9 @@ from .columns import UNITS
 
 LARGEST = 1 << 30  # [bytes] of a file
 LONGEST_TEXT = 1 << 16  # [characters] of a cell
+
+
+SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
 class TableError(ValueError):
@@ -23,6 +27,21 @@ def named(heading):
         name, _, unit = text[:-1].rpartition("[")
         return name.strip(), unit.strip()
     return text, ""
+
+
+def parsed(text, kind):
+    """A number as programs write it: Python reads 1_000 and digits of other scripts, too. Raises what `kind` does, and
+    ValueError."""
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return kind(text)
+
+
+def _are_numbers(cells):
+    try:
+        return bool([parsed(cell.strip(), float) for cell in cells if cell.strip()])
+    except ValueError:
+        return False
 
 
 class Row:
@@ -51,7 +70,7 @@ class Row:
         """A finite number."""
         text = self.text(column)
         try:
-            value = float(text) * factor
+            value = parsed(text, float) * factor
         except ValueError:
             self.fail(f'"{excerpt(text, 40)}" is not a number.', column)
         if not math.isfinite(value):
@@ -62,24 +81,26 @@ class Row:
         """A whole number."""
         text = self.text(column)
         try:
-            value = int(text)
+            value = parsed(text, int)
         except ValueError:
             self.fail(f'"{excerpt(text, 40)}" is not a whole number.', column)
         if not smallest <= value <= largest:
-            self.fail(f"{value} is outside [{smallest}, {largest}].", column)
+            self.fail(f"{excerpt(value, 40)} is outside [{smallest}, {largest}].", column)
         return value
 
 
 class Table:
-    """A CSV file with a line of headings. `headings`: which line that is, from 1; what is before it is left out."""
+    """A CSV file with a line of headings. `headings`: which line that is, from 1, or the first after it that is neither
+    empty nor begins with #; what is before it is left out. Where numbers stand there, the line with # before them."""
 
     def __init__(self, path, headings=1, separator=","):
         self.path = path
-        self._lines = self._read(headings, separator)
+        self._lines = self._filled(self._read(headings, separator))
         self._first, self.titles = next(self._lines, (0, None))
         if not self.titles:
             raise TableError(f"{path}: there is no line {headings} with headings.")
         self.titles = [title.strip() or f"column {number}" for number, title in enumerate(self.titles, 1)]
+        self._require_separated(separator)
 
     def _read(self, headings, separator):
         text = read_bytes(self.path, LARGEST).decode("utf-8-sig", errors="replace")
@@ -95,14 +116,36 @@ class Table:
             if reader.line_num >= headings:
                 yield reader.line_num, cells
 
+    @staticmethod
+    def _filled(lines):
+        """The headings, then the lines after them; empty ones, and those that begin with #, are left out."""
+        remark, has_headings = None, False
+        for line, cells in lines:
+            if not any(cell.strip() for cell in cells):
+                continue
+            if cells[0].startswith("#"):
+                remark = line, [cells[0].lstrip("# "), *cells[1:]]
+                continue
+            if not has_headings and remark and len(remark[1]) == len(cells) and _are_numbers(cells):
+                yield remark
+            has_headings = True
+            yield line, cells
+
+    def _require_separated(self, separator):
+        for other, name in SEPARATORS.items():
+            if len(self.titles) == 1 and other != separator and other in self.titles[0]:
+                self.fail(
+                    f"{name} separate the headings: write commas in their place, or give streams the key "
+                    f"separator: {json.dumps(other)}."
+                )
+
     def rows(self):
-        """The lines after the headings; empty ones, and those that begin with #, are left out."""
+        """The lines after the headings."""
         for line, cells in self._lines:
-            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                row = Row(self, line, cells)
-                if len(cells) > len(self.titles):
-                    row.fail(f"{len(cells)} cells, but {len(self.titles)} headings.")
-                yield row
+            row = Row(self, line, cells)
+            if len(cells) > len(self.titles):
+                row.fail(f"{len(cells)} cells, but {len(self.titles)} headings.")
+            yield row
 
     def fail(self, sentence):
         """Raises TableError: file, line of the headings, sentence."""
