@@ -9,6 +9,8 @@ import subprocess
 import tempfile
 import unittest
 
+from hanging_master_test import NEVER, Master, environment
+
 PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
 ACTUATOR = pathlib.Path(os.environ["SOURCE"]) / "config/pm_spherical_8x24.yaml"
 PATIENCE = 60.0  # [s]
@@ -35,6 +37,32 @@ class ProgramsStart(unittest.TestCase):
                     self.assertIn(b"No ROS master answers", node.stdout.readline(), name)
                     node.send_signal(number)
                     self.assertEqual(node.wait(timeout=PATIENCE), 0, name)
+
+    def test_a_value_in_the_place_of_a_name_is_told(self):
+        command = [PROGRAMS / "publish_parameters", f"description:={ACTUATOR}"]
+        answer = subprocess.run(
+            command, env=self.without_master(), stderr=subprocess.PIPE, timeout=PATIENCE, text=True, check=False
+        )
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("Parameters begin with an underscore: _parameter:=value.", answer.stderr)
+        self.assertEqual(len(answer.stderr.splitlines()), 1)
+
+    def test_a_parameter_that_was_misspelt_in_an_earlier_call_is_told(self):
+        master = Master(NEVER)
+        self.addCleanup(master.close)
+        for parameter, key in (("descripton", None), ("description", "descripton")):
+            answer = subprocess.run(
+                [PROGRAMS / "publish_parameters", f"_{parameter}:={ACTUATOR}"],
+                env=environment(master.uri),
+                stderr=subprocess.PIPE,
+                timeout=PATIENCE,
+                text=True,
+                check=False,
+            )
+            self.assertEqual(answer.returncode, 1)
+            self.assertEqual("rosparam delete" in answer.stderr, key is not None, answer.stderr)
+        self.assertIn("descripton: the key is unknown here", answer.stderr)
+        self.assertIn("rosparam delete /publish_parameters/descripton", answer.stderr)
 
     def test_help_needs_no_master(self):
         for name in NODES:

@@ -1,16 +1,19 @@
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
 
 #include <ros/console.h>
+#include <ros/exception.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <ros/service_manager.h>
 
+#include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
 
 namespace sac {
@@ -54,6 +57,39 @@ void askForParametersOnce() {
   static_cast<void>(ros::param::getCached(ros::names::resolve("~diagnostic_period"), period));
 }
 
+// A name with a value in its place, such as description:=/a.yaml, renames something to no name.
+bool initializeRos(int argc, char** argv, const char* name) {
+  try {
+    ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+    return true;
+  } catch (const ros::Exception& error) {
+    std::fprintf(stderr,
+                 "%s: what an argument with := renames gets no valid name: %s. Parameters begin "
+                 "with an underscore: _parameter:=value.\n",
+                 name,
+                 printable(error.what()).c_str());
+    return false;
+  }
+}
+
+// Private parameters outlive the node that they were given to, those that were misspelt, too.
+// `message` is "namespace: key: sentence" where it is about one of them.
+std::string adviceOn(const std::string& message, const ros::NodeHandle& private_node) {
+  const std::string place = private_node.getNamespace() + ": ";
+  if (message.rfind(place, 0) != 0) {
+    return "";
+  }
+  const std::size_t end = message.find_first_of(":[", place.size());
+  std::string key = message.substr(place.size(), end - place.size());
+  std::replace(key.begin(), key.end(), '.', '/');
+  std::string reason;
+  if (key.empty() || !ros::names::validate(key, reason) || !private_node.hasParam(key)) {
+    return "";
+  }
+  return " It stays on the parameter server until it is taken away: rosparam delete " +
+         private_node.resolveName(key);
+}
+
 }  // namespace
 
 int runNode(int argc,
@@ -72,7 +108,9 @@ int runNode(int argc,
       return 0;
     }
   }
-  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  if (!initializeRos(argc, argv, name)) {
+    return 1;
+  }
   handleTerminationSignals();
   endStartAfterSignal();
   if (!waitForMaster()) {
@@ -86,7 +124,7 @@ int runNode(int argc,
   try {
     body(node, private_node);
   } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
+    ROS_FATAL_STREAM(error.what() << adviceOn(error.what(), private_node));
     return 1;
   }
   return 0;
