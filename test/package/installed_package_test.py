@@ -37,6 +37,15 @@ def build_examples(folder, target, *options):
     return folder / target
 
 
+class OtherPrefix(unittest.TestCase):
+    def test_is_refused_before_anything_is_installed(self):
+        other = BUILD / "test" / ".other_prefix"
+        refused = run(CMAKE, "--install", BUILD, "--prefix", other)
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn(f"-DCMAKE_INSTALL_PREFIX={other}", " ".join(refused.stderr.split()))
+        self.assertFalse(other.exists())
+
+
 class Headers(unittest.TestCase):
     def setUp(self):
         self.folder = PREFIX / "include" / PACKAGE
