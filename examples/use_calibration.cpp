@@ -2,14 +2,34 @@
 //   use_calibration CALIBRATED.yaml q1 q2 q3
 // Prints where the rotor is at these joint readings [rad], currents that turn it about its x axis,
 // and what torque they make, each with its standard deviation.
-// Exit status: 0 done; 2 bad usage or unreadable description.
+// Exit status: 0 done; 2 bad usage or unreadable description or reading.
+#include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <stdexcept>
+#include <string>
 
 #include <Eigen/Geometry>
 
 #include <spherical_actuator_calibration/control/calibrated_actuator.hpp>
+
+namespace {
+
+double numberOf(const std::string& text) {
+  std::size_t end = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;  // nothing of it is a number, or it is beyond all of them
+  }
+  if (end == 0 || end != text.size()) {
+    throw std::invalid_argument("\"" + text + "\" is no joint reading: give a number of radians.");
+  }
+  return value;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 5) {
@@ -18,7 +38,7 @@ int main(int argc, char** argv) {
   }
   try {
     const sac::CalibratedActuator actuator = sac::CalibratedActuator::load(argv[1]);
-    const Eigen::Vector3d joints(std::atof(argv[2]), std::atof(argv[3]), std::atof(argv[4]));
+    const Eigen::Vector3d joints(numberOf(argv[2]), numberOf(argv[3]), numberOf(argv[4]));
 
     if (!actuator.hasUncertainty()) {
       std::puts("No uncertainty is stated: nobody has calibrated this, and ± 0 is not known.");

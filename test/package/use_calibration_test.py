@@ -23,6 +23,10 @@ class UseCalibration(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("no_such_file.yaml", result.stderr)
         self.assertEqual(run(PROGRAM).returncode, 2)
+        for word in ("abc", "0.1rad", "", "1e999"):
+            result = run(PROGRAM, os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml"), "0", word, "0")
+            self.assertEqual(result.returncode, 2, word)
+            self.assertEqual(result.stderr, f'use_calibration: "{word}" is no joint reading: give a number of radians.\n')
 
 
 if __name__ == "__main__":
