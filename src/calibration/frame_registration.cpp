@@ -87,8 +87,11 @@ struct Mistake {
 };
 
 std::vector<Mistake> mistakes() {
+  // Of q = w + x i + y j + z k, the components w, x, y, z in the places of x, y, z, w make r q* k
+  // r* with r = (1 + j)/√2: the inverse between two fixed turns, which the frames take up.
   std::vector<Mistake> all = {
-      {"the tracker publishes the pose of its base in the marker: invert it",
+      {"the tracker publishes the pose of its base in the marker: invert it; they would fit as "
+       "well if it puts w, x, y, z of its quaternion in the places of x, y, z, w: look which it is",
        [](TrackedPose& pose) { pose.R_tracker_marker.transposeInPlace(); }},
       {"the joints are read in degrees: publish radians",
        [](TrackedPose& pose) { pose.joint_position *= kOneDegree; }}};

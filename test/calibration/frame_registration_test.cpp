@@ -178,6 +178,23 @@ TEST_F(FrameRegistrationTest, NamesMistakesOfWiring) {
   EXPECT_NE(registered(in_degrees).message.find("in degrees"), std::string::npos);
 }
 
+TEST_F(FrameRegistrationTest, AnotherOrderOfTheQuaternionFitsAsTheInverseDoes) {
+  std::vector<TrackedPose> inverted = randomPoses(12);
+  std::vector<TrackedPose> reordered = inverted;
+  for (std::size_t n = 0; n < inverted.size(); ++n) {
+    const Eigen::Quaterniond q(inverted[n].R_tracker_marker);
+    reordered[n].R_tracker_marker = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).matrix();
+    inverted[n].R_tracker_marker.transposeInPlace();
+  }
+  const FrameRegistration as_inverted = registered(inverted);
+  const FrameRegistration as_reordered = registered(reordered);
+  EXPECT_NEAR(as_reordered.reduced_chi_square / as_inverted.reduced_chi_square, 1.0, 1e-6);
+  for (const char* const cause : {"invert it", "w, x, y, z of its quaternion"}) {
+    EXPECT_NE(as_inverted.message.find(cause), std::string::npos) << as_inverted.message;
+    EXPECT_NE(as_reordered.message.find(cause), std::string::npos) << as_reordered.message;
+  }
+}
+
 TEST_F(FrameRegistrationTest, ArgumentOfTheLaunchFileIsTheRotation) {
   EXPECT_EQ(launchArgument(rotationExp({0.0, 0.0, kPi / 2.0})),
             "0 0 0 0 0 0.707106781187 0.707106781187");
