@@ -28,4 +28,7 @@ def main(path, *words):
 if __name__ == "__main__":
     if len(sys.argv) != 5:
         sys.exit(__doc__)
-    main(*sys.argv[1:])
+    try:
+        main(*sys.argv[1:])
+    except ValueError as wrong:
+        sys.exit(f"use_calibration: {wrong}")

@@ -190,8 +190,13 @@ int main(int argc, char** argv) {
     line.addRequired("actuator", path, "YAML", "description, usually a calibrated one");
     bool is_described = false;
     line.addSwitch("describe", is_described, "print the description, and answer no questions");
-    if (line.parse(argc, argv, std::cout)) {
-      is_described ? sac::printDescription(path) : sac::serve(path);
+    if (!line.parse(argc, argv, std::cout)) {
+      return sac::kToolSuccess;
+    }
+    if (is_described) {
+      sac::printDescription(path);
+    } else {
+      sac::serve(path);
     }
     return sac::kToolSuccess;
   });

@@ -27,6 +27,11 @@ class UseCalibration(unittest.TestCase):
             result = run(PROGRAM, os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml"), "0", word, "0")
             self.assertEqual(result.returncode, 2, word)
             self.assertEqual(result.stderr, f'use_calibration: "{word}" is no joint reading: give a number of radians.\n')
+        script = os.path.join(SOURCE, "examples", "use_calibration.py")
+        for words in (("no_such_file.yaml", "0"), (os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml"), "abc")):
+            result = run(sys.executable, script, *words, "0", "0")
+            self.assertEqual(result.returncode, 1)
+            self.assertTrue(result.stderr.startswith("use_calibration: ") and words[-1 if words[1] == "abc" else 0] in result.stderr)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-// shared_rules: what the core answers where programs in Python have a rule of their own, one JSON
-// document a line: {"rule": ..., "given": [...], "answer": ...}. shared_rules_test.py holds both
-// against each other.
+// shared_rules DRAWING.yaml: what the core answers where programs in Python have a rule of their
+// own, one JSON document a line: {"rule": ..., "given": [...], "answer": ...}. shared_rules_test.py
+// holds both against each other.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,6 @@
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/study/model_error.hpp"
-#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
@@ -181,8 +180,8 @@ void tellNames() {
 }
 
 /// Whether a motion is planned as for a drawing: one axis that nobody knows is enough.
-void tellDrawings() {
-  CalibratedDescription description = loadDescription(SOURCE_DIR "/config/pm_spherical_8x24.yaml");
+void tellDrawings(const std::string& path) {
+  CalibratedDescription description = loadDescription(path);
   const auto say = [&] {
     const bool is_drawing =
         likelyModelError(description) == likelyModelError({description.actuator});
@@ -214,13 +213,16 @@ void tellDefaults() {
 }  // namespace
 }  // namespace sac
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    return 2;
+  }
   sac::Trials trials;
   sac::tellCurrents(trials);
   sac::tellPoses(trials);
   sac::tellOrientations(trials);
   sac::tellNames();
-  sac::tellDrawings();
+  sac::tellDrawings(argv[1]);
   sac::tellDefaults();
   return 0;
 }

@@ -19,11 +19,12 @@ from spherical_actuator_calibration.session_tables.history import ERROR_UNITS
 from spherical_actuator_calibration.unit_quaternion import normalised
 
 EXACT = 1e-12
+SOURCE = pathlib.Path(os.environ["SOURCE"])
 
 
 def program(name):
     """A program of scripts/ as a module."""
-    path = pathlib.Path(os.environ["SOURCE"]) / "scripts" / name
+    path = SOURCE / "scripts" / name
     loader = importlib.machinery.SourceFileLoader(name, str(path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
     loader.exec_module(module)
@@ -33,7 +34,8 @@ def program(name):
 class SharedRules(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        told = subprocess.run(os.environ["SHARED_RULES"], stdout=subprocess.PIPE, check=True, text=True).stdout
+        drawing = SOURCE / "config" / "pm_spherical_8x24.yaml"
+        told = subprocess.run([os.environ["SHARED_RULES"], drawing], stdout=subprocess.PIPE, check=True, text=True).stdout
         cls.cases = {}
         for line in told.splitlines():
             case = json.loads(line)

@@ -356,7 +356,7 @@ TEST(SessionBagWriter, LeavesNothingWithoutClose) {
   {
     SessionBagWriter writer(folder.path("s.bag"), loadDescription(kDescription), options);
     writer.add(JointMeasurement{options.begin, Eigen::Vector3d::Zero()});
-    EXPECT_EQ(writer.messages(), 3U);
+    EXPECT_EQ(writer.messages(), 4U);
     EXPECT_TRUE(fs::exists(folder.path("s.bag.active")));
   }
   EXPECT_EQ(folder.files(), 0);
