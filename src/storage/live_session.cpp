@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/measurement/pose_to_measure.hpp"
 
 namespace sac {
 namespace {
