@@ -129,18 +129,17 @@ def bound(unit, errors, laboratory, orientations, coils, ampere=2.0):
     size, dwells = unit.size(), len(orientations)
     dwell = np.repeat(np.arange(dwells), len(coils) // dwells)
 
-    def torques(x, turns):
-        """x: errors and the force/torque sensor's rotation; turns: of each dwell, from the left."""
-        R = np.array([rotation(turn) @ R for turn, R in zip(turns, orientations)])
+    def torques(x, R):
+        """x: errors and the force/torque sensor's rotation; R: orientation of each dwell."""
         return ampere * unit.torques(x[:size], R[dwell], coils) @ rotation(x[size:]).T
 
     def derivative(of, count):
         step = 1e-6
         return np.stack([(of(step * e) - of(-step * e)) / (2.0 * step) for e in np.eye(count)], axis=-1)
 
-    x, still = np.append(errors, np.zeros(3)), np.zeros((dwells, 3))
-    by_x = derivative(lambda dx: torques(x + dx, still), size + 3) / laboratory.torque
-    by_turn = derivative(lambda turn: torques(x, still + turn), 3) / laboratory.torque
+    x = np.append(errors, np.zeros(3))
+    by_x = derivative(lambda dx: torques(x + dx, orientations), size + 3) / laboratory.torque
+    by_turn = derivative(lambda turn: torques(x, rotation(turn) @ orientations), 3) / laboratory.torque
     # What is measured of a dwell's orientation: e^n e^t (e^xi R) e^m, so ln(...) = n + t + xi + R m to first order.
     unknowns = size + 9  # errors, sensor, tracker, marker
     information = np.zeros((unknowns, unknowns))

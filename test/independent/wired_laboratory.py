@@ -105,12 +105,13 @@ class Machine:
         total = np.zeros(3)
         for coil in np.flatnonzero(current):
             s = rotation.T @ self.coils[coil]
-            for r, p, strength in zip(self.poles, self.polarity, self.pole_strength):
-                cross = np.cross(r, s)
+            cosines = self.poles @ s
+            for pole in np.flatnonzero(cosines > np.cos(np.radians(SUPPORT[1]))):
+                cross = np.cross(self.poles[pole], s)
                 sine = np.linalg.norm(cross)
-                psi = np.arctan2(sine, r @ s)
-                if sine > 1e-9 and psi < np.radians(SUPPORT[1]):
-                    total += p * strength * self.coil_strength[coil] * current[coil] * torque_curve(psi) * cross / sine
+                if sine > 1e-9:
+                    strength = self.polarity[pole] * self.pole_strength[pole] * self.coil_strength[coil]
+                    total += strength * current[coil] * torque_curve(np.arctan2(sine, cosines[pole])) * cross / sine
         return total
 
 
