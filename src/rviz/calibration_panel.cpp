@@ -207,6 +207,7 @@ void CalibrationPanel::listen() {
   feed<msg::CalibrationStatus>("status");
   feed<msg::CalibrationReport>("report");
   feed<msg::ActuatorParameters>("parameters");
+  feed<msg::CalibrationSample>("samples");
   constexpr std::uint32_t kQueueLength = 100;
   subscribers_.push_back(subscribeChecked<diagnostic_msgs::DiagnosticArray>(
       node_,
@@ -240,6 +241,7 @@ void CalibrationPanel::refresh() {
   outcome_->age();
   revisions_->refresh(model_.revision(), model_.revisionNumber());
   motion_->refresh();
+  learnSamples();
   if (ticks_++ % kTicksOfHealth == 0) {
     const ros::WallTime now = ros::WallTime::now();
     health_->fill(model_.streams(now), model_.troubles(now));
@@ -247,6 +249,19 @@ void CalibrationPanel::refresh() {
   if (changed_) {
     changed_ = false;
     showCalibration();
+  }
+}
+
+void CalibrationPanel::learnSamples() {
+  if (const std::optional<ServiceAnswer> answer = lister_.takeAnswer()) {
+    for (const msg::CalibrationSample& sample : answer->samples) {
+      model_.receive(sample);
+    }
+    changed_ = true;
+  }
+  if (!lister_.isBusy() && model_.takeRequestForSamples()) {
+    lister_.call<msg::ListSamples>(node_.resolveName("calibration/list_samples"),
+                                   msg::ListSamples::Request());
   }
 }
 

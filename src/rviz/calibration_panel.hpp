@@ -58,6 +58,8 @@ class CalibrationPanel : public rviz::Panel {
   void feed(const std::string& topic);
 
   void refresh();
+  /// Asks where the samples of a report were taken, if it tells of some from before the panel.
+  void learnSamples();
   void showCalibration();
   /// How long a call runs, or what came of it.
   void showAnswer();
@@ -78,6 +80,7 @@ class CalibrationPanel : public rviz::Panel {
   ros::NodeHandle node_;
   PanelModel model_;
   ServiceCaller caller_;
+  ServiceCaller lister_;  ///< of samples
   std::vector<ros::Subscriber> subscribers_;
   bool changed_ = true;
   int ticks_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
@@ -81,6 +82,11 @@ std::vector<CoverageBar> bars(const std::string& name, const std::vector<msg::Co
 
 std::string cycleName(const msg::CalibrationReport& report) {
   return report.coil == 0 ? report.cycle : report.cycle + ", coil " + std::to_string(report.coil);
+}
+
+/// Residuals of a motion are of its windows.
+bool isOfSamples(const msg::CalibrationReport& report) {
+  return report.cycle != msg::CalibrationReport::MOTION;
 }
 
 }  // namespace
@@ -198,18 +204,35 @@ std::vector<ParameterLine> PanelModel::estimates() const {
   return lines;
 }
 
+void PanelModel::receive(const msg::CalibrationReport& message) {
+  report_ = message;
+  is_report_new_ = true;
+}
+
+bool PanelModel::takeRequestForSamples() {
+  const bool is_new = std::exchange(is_report_new_, false);
+  return is_new && isOfSamples(report_) &&
+         std::any_of(report_.residuals.begin(), report_.residuals.end(), [this](const auto& one) {
+           return !places_.knows(one.id);
+         });
+}
+
 std::vector<SampleLine> PanelModel::samples() const {
   std::vector<msg::SampleResidual> residuals = report_.residuals;
   const auto worse = [](const msg::SampleResidual& one, const msg::SampleResidual& other) {
     return one.standardized > other.standardized;
   };
   std::stable_sort(residuals.begin(), residuals.end(), worse);
+  const bool are_samples = isOfSamples(report_);
   std::vector<SampleLine> lines;
   lines.reserve(residuals.size());
   for (const msg::SampleResidual& one : residuals) {
     const ShownUnit shown = shownIn(one.unit);
+    const bool is_torque = one.quantity == "torque" && are_samples;
+    const std::string coils = is_torque ? places_.coils(one.id, status_.current_threshold) : "";
     lines.push_back({one.id,
-                     one.quantity,
+                     one.quantity + (coils.empty() ? "" : ", ") + coils,
+                     are_samples ? places_.angles(one.id) : "",
                      withUnit("%.3f", shown.factor * one.residual, shown.name),
                      number("%.1f", one.standardized),
                      one.rejected == 0    ? ""

@@ -8,6 +8,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/time.h>
 
+#include "sample_places.hpp"
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/CalibrationStatus.h"
@@ -44,14 +45,16 @@ struct ParameterLine {
 /// How one sample fits the last cycle, ready to be read.
 struct SampleLine {
   std::uint32_t id = 0;
-  std::string quantity;      ///< orientation or torque
+  std::string quantity;      ///< orientation, or torque and of which coil, where it is known
+  std::string angles;        ///< where it was taken; empty: not known
   std::string residual;      ///< with its unit
   std::string standardized;  ///< the same in units of its expected size
   std::string verdict;       ///< why it was left out of the estimate; empty: it was not
 
   bool operator==(const SampleLine& other) const {
-    return id == other.id && quantity == other.quantity && residual == other.residual &&
-           standardized == other.standardized && verdict == other.verdict;
+    return id == other.id && quantity == other.quantity && angles == other.angles &&
+           residual == other.residual && standardized == other.standardized &&
+           verdict == other.verdict;
   }
 };
 
@@ -63,8 +66,9 @@ class PanelModel {
   explicit PanelModel(const std::string& name_space);
 
   void receive(const msg::CalibrationStatus& message) { status_ = message; }
-  void receive(const msg::CalibrationReport& message) { report_ = message; }
+  void receive(const msg::CalibrationReport& message);
   void receive(const msg::ActuatorParameters& message) { parameters_ = message; }
+  void receive(const msg::CalibrationSample& message) { places_.receive(message); }
   /// Keeps what the nodes in the namespace tell.
   void receive(const diagnostic_msgs::DiagnosticArray& message, const ros::WallTime& now);
 
@@ -103,6 +107,9 @@ class PanelModel {
   /// The samples of the last cycle that are in use still, worst first; one that has both an
   /// orientation and a torque has two lines.
   std::vector<SampleLine> samples() const;
+  /// True, once for a report, when it tells of samples that were not received: then the list of
+  /// those in use must be asked for.
+  bool takeRequestForSamples();
   /// Error before the first and after each iteration of the last cycle, in the unit of the title.
   std::vector<double> errorHistory() const;
   /// Name of the last cycle, and of its error with unit.
@@ -118,6 +125,8 @@ class PanelModel {
   msg::CalibrationStatus status_;
   msg::CalibrationReport report_;  ///< of the last cycle or validation
   msg::ActuatorParameters parameters_;
+  SamplePlaces places_;
+  bool is_report_new_ = false;  ///< its samples have not been looked for
   std::map<std::string, Heard> heard_;
 };
 

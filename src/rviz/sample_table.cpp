@@ -9,7 +9,7 @@
 namespace sac {
 
 SampleTable::SampleTable(std::function<void(std::uint32_t)> remove)
-    : table_(choiceTable({"sample", "quantity", "residual", "of expected", "left out"})),
+    : table_(choiceTable({"sample", "quantity", "at", "residual", "of expected", "left out"})),
       remove_(new QPushButton) {
   remove_->setToolTip("Take the chosen sample out of use; it stays in the session database");
   auto* layout = new QVBoxLayout(this);
@@ -39,8 +39,12 @@ void SampleTable::fill(std::vector<SampleLine> lines) {
   int row = 0;
   for (const SampleLine& line : lines_) {
     int column = 0;
-    for (const std::string& text :
-         {std::to_string(line.id), line.quantity, line.residual, line.standardized, line.verdict}) {
+    for (const std::string& text : {std::to_string(line.id),
+                                    line.quantity,
+                                    line.angles,
+                                    line.residual,
+                                    line.standardized,
+                                    line.verdict}) {
       table_->setItem(row, column++, new QTableWidgetItem(QString::fromStdString(text)));
     }
     if (chosen >= 0 && line.id == id && table_->currentRow() < 0) {

@@ -16,6 +16,7 @@
 #include <ros/service_client.h>
 
 #include "spherical_actuator_calibration/ListRevisions.h"
+#include "spherical_actuator_calibration/ListSamples.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 
 namespace sac {
@@ -23,9 +24,10 @@ namespace sac {
 /// What a service answered, or why it did not.
 struct ServiceAnswer {
   bool success = false;
-  std::string message;                   ///< one sentence
-  std::vector<msg::Revision> revisions;  ///< of list_revisions
-  bool is_partial = false;               ///< some are left out; the message tells which
+  std::string message;                               ///< one sentence
+  std::vector<msg::Revision> revisions;              ///< of list_revisions
+  bool is_partial = false;                           ///< some are left out; the message tells which
+  std::vector<msg::CalibrationSample> samples = {};  ///< of list_samples
 };
 
 /// Calls one service at a time, aside, so that a window stays alive during a long cycle. Its end
@@ -58,12 +60,7 @@ class ServiceCaller {
       if (!link->open<Service>(name) || !link->client().call(service)) {
         return {false, "The connection to " + name + " was lost before its answer.", {}};
       }
-      ServiceAnswer answer{service.response.success != 0, service.response.message, {}};
-      if constexpr (std::is_same_v<Service, msg::ListRevisions>) {
-        answer.revisions = service.response.revisions;
-        answer.is_partial = !service.response.unread.empty();
-      }
-      return answer;
+      return answerOf(service);
     });
   }
 
@@ -77,6 +74,23 @@ class ServiceCaller {
   }
 
  private:
+  template <typename Service>
+  static ServiceAnswer answerOf(const Service& service) {
+    ServiceAnswer answer;
+    if constexpr (std::is_same_v<Service, msg::ListSamples>) {
+      answer.success = true;
+      answer.samples = service.response.samples;
+    } else {
+      answer.success = service.response.success != 0;
+      answer.message = service.response.message;
+    }
+    if constexpr (std::is_same_v<Service, msg::ListRevisions>) {
+      answer.revisions = service.response.revisions;
+      answer.is_partial = !service.response.unread.empty();
+    }
+    return answer;
+  }
+
   /// A connection of its own, which another thread can cut: a call of a node that stands still
   /// would be waited for.
   class Link {

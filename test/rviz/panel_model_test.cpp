@@ -244,10 +244,53 @@ TEST(PanelModel, SamplesAreListedWorstFirstUntilTheyAreRemoved) {
   PanelModel panel("actuator");
   panel.receive(message);
   ASSERT_EQ(panel.samples().size(), 3U);
-  const SampleLine expected = {2, "torque", "1.500 mN·m", "9.5", "contradicts the others"};
+  const SampleLine expected = {2, "torque", "", "1.500 mN·m", "9.5", "contradicts the others"};
   EXPECT_EQ(panel.samples()[0], expected);
   EXPECT_EQ(panel.samples()[2].quantity, "orientation");
   EXPECT_EQ(panel.samples()[2].verdict, "");
+}
+
+TEST(PanelModel, TellsWhereSamplesWereTakenOnceItHasHeardOfThem) {
+  msg::CalibrationReport message = report("rad");
+  message.residuals.resize(1);
+  message.residuals[0].id = 7;
+  message.residuals[0].quantity = "torque";
+  PanelModel panel("actuator");
+  panel.receive(message);
+  EXPECT_EQ(panel.samples()[0].quantity, "torque");
+  EXPECT_EQ(panel.samples()[0].angles, "");
+  EXPECT_TRUE(panel.takeRequestForSamples());
+  EXPECT_FALSE(panel.takeRequestForSamples())
+      << "an answer without it would be asked for endlessly";
+
+  msg::CalibrationStatus status;
+  status.current_threshold = 0.1;
+  panel.receive(status);
+  msg::CalibrationSample sample;
+  sample.id = 7;
+  sample.current = {0.0, 0.01, -2.0};
+  panel.receive(sample);
+  EXPECT_EQ(panel.samples()[0].quantity, "torque, coil 3");
+  EXPECT_EQ(panel.samples()[0].angles, "+0.0°, +0.0°, +0.0°");
+  panel.receive(message);
+  EXPECT_FALSE(panel.takeRequestForSamples());
+}
+
+TEST(PanelModel, TakesWindowsOfAMotionForNoSamples) {
+  msg::CalibrationReport message = report("1");
+  message.cycle = msg::CalibrationReport::MOTION;
+  message.residuals.resize(1);
+  message.residuals[0].id = 7;
+  message.residuals[0].quantity = "torque";
+  PanelModel panel("actuator");
+  panel.receive(message);
+  EXPECT_FALSE(panel.takeRequestForSamples());
+  msg::CalibrationSample sample;
+  sample.id = 7;
+  sample.current = {2.0};
+  panel.receive(sample);
+  EXPECT_EQ(panel.samples()[0].angles, "");
+  EXPECT_EQ(panel.samples()[0].quantity, "torque");
 }
 
 }  // namespace
