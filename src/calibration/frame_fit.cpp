@@ -113,17 +113,22 @@ Frames FrameFit::start(const PoseSelection& used) const {
 FrameFit::Row FrameFit::row(const ModelPoint& point,
                             const Frames& frames,
                             std::size_t pose,
-                            double noise_scale) const {
+                            double noise_scale,
+                            Linearized at) const {
   const TrackedPose& measured = poses_[pose];
-  const Sample sample = sampleOf(measured, frames);
-  ResidualJacobian d_machine;
+  Sample sample = sampleOf(measured, frames);
   Row row;
-  row.residual = point.orientationResidual(sample, &d_machine);
-  // X → e^{ξ̂}X turns e^{ŷ} into e^{ξ̂}e^{ŷ}; Z → e^{ζ̂}Z turns it into e^{ŷ}e^{−(Rζ)^}.
+  row.residual = point.orientationResidual(sample);
   const Eigen::Matrix3d R_predicted = rotationExp(row.residual).transpose() * sample.R_stator_rotor;
+  if (at == Linearized::kAtPrediction) {
+    sample.R_stator_rotor = R_predicted;
+  }
+  ResidualJacobian d_machine;
+  const Eigen::Vector3d y = point.orientationResidual(sample, &d_machine);
+  // X → e^{ξ̂}X turns e^{ŷ} into e^{ξ̂}e^{ŷ}; Z → e^{ζ̂}Z turns it into e^{ŷ}e^{−(Rζ)^}.
   Eigen::Matrix3Xd jacobian(3, unknowns());
-  jacobian.leftCols<3>() = leftJacobianInverse(row.residual);
-  jacobian.middleCols<3>(3) = -leftJacobianInverse(-row.residual) * R_predicted;
+  jacobian.leftCols<3>() = leftJacobianInverse(y);
+  jacobian.middleCols<3>(3) = -leftJacobianInverse(-y) * R_predicted;
   jacobian.rightCols(root_.cols()) = d_machine * root_;
 
   const double stddev = measured.orientation_stddev > 0.0 ? measured.orientation_stddev
@@ -152,7 +157,8 @@ double FrameFit::cost(const Solution& at, const PoseSelection& used, double nois
   double sum = at.w.squaredNorm();
   for (std::size_t n = 0; n < poses_.size(); ++n) {
     if (used[n]) {
-      sum += row(point, at.frames, n, noise_scale).whitened.residual.squaredNorm();
+      sum += row(point, at.frames, n, noise_scale, Linearized::kAtMeasurement)
+                 .whitened.residual.squaredNorm();
     }
   }
   return sum;
@@ -172,7 +178,7 @@ FrameFit::Solution FrameFit::solve(const Frames& start,
     InformationSum sum(unknowns());
     for (std::size_t n = 0; n < poses_.size(); ++n) {
       if (used[n]) {
-        sum.add(row(point, solution.frames, n, noise_scale).whitened);
+        sum.add(row(point, solution.frames, n, noise_scale, Linearized::kAtMeasurement).whitened);
       }
     }
     Eigen::MatrixXd information = sum.information();
@@ -214,7 +220,7 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
   std::vector<Row> rows;
   rows.reserve(poses_.size());
   for (std::size_t n = 0; n < poses_.size(); ++n) {
-    rows.push_back(row(point, solution.frames, n, noise_scale));
+    rows.push_back(row(point, solution.frames, n, noise_scale, Linearized::kAtPrediction));
     if (used[n]) {
       sum.add(rows.back().whitened);
     }

@@ -69,11 +69,16 @@ class FrameFit {
     Eigen::Vector3d residual;      ///< as measured [rad]
     WhitenedObservation whitened;  ///< in all unknowns (ξ, ζ, w)
   };
+  /// Where the derivatives of a residual are taken: those at the measurement lead to the least sum
+  /// of squares. In information they count what a turn of the whole machine does to the residuals
+  /// themselves, which tells nothing of it, and which grows with the number of poses.
+  enum class Linearized { kAtMeasurement, kAtPrediction };
   ModelPoint pointOf(const Solution& at) const { return {model_, root_ * at.w}; }
   Row row(const ModelPoint& point,
           const Frames& frames,
           std::size_t pose,
-          double noise_scale) const;
+          double noise_scale,
+          Linearized at) const;
   double cost(const Solution& at, const PoseSelection& used, double noise_scale) const;
   Eigen::Index unknowns() const { return 6 + root_.cols(); }
 

@@ -46,15 +46,40 @@ double rootMean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
 
-/// Whether a torque is close to linear over the uncertainty of a coil's axis: its angles are
-/// identified, and known to a small part of the width of the torque curve's peak.
-bool isLinear(const ParameterBelief& belief,
-              const std::vector<bool>& identified,
-              Eigen::Index coil) {
+/// For each coil, whether a torque is close to linear over the uncertainty of its axis: its angles
+/// are identified, and known to a small part of the width of the torque curve's peak, where joints
+/// and effects are known. What turns with them, as all axes do with a tracker, changes no torque.
+std::vector<bool> linearCoils(const ParameterSpace& space,
+                              const ParameterBelief& belief,
+                              const std::vector<bool>& identified) {
   constexpr double kMostStddev = 0.01;  // [rad]
-  const auto first = static_cast<std::size_t>(coil);
-  const double variance = belief.covariance.block<2, 2>(coil, coil).trace();
-  return identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
+  constexpr double kRounding = 1e-12;   // of a variance
+  std::vector<Eigen::Index> common;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    const bool is_magnetic = p >= space.joint(space.joints()) && p < space.effect();
+    if (!is_magnetic && belief.covariance(p, p) > 0.0) {
+      common.push_back(p);
+    }
+  }
+  Eigen::MatrixXd of_common = belief.covariance(common, common);
+  of_common.diagonal() *= 1.0 + kRounding;
+  Eigen::LDLT<Eigen::MatrixXd> factor;
+  if (!common.empty()) {
+    factor.compute(of_common);
+  }
+  std::vector<bool> linear(space.coils());
+  for (std::size_t j = 0; j < linear.size(); ++j) {
+    const Eigen::Index coil = space.coil(j);
+    const auto first = static_cast<std::size_t>(coil);
+    double variance = belief.covariance.block<2, 2>(coil, coil).trace();
+    if (!common.empty()) {
+      const Eigen::MatrixXd of_coil = belief.covariance.middleCols<2>(coil);
+      const Eigen::MatrixXd shared = of_coil(common, Eigen::all);
+      variance -= shared.cwiseProduct(factor.solve(shared)).sum();
+    }
+    linear[j] = identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
+  }
+  return linear;
 }
 
 }  // namespace
@@ -68,7 +93,7 @@ class HeldOutJudge::Judgement {
             double outlier_rate)
       : options_(options),
         outlier_rate_(outlier_rate),
-        identified_(state.identified),
+        linear_coils_(linearCoils(model.space(), state.belief, state.identified)),
         point_(model, state.belief.x),
         all_(ChosenCoordinates::all(model.space().size())),
         every_(static_cast<std::size_t>(all_.size()), true),
@@ -234,7 +259,7 @@ class HeldOutJudge::Judgement {
     }
     const std::vector<Excitation> excitations = excitedCoils(sample, options_.current_threshold);
     return std::all_of(excitations.begin(), excitations.end(), [this](const Excitation& one) {
-      return isLinear(problem_.prior, identified_, problem_.model->space().coil(one.coil));
+      return linear_coils_[one.coil];
     });
   }
 
@@ -338,7 +363,7 @@ class HeldOutJudge::Judgement {
 
   const EstimationOptions options_;
   const double outlier_rate_;
-  const std::vector<bool> identified_;
+  const std::vector<bool> linear_coils_;
   const ModelPoint point_;  ///< the model at the state
   const ChosenCoordinates all_;
   const std::vector<bool> every_;  ///< coordinate is uncertain by the prior

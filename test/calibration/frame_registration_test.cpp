@@ -86,10 +86,32 @@ TEST_F(FrameRegistrationTest, JointsAsMadeAreInTheUncertaintyNotInTheResiduals) 
   const Eigen::Vector3d stddev = result.covariance.diagonal().head<3>().cwiseSqrt();
   EXPECT_GT(stddev.minCoeff(), 0.01);
   EXPECT_LT(stddev.maxCoeff(), 0.06);
-  EXPECT_LT(result.noise_covariance.diagonal().cwiseSqrt().maxCoeff(), 0.01);
+  EXPECT_LT(result.noise_covariance.diagonal().cwiseSqrt().maxCoeff(), kNoise);
   const RegistrationUncertainty stated = registrationUncertainty(result);
   EXPECT_GT(*stated.stator_tracker, stddev.minCoeff());
   EXPECT_LT(*stated.stator_tracker, stddev.maxCoeff());
+}
+
+TEST_F(FrameRegistrationTest, NoiseIsWhatOtherMeasurementsOfThePosesWouldMoveTheResultBy) {
+  const Actuator truth = scenarios::perturbed(described_.actuator, 0.03, 0.03, generator_);
+  const std::vector<Eigen::Vector3d> joints = scenarios::randomPoses(60, 0.5, generator_);
+  constexpr int kTrials = 30;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const FrameRegistration result = registered(posesOf(truth, joints, kNoise));
+    ASSERT_TRUE(result.success) << result.message;
+    const Eigen::Vector3d error =
+        rotationLog(rotationExp(trackerTurn()) * result.R_stator_tracker.transpose());
+    sum += error;
+    squares += error.cwiseAbs2();
+    variance += result.noise_covariance.diagonal().head<3>() / kTrials;
+  }
+  const Eigen::Vector3d scatter = (squares - sum.cwiseAbs2() / kTrials) / (kTrials - 1);
+  const Eigen::Vector3d ratio = variance.cwiseQuotient(scatter).cwiseSqrt();
+  EXPECT_GT(ratio.minCoeff(), 0.6);
+  EXPECT_LT(ratio.maxCoeff(), 1.7);
 }
 
 TEST_F(FrameRegistrationTest, StatedJointsTakeThePlaceOfTolerances) {

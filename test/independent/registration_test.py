@@ -16,6 +16,7 @@ PROGRAM = os.path.join(os.environ.get("PROGRAMS", "build/devel/lib/spherical_act
 TOLERANCE = 0.03  # [rad] of manufacture, as configured by default
 ORIENTATION, READING = 3e-4, 1e-4  # [rad] standard deviations of tracker and joints
 TRIALS, POSES, TILT = 40, 12, 0.5
+COARSE = 0.0282  # [rad] what a registration by joints as drawn is worth
 EXACT_JOINTS = "tolerance: {joint_offset: 0.0, joint_axis: 0.0}\n"
 
 
@@ -117,6 +118,14 @@ class RegistrationIsHonest(unittest.TestCase):
         # Tolerances rule: noise alone would be a hundredth of it.
         self.assertGreater(np.min(stddevs), 0.3 * TOLERANCE)
 
+    def test_more_poses_tell_no_more_of_what_joints_as_made_leave_open(self):
+        results = [Registered(Trial(seed, poses=600)) for seed in range(50, 56)]
+        together = [r.error @ np.linalg.solve(r.covariance, r.error) for r in results]
+        self.assertLess(np.mean(together) / 6.0, 2.0)
+        few = np.sqrt(np.diag(Registered(Trial(50)).covariance))
+        many = np.sqrt(np.diag(results[0].covariance))
+        self.assertGreater((many / few).min(), 0.9)
+
     def test_with_joints_that_are_known_it_reaches_the_bound(self):
         trials = [Trial(seed, tolerance=0.0) for seed in range(100, 100 + TRIALS)]
         results = [Registered(trial, EXACT_JOINTS) for trial in trials]
@@ -155,6 +164,28 @@ class RegistrationIsHonest(unittest.TestCase):
         self.assertGreater(inside, 0.93)
         self.assertGreater(rms, 0.6)
         self.assertLess(rms, 1.1)
+
+    def test_a_whole_calibration_by_frames_as_coarse_as_a_drawing_is_complete(self):
+        unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(registration=(COARSE, COARSE, 0.0))
+        errors, sessions = [], []
+        for seed in range(300, 310):
+            rng = np.random.default_rng(seed)
+            errors.append(rng.normal(0.0, 0.01, unit.size()))
+            poses = laboratory.random_poses(40, TILT, rng)
+            dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 8, rng)
+            sessions.append((sensors, dwells, 5))
+        outcomes = cases.calibrate(unit, sessions, cases.registration_config(sensors.registration))
+        for outcome in outcomes:
+            self.assertTrue(outcome.refined(), outcome.reason)
+            self.assertEqual(outcome.grade, "good", outcome.reason)
+            self.assertTrue(outcome.identified.all())
+            # A common turn is known as well as the frames, what lies between the axes by what was measured.
+            self.assertGreater(outcome.stddevs[:9].max(), 0.9 * COARSE)
+            self.assertLess(outcome.stddevs.max(), 1.5 * COARSE)
+        apart = np.array([outcome.values - unit.values(e) for outcome, e in zip(outcomes, errors)])
+        inside, rms = shares(apart, [outcome.stddevs for outcome in outcomes])
+        self.assertGreater(inside, 0.8)
+        self.assertLess(rms, 1.3)
 
     def test_argument_of_the_launch_file_is_what_was_found(self):
         found = Registered(Trial(1)).text
