@@ -85,9 +85,18 @@ class PaperStudy(unittest.TestCase):
         self.assertEqual(comparison.iterations_verdict({4: 124, 5: 37, 8: 2}, 8), "fewer in 161 of 163")
         self.assertEqual(comparison.iterations_verdict({6: 9, 4: 1}, "4 to 5"), "more in 9 of 10")
         self.assertEqual(comparison.iterations_verdict({}, 8), "not shown")
-        self.assertEqual(comparison.method_of(7e-5, 4.1e-5, 1e-6), "nearer to the chord method's")
-        self.assertEqual(comparison.method_of(2e-6, 4.1e-5, 1e-6), "nearer to the Newton method's")
-        self.assertEqual(comparison.method_of(0.0, 9e-8, 1e-16), "both methods', to the last digit")
+        # Minimum, median and maximum of iterations 2 to 4.
+        for printed, chord, newton, verdict in (
+            (7e-5, (2e-5, 4e-5, 2e-4), (2e-7, 1e-6, 8e-6), "inside the chord method's spread, outside Newton's"),
+            (2e-6, (2e-5, 4e-5, 2e-4), (2e-7, 1e-6, 8e-6), "inside Newton's spread, outside the chord method's"),
+            (1e-6, (4e-7, 2e-6, 1e-5), (1e-14, 5e-13, 1e-11), "inside the chord method's spread, outside Newton's"),
+            (0.0, (2e-8, 9e-8, 1e-6), (0.0, 4e-16, 1e-15), "inside both spreads: tells neither method"),
+            (1e-3, (2e-5, 4e-5, 2e-4), (2e-7, 1e-6, 8e-6), "outside both spreads"),
+        ):
+            spreads = [(s[0], s[0], s[1], s[2], s[2]) for s in (chord, newton)]
+            self.assertEqual(comparison.method_of(printed, *spreads), verdict)
+        self.assertEqual(comparison.agrees_as_printed(0.06, 0.0613), "agrees to its last digit")
+        self.assertEqual(comparison.agrees_as_printed(0, 0.0051), "differs")
         self.assertEqual(comparison.left_open(157, 200), "43 of 200 leave some open")
         self.assertEqual(comparison.left_open(200, 200), "all do")
         self.assertEqual(comparison.plotted_as([0.011, 0.027], 6.3e-4), "a mean square, without the root")
