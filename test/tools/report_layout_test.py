@@ -20,6 +20,8 @@ HEIGHT = 4000
 FRAME = """<!DOCTYPE html><title></title>
 <script>addEventListener('message', (event) => {{ document.title = event.data; }});</script>
 <iframe src="probed.html" style="width: {width}px; height: 900px; border: 0"></iframe>"""
+# As of the block of linearity, which a guided session has.
+LONG_NAME = "<dl class=facts><dt>Positive, from the mean of both signs</dt><dd>0.014 ± 0.024 %</dd></dl>"
 PROBE = """<script>addEventListener('load', () => {
   const all = Array.from(document.body.querySelectorAll('*'));
   const wide = (node) => node.getBoundingClientRect().right > innerWidth + 1 && !node.closest('.scroll');
@@ -31,6 +33,7 @@ PROBE = """<script>addEventListener('load', () => {
     cut: Array.from(document.querySelectorAll('.scroll')).filter((box) => box.scrollWidth > box.clientWidth + 1)
       .map((box) => box.getAttribute('aria-label')),
     broken: Array.from(document.images).filter((picture) => !picture.naturalWidth).length,
+    narrowest: Math.min(...Array.from(document.querySelectorAll('.facts dd'), (node) => node.clientWidth)),
     smallest: Math.min(...Array.from(document.querySelectorAll('p, li, td, dd'), (node) =>
       parseFloat(getComputedStyle(node).fontSize))),
   }), '*');
@@ -48,7 +51,7 @@ class ReportLayout(unittest.TestCase):
         outcome, report = calibrated(cls.folder.name, actuator, session)
         assert outcome.returncode in (0, 1), outcome.stderr
         cls.page = os.path.join(report, "report.html")
-        cls.write("probed.html", read(cls.page).replace("</body>", PROBE + "</body>"))
+        cls.write("probed.html", read(cls.page).replace("</body>", LONG_NAME + PROBE + "</body>"))
 
     @classmethod
     def write(cls, name, content):
@@ -79,6 +82,7 @@ class ReportLayout(unittest.TestCase):
                 self.assertEqual(measures["overflowing"], [])
                 self.assertEqual(measures["cut"], [])
                 self.assertEqual(measures["broken"], 0)
+                self.assertGreater(measures["narrowest"], 100)
                 self.assertGreaterEqual(measures["smallest"], 12.0)
                 self.assertGreater(measures["height"], 3000)
 
