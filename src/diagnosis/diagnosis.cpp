@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "evidence.hpp"
 #include "levitated_screen.hpp"
 #include "moved_hypotheses.hpp"
 #include "orientation_hypotheses.hpp"
@@ -27,8 +28,6 @@ namespace {
 constexpr double kMistakeCost = 6.907755278982137;
 /// Odds below it do not tell two hypotheses apart: about 50 to 1 [nats].
 constexpr double kTie = 4.0;
-constexpr std::size_t kFewestOrientations = 4;
-constexpr std::size_t kFewestTorques = 4;
 constexpr int kMostRounds = 6;
 /// So much is gained by a better optimum as well [nats].
 constexpr double kDoubtful = 100.0;
@@ -69,12 +68,9 @@ class Diagnostician {
                 const CalibrationConfig& config)
       : config_(config), case_{nominal, samples} {
     result_.redescribed = nominal;
-    for (const Sample& sample : samples) {
-      // Without joints nothing but torques contradicts the tracker.
-      orientations_ += nominal.has_joints && sample.has_orientation ? 1U : 0U;
-      torques_ += sample.has_torque ? 1U : 0U;
-    }
-    torques_ = nominal.hasTorqueModel() ? torques_ : 0;
+    const Evidence evidence = evidenceOf(nominal, samples);
+    orientations_ = evidence.orientations;
+    torques_ = evidence.torques;
   }
 
   WiringDiagnosis run() {

@@ -177,4 +177,16 @@ std::string inWords(const std::vector<Diagnosis>& diagnoses) {
   return text;
 }
 
+std::string verdictInWords(const CalibrationSession& session,
+                           const std::vector<Diagnosis>& diagnoses) {
+  if (!diagnoses.empty()) {
+    return inWords(diagnoses);
+  }
+  const std::string why =
+      session.motion() != nullptr
+          ? std::string()
+          : whyNothingIsTold(session.start().actuator, session.samples());
+  return why.empty() ? "Nothing speaks for a mistake." : why;
+}
+
 }  // namespace sac

@@ -19,4 +19,9 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session);
 /// Sentences of all diagnoses, one after the other; empty without any.
 std::string inWords(const std::vector<Diagnosis>& diagnoses);
 
+/// What a session tells of mistakes: the same, or without any that nothing speaks for one, or that
+/// its samples are too few to tell.
+std::string verdictInWords(const CalibrationSession& session,
+                           const std::vector<Diagnosis>& diagnoses);
+
 }  // namespace sac

@@ -26,7 +26,7 @@ bool CalibrationNode::explainSamples(msg::Diagnose::Request& /*request*/,
     lock.unlock();
     const std::vector<Diagnosis> diagnoses = sac::diagnose(session);
     response.success = 1;
-    response.message = diagnoses.empty() ? "Nothing speaks for a mistake." : inWords(diagnoses);
+    response.message = verdictInWords(session, diagnoses);
     response.diagnoses = diagnosesToRos(diagnoses);
   } catch (const std::exception& error) {
     response.success = 0;
