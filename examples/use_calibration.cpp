@@ -43,16 +43,18 @@ int main(int argc, char** argv) {
     if (!actuator.hasUncertainty()) {
       std::puts("No uncertainty is stated: nobody has calibrated this, and ± 0 is not known.");
     }
-    const auto pose = actuator.orientation(joints);
-    const Eigen::Quaterniond q(pose.R_stator_rotor);
-    std::printf(
-        "orientation %.6f %.6f %.6f %.6f ± %.6f rad\n", q.x(), q.y(), q.z(), q.w(), pose.stddev);
+    if (actuator.hasJoints()) {
+      const auto pose = actuator.orientation(joints);
+      const Eigen::Quaterniond q(pose.R_stator_rotor);
+      std::printf(
+          "orientation %.6f %.6f %.6f %.6f ± %.6f rad\n", q.x(), q.y(), q.z(), q.w(), pose.stddev);
+    }
 
     if (actuator.hasTorqueModel()) {
       const Eigen::Vector3d wanted(0.05, 0.0, 0.0);  // [N·m], rotor frame
       const auto found = actuator.currents(wanted, joints);
       for (Eigen::Index coil = 0; coil < found.currents.size(); ++coil) {
-        std::printf("coil_%d %.4f ± %.4f A\n",
+        std::printf("coil_%d %.6f ± %.6f A\n",
                     static_cast<int>(coil) + 1,
                     found.currents[coil],
                     found.stddev[coil]);

@@ -20,7 +20,7 @@ def main(path, *words):
         if actuator.coils:
             found = actuator.currents([0.05, 0.0, 0.0], joints)  # [N m], rotor frame
             for coil, (current, stddev) in enumerate(zip(found.currents, found.stddevs), 1):
-                print(f"coil_{coil} {current:.4f} ± {stddev:.4f} A")
+                print(f"coil_{coil} {current:.6f} ± {stddev:.6f} A")
             made = actuator.torque(joints, found.currents)
             print("torque", *(f"{t:.5f}" for t in made.torque), f"± {made.stddev:.5f} N·m")
 

@@ -37,6 +37,9 @@ void CalibratedActuator::requireTorqueModel() const {
 
 Predictor::Orientation CalibratedActuator::orientation(const Eigen::Vector3d& reading) const {
   requireFinite(reading, "joint angles");
+  if (!hasJoints()) {
+    throw DataError("The rotor has no joints: its orientation is measured, not predicted.");
+  }
   return predictor_.orientation(reading);
 }
 
@@ -58,7 +61,7 @@ CalibratedActuator::Currents CalibratedActuator::currents(const Eigen::Vector3d&
   requireTorqueModel();
   requireFinite(torque, "torque");
   const Eigen::Matrix3Xd Q =
-      torquePerAmpere(*curve_, geometry_, orientation(reading).R_stator_rotor);
+      torquePerAmpere(*curve_, geometry_, predictor_.orientation(reading).R_stator_rotor);
   const AllocatedCurrents allocated = allocateCurrents(Q, torque, options);
   Currents result;
   result.outcome = allocated.outcome;

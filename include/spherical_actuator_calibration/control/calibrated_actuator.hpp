@@ -42,7 +42,8 @@ class CalibratedActuator {
   /// deviations are zero then.
   bool hasUncertainty() const { return predictor_.hasUncertainty(); }
 
-  /// Rotor orientation. Throws DataError when a reading is not finite.
+  /// Rotor orientation. Throws DataError when a reading is not finite, and for a rotor without
+  /// joints, whose orientation is measured.
   Predictor::Orientation orientation(const Eigen::Vector3d& reading) const;
 
   /// Torque of the coils on the rotor, rotor frame [N·m]. Throws DataError without a torque model,
