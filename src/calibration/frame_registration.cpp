@@ -232,8 +232,9 @@ class Registrar {
                shortNumber(result_.reduced_chi_square).c_str(),
                shortNumber(options_.max_reduced_chi_square).c_str()) +
         (mistake ? "they would fit if " + *mistake + "."
-                 : "check that the marker sits firmly on the rotor, that the rotor rested, signs "
-                   "and order of the joints, and the quaternion's order."));
+                 : "check that the marker sits firmly on the rotor, that the rotor rested, that the "
+                   "tracker is as exact as stated, signs and order of the joints, and the "
+                   "quaternion's order."));
   }
 
   std::optional<std::string> mistakeThatFits() const {
@@ -271,7 +272,7 @@ class Registrar {
       noise_scale_ = std::sqrt(result_.reduced_chi_square);
       solution_ = fit_.solve(solution_.frames, used_, noise_scale_);
       result_.notes.push_back(
-          format("The poses scatter %.1f times as much as stated; their noise counts as so much "
+          format("The poses scatter %.2f times as much as stated; their noise counts as so much "
                  "larger.",
                  noise_scale_));
     }

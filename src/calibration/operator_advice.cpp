@@ -130,6 +130,11 @@ std::string adviceForJoint(const CalibrationModel& model, Part part, std::size_t
 std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinate) {
   const EffectLayout& effects = model.space().effects();
   const auto at = static_cast<Eigen::Index>(coordinate);
+  if (effects.statedVariance(at) > 0.0) {
+    return "The samples cannot tell " + effects.name(at) +
+           " apart from the other parameters, and it is stated more coarsely than "
+           "estimation.unobservable_stddev: measure it better, and state that.";
+  }
   return "The samples cannot tell " + effects.name(at) +
          " apart from the other parameters: switch off effects." + effects.at(at).name +
          ", or add poses over the whole workspace.";

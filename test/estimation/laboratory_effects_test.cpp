@@ -198,6 +198,19 @@ TEST(LaboratoryEffects, ATrackerRegistrationThatNothingTellsIsRefusedByName) {
   }
 }
 
+TEST(LaboratoryEffects, ATrackerRegistrationThatIsStatedTooCoarselyIsToBeMeasuredBetter) {
+  scenarios::Generator generator(8);
+  CalibrationConfig config;
+  stateRegistration(config, {0.06, 0.0, 0.0});
+  CalibrationSession session(
+      {scenarios::paperNominal()}, sessionIn({}, madeUnit(generator), generator), config);
+  const CycleReport& report = session.run({Cycle::kJoint});
+  EXPECT_NE(report.message.find("stated more coarsely than estimation.unobservable_stddev"),
+            std::string::npos)
+      << report.message;
+  EXPECT_EQ(report.message.find("switch off"), std::string::npos) << report.message;
+}
+
 TEST(LaboratoryEffects, AreInTheCalibratedDescription) {
   scenarios::Generator generator(6);
   Actuator made = madeUnit(generator);

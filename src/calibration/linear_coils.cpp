@@ -1,0 +1,42 @@
+#include "linear_coils.hpp"
+
+#include <cstddef>
+
+#include <Eigen/Cholesky>
+
+namespace sac {
+
+std::vector<bool> linearCoils(const ParameterSpace& space,
+                              const ParameterBelief& belief,
+                              const std::vector<bool>& identified) {
+  constexpr double kMostStddev = 0.01;  // [rad]
+  constexpr double kRounding = 1e-12;   // of a variance
+  std::vector<Eigen::Index> common;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    const bool is_magnetic = p >= space.joint(space.joints()) && p < space.effect();
+    if (!is_magnetic && belief.covariance(p, p) > 0.0) {
+      common.push_back(p);
+    }
+  }
+  Eigen::MatrixXd of_common = belief.covariance(common, common);
+  of_common.diagonal() *= 1.0 + kRounding;
+  Eigen::LDLT<Eigen::MatrixXd> factor;
+  if (!common.empty()) {
+    factor.compute(of_common);
+  }
+  std::vector<bool> linear(space.coils());
+  for (std::size_t j = 0; j < linear.size(); ++j) {
+    const Eigen::Index coil = space.coil(j);
+    const auto first = static_cast<std::size_t>(coil);
+    double variance = belief.covariance.block<2, 2>(coil, coil).trace();
+    if (!common.empty()) {
+      const Eigen::MatrixXd of_coil = belief.covariance.middleCols<2>(coil);
+      const Eigen::MatrixXd shared = of_coil(common, Eigen::all);
+      variance -= shared.cwiseProduct(factor.solve(shared)).sum();
+    }
+    linear[j] = identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
+  }
+  return linear;
+}
+
+}  // namespace sac

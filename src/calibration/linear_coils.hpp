@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/estimation/parameter_space.hpp"
+
+namespace sac {
+
+/// For each coil, whether a torque is close to linear over the uncertainty of its axis: its angles
+/// are identified, and known to a small part of the width of the torque curve's peak, where joints
+/// and effects are known. What turns with them, as all axes do with a tracker, changes no torque.
+std::vector<bool> linearCoils(const ParameterSpace& space,
+                              const ParameterBelief& belief,
+                              const std::vector<bool>& identified);
+
+}  // namespace sac
