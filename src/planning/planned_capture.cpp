@@ -128,9 +128,11 @@ std::string amissInWords(const PlannedCapture& planned, std::size_t coil) {
          ": check the amplifier and the coil driver.";
 }
 
-double captureDuration(const PlannedCapture& planned, double duration) {
+double captureDuration(const PlannedCapture& planned, double duration, double longest) {
   constexpr double kWithoutCurrent = 3.0;
-  return planned.pattern.empty() ? kWithoutCurrent * duration : duration;
+  return planned.pattern.empty() && duration < longest
+             ? std::min(kWithoutCurrent * duration, longest)
+             : duration;
 }
 
 }  // namespace sac

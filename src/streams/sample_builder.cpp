@@ -130,11 +130,11 @@ void SampleBuilder::finish() {
 
 CaptureProgress SampleBuilder::capture(Stamp from, double duration) const {
   using State = CaptureProgress::State;
-  if (!(duration >= options_.smallest_duration && duration <= options_.largest_dwell / 2.0)) {
+  if (!(duration >= options_.smallest_duration && duration <= options_.longestCapture())) {
     return {State::kRefused,
             std::nullopt,
             "The duration must lie between " + shortNumber(options_.smallest_duration) + " and " +
-                shortNumber(options_.largest_dwell / 2.0) + " s."};
+                shortNumber(options_.longestCapture()) + " s."};
   }
   const std::string silent = silentStream();
   if (!silent.empty()) {

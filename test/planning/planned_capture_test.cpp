@@ -127,9 +127,11 @@ TEST_F(PlannedCaptureTest, EachFlawHasANameAndASentence) {
 }
 
 TEST_F(PlannedCaptureTest, WithoutCurrentItTakesThreeTimesAsLong) {
-  EXPECT_EQ(captureDuration(planned_, 0.5), 0.5);
+  EXPECT_EQ(captureDuration(planned_, 0.5, 60.0), 0.5);
   planned_.pattern.clear();
-  EXPECT_EQ(captureDuration(planned_, 0.5), 1.5);
+  EXPECT_EQ(captureDuration(planned_, 0.5, 60.0), 1.5);
+  EXPECT_EQ(captureDuration(planned_, 30.0, 60.0), 60.0);
+  EXPECT_EQ(captureDuration(planned_, 70.0, 60.0), 70.0) << "it is refused by what it is";
 }
 
 }  // namespace

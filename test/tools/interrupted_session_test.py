@@ -50,7 +50,6 @@ class Bench:
     def capture(self, pose, *patterns):
         self.held += [Measured(pose.joints, pattern, pose.validation) for pattern in patterns]
 
-
     @staticmethod
     def load_plan(_source):
         return [Pose((0.1, 0.0, 0.0), ((1,),))], 1.5
@@ -69,6 +68,27 @@ class SessionsOfAPlan(unittest.TestCase):
 
     def test_are_not_made_with_another_one(self):
         self.assertRaisesRegex(OptionError, "plan.yaml has its coils at 1.5 A", self.session(current=1.0)._wanted_poses)
+
+
+class SamplesThatAreForgottenMeanwhile(unittest.TestCase):
+    def test_are_measured_again(self):
+        bench, account, led_to = Bench(), Account(), []
+        session = Session(bench, None, ACTUATOR, Options(skip_linearity=True), Task(), account)
+        session._look_at_the_joint = lambda: None
+        session._course.excite = lambda pattern: None
+        session._linearity.captures = lambda pose: 0
+
+        def measure(pose, _which, _done, _further):
+            led_to.append(pose)
+            if len(led_to) == 2:
+                bench.held.clear()
+            bench.capture(pose, (), (1,))
+
+        session._course.measure = measure
+        poses = [Pose((0.1 * n, 0.0, 0.0), ((1,),)) for n in range(3)]
+        session._measure(poses)
+        self.assertEqual(led_to, [*poses, poses[0]])
+        self.assertIn("Samples of one pose were taken out of use meanwhile", "\n".join(account.message().sentences))
 
 
 class InterruptedSessions(unittest.TestCase):

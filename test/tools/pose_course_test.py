@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """What a guided session waits for and captures at a pose, without ROS."""
 
+import itertools
 import unittest
 from types import SimpleNamespace
 
 from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
-from spherical_actuator_calibration.session_guide.options import Options
+from spherical_actuator_calibration.session_guide.options import OptionError, Options
 from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.task import Task
@@ -158,6 +159,16 @@ class Bench:
         return [PoseProgress(is_measured=not missing and bool(held), missing=missing) for _ in poses]
 
 
+class DurationOfACapture(unittest.TestCase):
+    def test_is_one_that_the_node_takes(self):
+        node = SimpleNamespace(status=lambda: SimpleNamespace(shortest_capture=0.2, longest_capture=60.0))
+        for dwell in (0.2, 60.0):
+            PoseCourse(node, node, Options(dwell=dwell), Hour([0.0]), Account()).require_dwell()
+        for dwell in (0.1, 61.0):
+            with self.assertRaisesRegex(OptionError, "^dwell: .* takes 0.2 to 60 s"):
+                PoseCourse(node, node, Options(dwell=dwell), Hour([0.0]), Account()).require_dwell()
+
+
 class CapturingAPose(unittest.TestCase):
     def captured(self, flaws):
         """The bench after a pose, and what was said."""
@@ -188,6 +199,26 @@ class CapturingAPose(unittest.TestCase):
         for flaw in (CapturePlannedResponse.CURRENTS, CapturePlannedResponse.TORQUE, CapturePlannedResponse.ORIENTATION):
             bench, _ = self.captured(["", flaw, ""])
             self.assertEqual(bench.log, [(), (3,), (3,)])
+
+    def test_what_is_refused_again_and_again_ends_and_tells_why(self):
+        clock, bench = [0.0], Bench(itertools.repeat("orientation"))
+        course = PoseCourse(bench, bench, Options(current_timeout=20.0, pose_timeout=60.0), Hour(clock), Account())
+        with self.assertRaisesRegex(RuntimeError, r"Flaw: orientation\. It is so for 2\d s\. See to that, and start again"):
+            course.capture(POSE, (3,))
+        clock[0] = 0.0
+        with self.assertRaisesRegex(RuntimeError, r"It is so for 6\d s"):
+            course.capture(POSE, ())
+
+    def test_the_time_that_a_hand_needs_is_none_of_a_refusal(self):
+        clock, bench = [0.0], Bench(["pose", "orientation", ""])
+        course = PoseCourse(bench, bench, Options(current_timeout=20.0), Hour(clock), Account())
+
+        def wait_for_hand(_pose):
+            clock[0] += 500.0
+
+        course.wait_for_rest = wait_for_hand
+        course.capture(POSE, (3,))
+        self.assertEqual(bench.log, [(3,)] * 3)
 
     def test_a_sample_whose_answer_was_lost_counts(self):
         bench, _ = self.captured(["", None])

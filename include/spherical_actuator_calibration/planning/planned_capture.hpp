@@ -64,7 +64,8 @@ std::string flawInWords(CaptureFlaw flaw);
 std::string amissInWords(const PlannedCapture& planned, std::size_t coil);
 
 /// For how long to average [s], where a pattern with current takes `duration`: three times as long
-/// without, as all torques of the rest share the error of what is measured then.
-double captureDuration(const PlannedCapture& planned, double duration);
+/// without, but at most `longest`, as all torques of the rest share the error of what is measured
+/// then. A `duration` beyond `longest` stays what it is.
+double captureDuration(const PlannedCapture& planned, double duration, double longest);
 
 }  // namespace sac

@@ -54,6 +54,9 @@ struct SampleBuilderOptions {
   double clock_reset = 1.0;
   /// A step forward beyond it is believed only when the next message confirms it [s].
   double largest_jump = 10.0;
+
+  /// What a single capture averages at most [s]: the rest that it waits for must not be cut.
+  double longestCapture() const { return largest_dwell / 2.0; }
 };
 
 /// Throws ConfigError that names the field, its value and the allowed range.

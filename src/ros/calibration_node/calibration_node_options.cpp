@@ -9,6 +9,14 @@ ValueRange wantedStddevRange() {
   return ValueRange::closed(1e-9, 1.0, "rad");
 }
 
+namespace {
+
+ValueRange captureRange(const SampleBuilderOptions& samples) {
+  return ValueRange::closed(samples.smallest_duration, samples.longestCapture(), "s");
+}
+
+}  // namespace
+
 CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private_node) {
   const YamlMap map = privateParameters(private_node);
   CalibrationNodeOptions options;
@@ -16,7 +24,7 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
   options.directory = map.text("directory", options.directory);
   options.auto_capture = map.boolean("auto_capture", options.auto_capture);
   options.capture_duration =
-      map.number("capture_duration", ValueRange::closed(0.01, 600.0), options.capture_duration);
+      map.number("capture_duration", captureRange(options.calibration.samples), options.capture_duration);
   options.motion_wanted_stddev =
       map.number("motion_wanted_stddev", wantedStddevRange(), options.motion_wanted_stddev);
   if (map.has(kMotionWish)) {

@@ -116,6 +116,8 @@ void CalibrationTopics::publishStatus(const LiveSession& session,
   message.current_tolerance = tolerance.absolute;
   message.current_tolerance_share = tolerance.share;
   message.pose_tolerance = kPoseTolerance;
+  message.shortest_capture = calibration.config().samples.smallest_duration;
+  message.longest_capture = calibration.config().samples.longestCapture();
   message.rest_spread =
       restOptions(calibration.config().samples, nominal.has_joints).largest_joint_spread;
   message.auto_capture = static_cast<std::uint8_t>(auto_capture);

@@ -20,6 +20,14 @@ EXCITATION = 5.0  # [s] where none is asked for
 VALIDATING = "validating"
 
 
+def _require_duration(course):
+    """Raises OptionError of a CaptureGoal."""
+    try:
+        course.require_dwell()
+    except OptionError as error:
+        raise OptionError("duration", error.reason) from None
+
+
 class _AtTheBench:
     """Of actions that excite coils: while one works, it holds the laboratory."""
 
@@ -105,6 +113,7 @@ class CaptureAction(_AtTheBench):
         options = options_of_capture(goal, self._ns)
         self._take(task, account)
         course = PoseCourse(self._calibration, self._laboratory, options, task, account)
+        _require_duration(course)
         if goal.here:
             course.measure_here(bool(goal.validation))
         else:

@@ -49,7 +49,7 @@ class Options:
             "coils_per_validation_pose": (1, 1000),
             "current": (0.01, 1000.0),
             "total_current": (self.excitation, 1e6),
-            "dwell": (0.05, 600.0),
+            "dwell": (0.001, 3600.0),  # the calibration node has its own: PoseCourse.require_dwell
             "settling": (0.0, 600.0),
             "current_timeout": (1.0, 3600.0),
             "pose_timeout": (10.0, 86400.0),

@@ -7,6 +7,7 @@ from spherical_actuator_calibration.msg import MeasurementProgress
 from spherical_actuator_calibration.srv import CapturePlannedResponse
 
 from . import progress
+from .options import OptionError
 
 POLL = 0.05  # [s]
 SLOW = 5.0  # [s] after which the operator is told what is waited for
@@ -45,6 +46,16 @@ class PoseCourse:
         if total > self._options.total_current:
             raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A.")
 
+    def require_dwell(self):
+        """Raises OptionError where the calibration node averages no such capture."""
+        status = self._calibration.status()
+        if not status.shortest_capture <= self._options.dwell <= status.longest_capture:
+            raise OptionError(
+                "dwell",
+                f"{self._options.dwell:g} s cannot be captured: the calibration node takes "
+                f"{status.shortest_capture:g} to {status.longest_capture:g} s.",
+            )
+
     def measure(self, pose, which, done, further=None):
         """Measures what samples lack of a pose, then calls further(pose, done); calls done() after each capture.
         `which`: the pose in words, for a hand that is told where to turn it; empty: it is not."""
@@ -59,18 +70,26 @@ class PoseCourse:
         self._account.lead_to(None)
 
     def measure_here(self, validation):
-        """One capture without current, wherever the rotor rests."""
+        """One capture without current, wherever the rotor rests. Raises RuntimeError when that takes too long."""
         self.excite(())
         self.wait_for_rest(None)
         self._account.set(stage=MeasurementProgress.CAPTURING)
+        begin = self._task.time()
         while True:
             answer = self._calibration.capture(self._options.dwell, validation)
             if answer is not None and answer.success:
                 self.samples.append(answer.sample)
                 return
             if answer is not None:
+                self._give_up_after(self._options.pose_timeout, begin, answer.message)
                 self._account.say_once(answer.message)
             self._task.pause(POLL)
+
+    def _give_up_after(self, most, begin, message):
+        """Raises RuntimeError with the message of a refused capture once it is asked for since `most` seconds."""
+        waited = self._task.time() - begin
+        if waited > most:
+            raise RuntimeError(f"{message} It is so for {waited:.0f} s. See to that, and start again: it goes on.")
 
     @contextlib.contextmanager
     def at_current(self, current):
@@ -166,7 +185,10 @@ class PoseCourse:
             self._task.pause(POLL)
 
     def capture(self, pose, pattern):
-        """Captures one pattern; repeats, and says why, until a sample of it is held."""
+        """Captures one pattern; repeats, and says why, until a sample of it is held. Raises RuntimeError when that
+        takes too long, with current sooner than without."""
+        begin = self._task.time()
+        most = self._options.current_timeout if pattern else self._options.pose_timeout
         while True:
             self._account.set(stage=MeasurementProgress.CAPTURING)
             self.excite(pattern)
@@ -179,8 +201,10 @@ class PoseCourse:
             if answer.success:
                 self.samples.append(answer.sample)
                 return
+            self._give_up_after(most, begin, answer.message)
             self._account.say_once(answer.message)
-            self._mend(answer.flaw, pose)
+            if self._mend(answer.flaw, pose):
+                begin = self._task.time()
             self._task.pause(POLL)
 
     def _holds(self, pose, pattern):
@@ -189,9 +213,13 @@ class PoseCourse:
         return pattern not in patterns
 
     def _mend(self, flaw, pose):
-        """What is to be done about a flaw that the node tells of, beside another capture."""
+        """What is to be done about a flaw that the node tells of, beside another capture. Returns whether that was
+        something."""
         if flaw == CapturePlannedResponse.POSE:
             self.excite(())
             self.wait_for_rest(pose)
         elif flaw == CapturePlannedResponse.REST:
             self.capture(pose, ())
+        else:
+            return False
+        return True

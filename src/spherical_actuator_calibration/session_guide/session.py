@@ -30,6 +30,7 @@ class Session:
     def run(self):
         """Returns whether all cycles succeeded and the result was saved."""
         self._calibration.wait_until_up()
+        self._course.require_dwell()
         poses = self._wanted_poses()
         self._course.require_current(poses)
         if self._options.wanted_stddev and not (self._asks_for_files() or self._training_poses()):
@@ -121,6 +122,17 @@ class Session:
         return [*interrupted, *poses]
 
     def _measure(self, poses):
+        """What samples lack of the poses; again what was taken out of use meanwhile."""
+        self._measure_once(poses)
+        for _ in range(MOST_ROUNDS):
+            lacking = sum(1 for patterns in self._course.to_capture(poses) if patterns)
+            if not lacking:
+                return
+            which = "one pose" if lacking == 1 else f"{lacking} poses"
+            self._account.say(f"Samples of {which} were taken out of use meanwhile: that is measured again.")
+            self._measure_once(poses)
+
+    def _measure_once(self, poses):
         captures = [len(patterns) for patterns in self._course.to_capture(poses)]
         open_poses = [pose for pose, count in zip(poses, captures) if count]
         further = max((self._linearity.captures(pose) for pose in open_poses), default=0)
