@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "spherical_actuator_calibration/actuator/unit_identity.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
@@ -23,12 +24,11 @@ void fillAxis(const Axis& axis, const AxisStddev& stddev, Message& message) {
   message.gain_stddev = stddev.gain.value_or(kUnknown);
 }
 
+/// Entries that are not identified have zero in the description.
 template <typename Values, typename Field>
 void fillStddevs(const std::optional<Values>& stddevs, Field& field) {
-  if (stddevs) {
-    std::copy(stddevs->begin(), stddevs->end(), field.begin());
-  } else {
-    std::fill(field.begin(), field.end(), kUnknown);
+  for (std::size_t n = 0; n < field.size(); ++n) {
+    field[n] = stddevs && (*stddevs)[n] > 0.0 ? (*stddevs)[n] : kUnknown;
   }
 }
 
@@ -141,7 +141,10 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
 
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design) {
-  if (message.poles.size() != design.poles.size() || message.coils.size() != design.coils.size()) {
+  if (message.poles.size() != design.poles.size() ||
+      message.coils.size() != design.coils.size() ||
+      (message.has_joints != 0) != design.has_joints ||
+      otherUnit(design, message.actuator, message.serial)) {
     return std::nullopt;
   }
   Actuator actuator = design;
@@ -167,6 +170,9 @@ std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
     return std::nullopt;
   }
   for (std::size_t i = 0; i < actuator.poles.size(); ++i) {
+    if (message.poles[i].polarity != design.poles[i].polarity) {
+      return std::nullopt;
+    }
     actuator.poles[i].polar = message.poles[i].polar;
     actuator.poles[i].azimuth = message.poles[i].azimuth;
     actuator.poles[i].gain = message.poles[i].gain;

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/ros/conversion/msg_conversion.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -238,6 +239,31 @@ TEST(MsgConversion, ParametersThatAreNoneAreRefused) {
   message = sound;
   message.torque_curve.support[1] = 1.0;
   EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.actuator = "another";
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.poles[3].polarity = static_cast<std::int8_t>(-message.poles[3].polarity);
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.has_joints = 0;
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  Actuator made = scenarios::paperNominal();
+  made.serial = "unit-1";
+  message = sound;
+  message.serial = "unit-2";
+  EXPECT_FALSE(actuatorFromRos(message, made));
+  message.serial.clear();
+  EXPECT_TRUE(actuatorFromRos(message, made)) << "who names none is taken";
+}
+
+TEST(MsgConversion, AnEntryOfACorrectionThatIsNotIdentifiedHasAnInfiniteStandardDeviation) {
+  ParameterStddevs stddevs;
+  stddevs.joints[0].linear = std::array<double, kJoints>{4.8e-5, 4.2e-4, 0.0};
+  const msg::JointAxis joint = parametersToRos(scenarios::paperNominal(), stddevs).joints[0];
+  EXPECT_EQ(joint.linear_stddev[1], 4.2e-4);
+  EXPECT_TRUE(std::isinf(joint.linear_stddev[2]));
+  EXPECT_TRUE(std::isinf(joint.harmonics_stddev[0]));
 }
 
 TEST(MsgConversion, NothingLooksIdentifiedThatIsNot) {

@@ -82,8 +82,8 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator,
                                         const ParameterStddevs& stddevs = {});
 
 /// `design` with everything identified that a message holds: geometry, gains, corrections, torque
-/// law, orientation map. Nothing when the message has other numbers of poles or coils, or its law
-/// or map is none.
+/// law, orientation map. Nothing when the message is of another actuator or unit, has other numbers
+/// of poles or coils, another polarity or kind of rotor, or its law or map is none.
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design);
 
