@@ -26,8 +26,6 @@ namespace {
 constexpr int kPeriod = 100;              // [ms] between two looks at what has come
 constexpr int kTicksOfHealth = 5;         // looks between two pictures of the health
 constexpr int kNarrowest = 380;           // [px]
-constexpr double kShortestCapture = 0.2;  // [s]; the node takes no shorter one
-constexpr double kLongestCapture = 60.0;  // [s]
 constexpr const char* kLegend =
     "<small>streams: <span style='color:#1b9e4b'>●</span> good <span "
     "style='color:#d98200'>●</span> "
@@ -124,7 +122,6 @@ QLayout* CalibrationPanel::makeCaptureRow() {
   button->setStyleSheet(kPrimaryStyle);
   connect(button, &QPushButton::clicked, this, &CalibrationPanel::capture);
   duration_ = new QDoubleSpinBox;
-  duration_->setRange(kShortestCapture, kLongestCapture);
   duration_->setSingleStep(0.1);
   duration_->setDecimals(1);
   duration_->setValue(1.0);
@@ -173,11 +170,19 @@ QLayout* CalibrationPanel::makeFileRow() {
           &QPushButton::clicked,
           this,
           [this] { trigger("save"); });
-  connect(
-      addButton(row, "Forget samples", "Take all samples out of use; they stay in the database"),
-      &QPushButton::clicked,
-      this,
-      [this] { forgetSamples(); });
+  const auto add = [&](const char* text, const char* help, const char* service, const char* question) {
+    connect(addButton(row, text, help), &QPushButton::clicked, this, [=] {
+      triggerIfMeant(service, text, question);
+    });
+  };
+  add("Forget samples",
+      "Take all samples out of use; they stay in the database",
+      "clear_samples",
+      "Take all samples out of use? Only the session database keeps them.");
+  add("Reset",
+      "Put the description as it is drawn in force again, as a new revision",
+      "reset",
+      "Put the description as it is drawn in force again? Samples stay in use.");
   return row;
 }
 
@@ -241,10 +246,10 @@ void CalibrationPanel::refresh() {
   outcome_->age();
   revisions_->refresh(model_.revision(), model_.revisionNumber());
   motion_->refresh();
-  learnSamples();
   if (ticks_++ % kTicksOfHealth == 0) {
     const ros::WallTime now = ros::WallTime::now();
     health_->fill(model_.streams(now), model_.troubles(now));
+    learnSamples();
   }
   if (changed_) {
     changed_ = false;
@@ -254,8 +259,10 @@ void CalibrationPanel::refresh() {
 
 void CalibrationPanel::learnSamples() {
   if (const std::optional<ServiceAnswer> answer = lister_.takeAnswer()) {
-    for (const msg::CalibrationSample& sample : answer->samples) {
-      model_.receive(sample);
+    if (answer->success) {
+      model_.receive(answer->samples);
+    } else {
+      model_.repeatRequestForSamples();
     }
     changed_ = true;
   }
@@ -272,6 +279,9 @@ void CalibrationPanel::showCalibration() {
   }
   next_step_->setText(QString::fromStdString(model_.nextStep()));
   bars_->setGroups(model_.coverage());
+  if (model_.longestCapture() > 0.0) {
+    duration_->setRange(model_.shortestCapture(), model_.longestCapture());
+  }
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
   const std::string reason = model_.gradeReason() + " (" + model_.revision() + ")";
   grade_->setText(QString("<b>%1</b> <small>%2</small>")
@@ -343,11 +353,11 @@ void CalibrationPanel::trigger(const std::string& service) {
   call<std_srvs::Trigger>(service, std_srvs::Trigger::Request());
 }
 
-void CalibrationPanel::forgetSamples() {
-  const auto choice = QMessageBox::question(
-      this, "Forget samples", "Take all samples out of use? Only the session database keeps them.");
-  if (choice == QMessageBox::Yes) {
-    trigger("clear_samples");
+void CalibrationPanel::triggerIfMeant(const std::string& service,
+                                      const QString& title,
+                                      const QString& question) {
+  if (QMessageBox::question(this, title, question) == QMessageBox::Yes) {
+    trigger(service);
   }
 }
 

@@ -58,7 +58,7 @@ class CalibrationPanel : public rviz::Panel {
   void feed(const std::string& topic);
 
   void refresh();
-  /// Asks where the samples of a report were taken, if it tells of some from before the panel.
+  /// Asks for the samples in use where some are not known, or went.
   void learnSamples();
   void showCalibration();
   /// How long a call runs, or what came of it.
@@ -70,7 +70,8 @@ class CalibrationPanel : public rviz::Panel {
   void capture();
   void calibrate(const std::string& service, std::uint32_t coil);
   void trigger(const std::string& service);
-  void forgetSamples();
+  /// Triggers a service once somebody has said that it is meant.
+  void triggerIfMeant(const std::string& service, const QString& title, const QString& question);
   void removeSample(std::uint32_t id);
   void restore(std::uint32_t revision);
   void setAutoCapture(bool on);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <set>
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
+#include "sample_place.hpp"
 #include "shown_unit.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
@@ -84,9 +85,16 @@ std::string cycleName(const msg::CalibrationReport& report) {
   return report.coil == 0 ? report.cycle : report.cycle + ", coil " + std::to_string(report.coil);
 }
 
-/// Residuals of a motion are of its windows.
-bool isOfSamples(const msg::CalibrationReport& report) {
-  return report.cycle != msg::CalibrationReport::MOTION;
+/// A sample that the last cycle did not consider.
+SampleLine lineWithoutCycle(const msg::CalibrationSample& sample, double current_threshold) {
+  const std::string coils = coilsOf(sample, current_threshold);
+  SampleLine line;
+  line.id = sample.id;
+  line.quantity = coils.empty() ? "orientation" : "torque, " + coils;
+  line.angles = anglesOf(sample);
+  line.residual = line.standardized = "–";
+  line.verdict = sample.validation != 0 ? "held out" : "not in the last cycle";
+  return line;
 }
 
 }  // namespace
@@ -204,35 +212,75 @@ std::vector<ParameterLine> PanelModel::estimates() const {
   return lines;
 }
 
-void PanelModel::receive(const msg::CalibrationReport& message) {
-  report_ = message;
-  is_report_new_ = true;
+void PanelModel::receive(const msg::CalibrationStatus& message) {
+  if (!samples_ || status_.coils.size() != message.coils.size()) {
+    samples_.emplace(message.coils.size());
+  }
+  samples_->receive(message);
+  status_ = message;
+}
+
+void PanelModel::receive(const msg::CalibrationSample& message) {
+  if (samples_) {
+    samples_->receive(message);
+  }
+}
+
+void PanelModel::receive(const std::vector<msg::CalibrationSample>& in_use) {
+  if (samples_) {
+    samples_->set(in_use);
+  }
 }
 
 bool PanelModel::takeRequestForSamples() {
-  const bool is_new = std::exchange(is_report_new_, false);
-  return is_new && isOfSamples(report_) &&
-         std::any_of(report_.residuals.begin(), report_.residuals.end(), [this](const auto& one) {
-           return !places_.knows(one.id);
-         });
+  return samples_ && samples_->takeRequest();
+}
+
+void PanelModel::repeatRequestForSamples() {
+  if (samples_) {
+    samples_->repeatRequest();
+  }
 }
 
 std::vector<SampleLine> PanelModel::samples() const {
+  std::vector<SampleLine> lines = linesOfReport();
+  // Residuals of a motion are of its windows.
+  if (!samples_ || report_.cycle == msg::CalibrationReport::MOTION) {
+    return lines;
+  }
+  const std::map<std::uint32_t, msg::CalibrationSample>& in_use = samples_->samples();
+  std::set<std::uint32_t> considered;
+  for (SampleLine& line : lines) {
+    considered.insert(line.id);
+    const auto sample = in_use.find(line.id);
+    if (sample == in_use.end()) {
+      continue;
+    }
+    line.angles = anglesOf(sample->second);
+    const std::string coils = coilsOf(sample->second, status_.current_threshold);
+    line.quantity += line.quantity == "torque" && !coils.empty() ? ", " + coils : "";
+  }
+  for (const auto& [id, sample] : in_use) {
+    if (considered.count(id) == 0) {
+      lines.push_back(lineWithoutCycle(sample, status_.current_threshold));
+    }
+  }
+  return lines;
+}
+
+std::vector<SampleLine> PanelModel::linesOfReport() const {
   std::vector<msg::SampleResidual> residuals = report_.residuals;
   const auto worse = [](const msg::SampleResidual& one, const msg::SampleResidual& other) {
     return one.standardized > other.standardized;
   };
   std::stable_sort(residuals.begin(), residuals.end(), worse);
-  const bool are_samples = isOfSamples(report_);
   std::vector<SampleLine> lines;
   lines.reserve(residuals.size());
   for (const msg::SampleResidual& one : residuals) {
     const ShownUnit shown = shownIn(one.unit);
-    const bool is_torque = one.quantity == "torque" && are_samples;
-    const std::string coils = is_torque ? places_.coils(one.id, status_.current_threshold) : "";
     lines.push_back({one.id,
-                     one.quantity + (coils.empty() ? "" : ", ") + coils,
-                     are_samples ? places_.angles(one.id) : "",
+                     one.quantity,
+                     "",
                      withUnit("%.3f", shown.factor * one.residual, shown.name),
                      number("%.1f", one.standardized),
                      one.rejected == 0    ? ""

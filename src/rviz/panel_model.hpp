@@ -2,17 +2,18 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/time.h>
 
-#include "sample_places.hpp"
 #include "spherical_actuator_calibration/ActuatorParameters.h"
 #include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/CalibrationStatus.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/sample_mirror.hpp"
 
 namespace sac {
 
@@ -65,10 +66,13 @@ class PanelModel {
   /// `name_space` is that of the actuator, with or without its slash.
   explicit PanelModel(const std::string& name_space);
 
-  void receive(const msg::CalibrationStatus& message) { status_ = message; }
-  void receive(const msg::CalibrationReport& message);
+  void receive(const msg::CalibrationStatus& message);
+  void receive(const msg::CalibrationReport& message) { report_ = message; }
   void receive(const msg::ActuatorParameters& message) { parameters_ = message; }
-  void receive(const msg::CalibrationSample& message) { places_.receive(message); }
+  /// Nothing before the first status.
+  void receive(const msg::CalibrationSample& message);
+  /// The answer of list_samples, see takeRequestForSamples().
+  void receive(const std::vector<msg::CalibrationSample>& in_use);
   /// Keeps what the nodes in the namespace tell.
   void receive(const diagnostic_msgs::DiagnosticArray& message, const ros::WallTime& now);
 
@@ -89,6 +93,9 @@ class PanelModel {
 
   /// Joint angles that differ by at most this from a planned pose are at it [rad].
   double poseTolerance() const { return status_.pose_tolerance; }
+  /// What a capture averages, at least and at most [s]; both zero before the first status.
+  double shortestCapture() const { return status_.shortest_capture; }
+  double longestCapture() const { return status_.longest_capture; }
   /// Whether the node captures every dwell by itself.
   bool capturesByItself() const { return status_.auto_capture != 0; }
 
@@ -105,11 +112,13 @@ class PanelModel {
   /// The parameters that the last cycle was free to change.
   std::vector<ParameterLine> estimates() const;
   /// The samples of the last cycle that are in use still, worst first; one that has both an
-  /// orientation and a torque has two lines.
+  /// orientation and a torque has two lines. Then those in use that it did not consider.
   std::vector<SampleLine> samples() const;
-  /// True, once for a report, when it tells of samples that were not received: then the list of
-  /// those in use must be asked for.
+  /// True, once, when samples are in use that were not received, or were taken away: then the list
+  /// of those in use must be asked for.
   bool takeRequestForSamples();
+  /// Without an answer: the request stands again.
+  void repeatRequestForSamples();
   /// Error before the first and after each iteration of the last cycle, in the unit of the title.
   std::vector<double> errorHistory() const;
   /// Name of the last cycle, and of its error with unit.
@@ -125,8 +134,9 @@ class PanelModel {
   msg::CalibrationStatus status_;
   msg::CalibrationReport report_;  ///< of the last cycle or validation
   msg::ActuatorParameters parameters_;
-  SamplePlaces places_;
-  bool is_report_new_ = false;  ///< its samples have not been looked for
+  std::vector<SampleLine> linesOfReport() const;
+
+  std::optional<SampleMirror> samples_;  ///< in use, since the first status
   std::map<std::string, Heard> heard_;
 };
 

@@ -250,45 +250,64 @@ TEST(PanelModel, SamplesAreListedWorstFirstUntilTheyAreRemoved) {
   EXPECT_EQ(panel.samples()[2].verdict, "");
 }
 
-TEST(PanelModel, TellsWhereSamplesWereTakenOnceItHasHeardOfThem) {
-  msg::CalibrationReport message = report("rad");
-  message.residuals.resize(1);
-  message.residuals[0].id = 7;
-  message.residuals[0].quantity = "torque";
+msg::CalibrationSample torqueSample(std::uint32_t id, std::vector<double> current) {
+  msg::CalibrationSample sample;
+  sample.id = id;
+  sample.current = std::move(current);
+  return sample;
+}
+
+/// Of a calibration of three coils, with a report of one torque.
+PanelModel panelWithReportOfSample(std::uint32_t id, const std::string& cycle) {
   PanelModel panel("actuator");
+  msg::CalibrationStatus status;
+  status.current_threshold = 0.1;
+  status.coils.resize(3);
+  panel.receive(status);
+  msg::CalibrationReport message = report("rad");
+  message.cycle = cycle;
+  message.residuals.resize(1);
+  message.residuals[0].id = id;
+  message.residuals[0].quantity = "torque";
   panel.receive(message);
+  return panel;
+}
+
+TEST(PanelModel, TellsWhereSamplesWereTakenOnceItHasHeardOfThem) {
+  PanelModel panel = panelWithReportOfSample(7, msg::CalibrationReport::REFINE);
   EXPECT_EQ(panel.samples()[0].quantity, "torque");
   EXPECT_EQ(panel.samples()[0].angles, "");
   EXPECT_TRUE(panel.takeRequestForSamples());
-  EXPECT_FALSE(panel.takeRequestForSamples())
-      << "an answer without it would be asked for endlessly";
-
-  msg::CalibrationStatus status;
-  status.current_threshold = 0.1;
-  panel.receive(status);
-  msg::CalibrationSample sample;
-  sample.id = 7;
-  sample.current = {0.0, 0.01, -2.0};
-  panel.receive(sample);
+  EXPECT_FALSE(panel.takeRequestForSamples()) << "it is asked for once";
+  panel.repeatRequestForSamples();
+  EXPECT_TRUE(panel.takeRequestForSamples());
+  panel.receive(std::vector<msg::CalibrationSample>{torqueSample(7, {0.0, 0.01, -2.0})});
+  ASSERT_EQ(panel.samples().size(), 1U);
   EXPECT_EQ(panel.samples()[0].quantity, "torque, coil 3");
   EXPECT_EQ(panel.samples()[0].angles, "+0.0°, +0.0°, +0.0°");
-  panel.receive(message);
-  EXPECT_FALSE(panel.takeRequestForSamples());
+}
+
+TEST(PanelModel, ListsSamplesThatNoCycleHasConsideredToo) {
+  PanelModel panel = panelWithReportOfSample(7, msg::CalibrationReport::REFINE);
+  panel.receive(torqueSample(8, {0.0, 0.0, 0.0}));
+  panel.receive(torqueSample(7, {2.0, 0.0, 0.0}));
+  msg::CalibrationSample held_out = torqueSample(9, {0.0, 2.0, 0.0});
+  held_out.validation = 1;
+  panel.receive(held_out);
+  const std::vector<SampleLine> lines = panel.samples();
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].id, 7U);
+  const SampleLine expected = {
+      8, "orientation", "+0.0°, +0.0°, +0.0°", "–", "–", "not in the last cycle"};
+  EXPECT_EQ(lines[1], expected);
+  EXPECT_EQ(lines[2].quantity, "torque, coil 2");
+  EXPECT_EQ(lines[2].verdict, "held out");
 }
 
 TEST(PanelModel, TakesWindowsOfAMotionForNoSamples) {
-  msg::CalibrationReport message = report("1");
-  message.cycle = msg::CalibrationReport::MOTION;
-  message.residuals.resize(1);
-  message.residuals[0].id = 7;
-  message.residuals[0].quantity = "torque";
-  PanelModel panel("actuator");
-  panel.receive(message);
-  EXPECT_FALSE(panel.takeRequestForSamples());
-  msg::CalibrationSample sample;
-  sample.id = 7;
-  sample.current = {2.0};
-  panel.receive(sample);
+  PanelModel panel = panelWithReportOfSample(7, msg::CalibrationReport::MOTION);
+  panel.receive(torqueSample(7, {2.0, 0.0, 0.0}));
+  ASSERT_EQ(panel.samples().size(), 1U);
   EXPECT_EQ(panel.samples()[0].angles, "");
   EXPECT_EQ(panel.samples()[0].quantity, "torque");
 }

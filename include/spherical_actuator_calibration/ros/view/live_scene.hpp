@@ -18,7 +18,7 @@
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/view/calibration_markers.hpp"
-#include "spherical_actuator_calibration/ros/view/sample_mirror.hpp"
+#include "spherical_actuator_calibration/ros/conversion/sample_mirror.hpp"
 
 namespace sac {
 

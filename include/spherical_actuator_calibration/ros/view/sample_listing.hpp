@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/view/sample_mirror.hpp"
+#include "spherical_actuator_calibration/ros/conversion/sample_mirror.hpp"
 
 namespace sac {
 

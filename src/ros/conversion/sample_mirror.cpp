@@ -1,4 +1,4 @@
-#include "spherical_actuator_calibration/ros/view/sample_mirror.hpp"
+#include "spherical_actuator_calibration/ros/conversion/sample_mirror.hpp"
 
 #include <string>
 #include <utility>
