@@ -283,11 +283,12 @@ class CalibrateByMotion(unittest.TestCase):
         self.folder.mkdir()
         (self.folder / "recordings").mkdir()
         (self.folder / "recordings" / "1.bag").touch()
-        status, said = self.run_with()
-        self.assertEqual(status, 1)
-        self.assertIn("is not empty", said)
-        self.assertNotIn("What was recorded", said)
-        self.assertFalse(self.started)
+        actuator = SOURCE / "config" / "pm_spherical_8x24.yaml"
+        options = self.module.parse(["--actuator", str(actuator), "--directory", str(self.folder)])
+        with self.assertRaisesRegex(self.module.TextFileError, "is not empty"):
+            self.module.require_files(options)
+        options = self.module.parse(["--actuator", str(actuator), "--directory", str(self.folder / "new")])
+        self.assertIn("actuator", self.module.require_files(options))
 
     def test_begins_gently_without_a_plan_only(self):
         with self.assertRaises(SystemExit) as refused, mock.patch("sys.stderr"):
