@@ -231,10 +231,11 @@ class Registrar {
         format("The poses contradict the mechanism (reduced chi-square %s, at most %s): ",
                shortNumber(result_.reduced_chi_square).c_str(),
                shortNumber(options_.max_reduced_chi_square).c_str()) +
-        (mistake ? "they would fit if " + *mistake + "."
-                 : "check that the marker sits firmly on the rotor, that the rotor rested, that the "
-                   "tracker is as exact as stated, signs and order of the joints, and the "
-                   "quaternion's order."));
+        (mistake
+             ? "they would fit if " + *mistake + "."
+             : "check that the marker sits firmly on the rotor, that the rotor rested, that the "
+               "tracker is as exact as stated, signs and order of the joints, and the "
+               "quaternion's order."));
   }
 
   std::optional<std::string> mistakeThatFits() const {

@@ -1,9 +1,5 @@
 #include "evidence.hpp"
 
-#include <string>
-
-#include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
-
 namespace sac {
 
 Evidence evidenceOf(const Actuator& nominal, const std::vector<Sample>& samples) {

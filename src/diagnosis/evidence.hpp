@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
@@ -20,5 +21,8 @@ struct Evidence {
 
 /// `nominal`: as described.
 Evidence evidenceOf(const Actuator& nominal, const std::vector<Sample>& samples);
+
+/// Why so few samples tell of no mistake, in a sentence; empty where they are enough.
+std::string whyNothingIsTold(const Actuator& nominal, const std::vector<Sample>& samples);
 
 }  // namespace sac

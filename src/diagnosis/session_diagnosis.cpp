@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "evidence.hpp"
 #include "explanation_words.hpp"
 #include "single_explanations.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -182,10 +183,9 @@ std::string verdictInWords(const CalibrationSession& session,
   if (!diagnoses.empty()) {
     return inWords(diagnoses);
   }
-  const std::string why =
-      session.motion() != nullptr
-          ? std::string()
-          : whyNothingIsTold(session.start().actuator, session.samples());
+  const std::string why = session.motion() != nullptr
+                              ? std::string()
+                              : whyNothingIsTold(session.start().actuator, session.samples());
   return why.empty() ? "Nothing speaks for a mistake." : why;
 }
 

@@ -23,9 +23,9 @@
 namespace sac {
 namespace {
 
-constexpr int kPeriod = 100;              // [ms] between two looks at what has come
-constexpr int kTicksOfHealth = 5;         // looks between two pictures of the health
-constexpr int kNarrowest = 380;           // [px]
+constexpr int kPeriod = 100;       // [ms] between two looks at what has come
+constexpr int kTicksOfHealth = 5;  // looks between two pictures of the health
+constexpr int kNarrowest = 380;    // [px]
 constexpr const char* kLegend =
     "<small>streams: <span style='color:#1b9e4b'>●</span> good <span "
     "style='color:#d98200'>●</span> "
@@ -170,11 +170,12 @@ QLayout* CalibrationPanel::makeFileRow() {
           &QPushButton::clicked,
           this,
           [this] { trigger("save"); });
-  const auto add = [&](const char* text, const char* help, const char* service, const char* question) {
-    connect(addButton(row, text, help), &QPushButton::clicked, this, [=] {
-      triggerIfMeant(service, text, question);
-    });
-  };
+  const auto add =
+      [&](const char* text, const char* help, const char* service, const char* question) {
+        connect(addButton(row, text, help), &QPushButton::clicked, this, [=] {
+          triggerIfMeant(service, text, question);
+        });
+      };
   add("Forget samples",
       "Take all samples out of use; they stay in the database",
       "clear_samples",

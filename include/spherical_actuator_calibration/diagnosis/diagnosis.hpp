@@ -40,9 +40,6 @@ WiringDiagnosis diagnoseWiring(const Actuator& nominal,
                                const std::vector<Sample>& samples,
                                const CalibrationConfig& config);
 
-/// Why so few samples tell of no mistake, in a sentence; empty where they are enough.
-std::string whyNothingIsTold(const Actuator& nominal, const std::vector<Sample>& samples);
-
 /// "joint_sign", …: every cause that a diagnosis of the wiring may name, without numbers.
 const std::vector<std::string>& wiringCauses();
 

@@ -23,8 +23,8 @@ CalibrationNodeOptions loadCalibrationNodeOptions(const ros::NodeHandle& private
   options.calibration = readCalibrationConfig(map, private_node.getNamespace());
   options.directory = map.text("directory", options.directory);
   options.auto_capture = map.boolean("auto_capture", options.auto_capture);
-  options.capture_duration =
-      map.number("capture_duration", captureRange(options.calibration.samples), options.capture_duration);
+  options.capture_duration = map.number(
+      "capture_duration", captureRange(options.calibration.samples), options.capture_duration);
   options.motion_wanted_stddev =
       map.number("motion_wanted_stddev", wantedStddevRange(), options.motion_wanted_stddev);
   if (map.has(kMotionWish)) {

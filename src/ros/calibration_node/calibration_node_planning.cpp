@@ -111,8 +111,8 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
       return true;
     }
     const double duration = request.duration == 0.0 ? options_.capture_duration : request.duration;
-    const CaptureProgress progress = intake_.waitForCapture(captureDuration(
-        planned, duration, options_.calibration.samples.longestCapture()));
+    const CaptureProgress progress = intake_.waitForCapture(
+        captureDuration(planned, duration, options_.calibration.samples.longestCapture()));
     if (!progress.sample) {
       response.message = "No sample: " + progress.message;
       return true;

@@ -141,8 +141,7 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
 
 std::optional<Actuator> actuatorFromRos(const msg::ActuatorParameters& message,
                                         const Actuator& design) {
-  if (message.poles.size() != design.poles.size() ||
-      message.coils.size() != design.coils.size() ||
+  if (message.poles.size() != design.poles.size() || message.coils.size() != design.coils.size() ||
       (message.has_joints != 0) != design.has_joints ||
       otherUnit(design, message.actuator, message.serial)) {
     return std::nullopt;
