@@ -18,6 +18,7 @@ struct RigidRotor {
 /// Throws ConfigError unless inertia and unbalance can be those of a body.
 void validate(const RigidRotor& rotor);
 
+/// Where the rotor is, and how it turns.
 struct RotorState {
   Eigen::Matrix3d R_stator_rotor = Eigen::Matrix3d::Identity();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rotor frame [rad/s]

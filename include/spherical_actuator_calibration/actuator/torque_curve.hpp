@@ -5,6 +5,7 @@
 
 namespace sac {
 
+/// Of the angles of a torque curve.
 enum class AngleUnit { kDegree, kRadian };
 
 /// A torque curve by points, from a measurement or a field computation. Angles are in the unit of

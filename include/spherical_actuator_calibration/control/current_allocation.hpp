@@ -12,12 +12,14 @@ struct AllocationOptions {
   double least_singular_value = 0.05;
 };
 
+/// What became of a wanted torque.
 enum class Allocation {
   kReached,   ///< the currents make the torque
   kLimited,   ///< more than the limits allow: what they do allow along its direction, to 0.1 %
   kSingular,  ///< no torque in some direction at this orientation: no current
 };
 
+/// What allocateCurrents() finds.
 struct AllocatedCurrents {
   Allocation outcome = Allocation::kSingular;
   Eigen::VectorXd currents;              ///< of every coil [A], within the limits

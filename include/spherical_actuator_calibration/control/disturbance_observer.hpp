@@ -9,6 +9,7 @@
 
 namespace sac {
 
+/// Of DisturbanceObserver.
 struct DisturbanceObserverOptions {
   /// With which a torque that nobody told of is found [rad/s]; 0: it is not looked for.
   double bandwidth = 10.0;

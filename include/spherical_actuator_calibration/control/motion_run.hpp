@@ -11,6 +11,7 @@
 
 namespace sac {
 
+/// How far a planned motion is (message MotionStatus).
 enum class MotionPhase {
   kNone,      ///< no motion was begun
   kApproach,  ///< the rotor turns to where the motion begins

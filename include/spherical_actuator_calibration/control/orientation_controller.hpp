@@ -20,6 +20,7 @@
 
 namespace sac {
 
+/// Whether the controller commands currents.
 enum class ControlState {
   kIdle,     ///< not enabled: no current
   kActive,   ///< follows its targets

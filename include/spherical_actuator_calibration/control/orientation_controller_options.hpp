@@ -10,6 +10,7 @@
 
 namespace sac {
 
+/// Of OrientationController; validate() says which values are allowed.
 struct OrientationControllerOptions {
   RigidRotor rotor;
   ControlGains gains;

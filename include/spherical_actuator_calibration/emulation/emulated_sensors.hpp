@@ -72,6 +72,7 @@ class EmulatedJointSensor {
   NoiseSource noise_;
 };
 
+/// A tracker, whose measured orientations have its noise and those of its frames.
 class EmulatedTracker {
  public:
   /// `dwells`: number of dwells of the session.
@@ -95,6 +96,7 @@ class EmulatedTracker {
   std::vector<std::optional<Eigen::Matrix3d>> dwell_errors_;  ///< per dwell, in the stator frame
 };
 
+/// A force/torque sensor, whose torques have noise, bias and drift.
 class EmulatedWrenchSensor {
  public:
   EmulatedWrenchSensor(const WrenchSensorOptions& options,
@@ -112,6 +114,7 @@ class EmulatedWrenchSensor {
   NoiseSource noise_;
 };
 
+/// What an amplifier tells of the currents of its coils.
 class EmulatedCurrentSensor {
  public:
   EmulatedCurrentSensor(const CurrentSensorOptions& options, std::uint64_t seed);

@@ -17,6 +17,7 @@ struct ParameterBelief {
   Eigen::MatrixXd covariance;  ///< of x [rad²], positive semidefinite
 };
 
+/// Of which kind a measured 3-vector is: rotor to stator [rad], or on the rotor, rotor frame [N·m].
 enum class Quantity { kOrientation, kTorque };
 
 /// One measured 3-vector that takes part in an estimation.

@@ -52,6 +52,7 @@ struct LeastSquaresInput {
   double parameter_tolerance = 1e-12;  ///< of what is left to go, relative to the coordinates
 };
 
+/// Where a minimisation went, and why it ended.
 struct LeastSquaresResult {
   Termination termination = Termination::kNumericalFailure;
   std::vector<Eigen::VectorXd> path;  ///< coordinates at the start and after each iteration

@@ -7,6 +7,7 @@
 
 namespace sac {
 
+/// What a recording of motion tells (doc/method.md).
 struct MotionEstimate {
   /// Its residuals are those of windows: the index of their sample is that of the window.
   Estimate estimate;

@@ -36,6 +36,7 @@ struct MotionTimes {
   double driven_motion = 0.0;  ///< both
 };
 
+/// Of streams of one recording.
 MotionTimes timesOf(const MotionStreams& streams);
 
 /// Whether a rotor moves with currents, so that the recording is one of motion rather than dwells:

@@ -19,6 +19,7 @@ namespace sac {
 /// that body: on the rotor, or on the stator as the reaction.
 enum class SensorMount { kRotor, kStator };
 
+/// Of MeasurementBridge.
 struct MeasurementBridgeOptions {
   SensorMount sensor_mount = SensorMount::kRotor;
   JumpLimits jumps;

@@ -35,6 +35,7 @@ struct ClosedLoopPoint {
   double largest_current = 0.0;  ///< of all coils [A]
 };
 
+/// How a rotor followed its motion.
 struct ClosedLoopResult {
   /// False when the rotor came where the model makes no torque, or out of the joint's range;
   /// `points` end there.

@@ -42,6 +42,7 @@ std::vector<MotionPlan> drawMotions(const Actuator& actuator,
                                     const MotionPlannerOptions& options,
                                     const MotionScore& score);
 
+/// A planned motion with what it is expected to tell.
 struct PlannedMotionResult {
   MotionPlanRecord record;
   double excitation = 0.0;            ///< root mean square of each coil [A]

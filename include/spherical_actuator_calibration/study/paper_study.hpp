@@ -66,6 +66,7 @@ enum class Orientations {
   kPlanned,      ///< by planPoses() for the nominal actuator; the same for every seed
 };
 
+/// One calibration of poles and coils by a set of orientations.
 struct LevelTwoRun {
   bool observable = false;     ///< every wanted parameter was identified
   std::vector<double> errors;  ///< ε₂ [N·m] before the first and after each iteration

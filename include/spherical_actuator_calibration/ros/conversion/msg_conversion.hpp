@@ -99,8 +99,10 @@ msg::CalibrationReport reportToRos(const CycleReport& report, const GradedCalibr
 msg::CalibrationReport validationToRos(const HeldOutValidation& validation,
                                        const GradedCalibration& graded);
 
+/// In the same order.
 std::vector<msg::Diagnosis> diagnosesToRos(const std::vector<Diagnosis>& diagnoses);
 
+/// Field by field.
 msg::Coverage coverageToRos(const Coverage& coverage);
 
 }  // namespace sac

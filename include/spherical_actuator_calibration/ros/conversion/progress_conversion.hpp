@@ -20,6 +20,7 @@ CoilPattern patternFromRos(const std::vector<std::int32_t>& signed_numbers, std:
 PoseToMeasure poseFromRos(const msg::PosePatterns& message, std::size_t coils);
 msg::PosePatterns poseToRos(const PoseToMeasure& pose);
 
+/// Of one pose of a plan, or of all in their order.
 msg::PoseProgress progressToRos(const PoseProgress& progress);
 std::vector<msg::PoseProgress> progressToRos(const std::vector<PoseProgress>& poses);
 

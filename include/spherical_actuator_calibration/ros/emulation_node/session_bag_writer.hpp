@@ -20,6 +20,7 @@ struct FrameNames {
   std::string ft_sensor = "ft_sensor";
 };
 
+/// Of the chunks of a recording.
 enum class BagCompression { kNone, kLz4 };
 
 /// How a session is recorded.

@@ -17,8 +17,8 @@
 #include "spherical_actuator_calibration/CoilCurrents.h"
 #include "spherical_actuator_calibration/PlanPoses.h"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
-#include "spherical_actuator_calibration/ros/view/calibration_markers.hpp"
 #include "spherical_actuator_calibration/ros/conversion/sample_mirror.hpp"
+#include "spherical_actuator_calibration/ros/view/calibration_markers.hpp"
 
 namespace sac {
 

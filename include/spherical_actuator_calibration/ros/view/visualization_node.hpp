@@ -21,6 +21,7 @@
 
 namespace sac {
 
+/// Private parameters of the node.
 struct VisualizationOptions {
   double error_magnification = 10.0;  ///< of the axes' errors and deviations, in the markers
   std::string frame_prefix;           ///< before the names of all frames
