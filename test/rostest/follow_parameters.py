@@ -46,7 +46,7 @@ def torque_at_home(actuator, coil):
 
 def parameters(actuator, revision, gains=()):
     """Nominal geometry as a message, with gains of some coils, counted from 0."""
-    message = ActuatorParameters(actuator=actuator["name"], revision=revision, source="nominal")
+    message = ActuatorParameters(actuator=actuator["name"], revision=revision, source="nominal", has_joints=True)
     for joint, described in zip(message.joints, actuator["joints"]):
         joint.axis.x, joint.axis.y, joint.axis.z = described["axis"]
         joint.offset = described["offset"]

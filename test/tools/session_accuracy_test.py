@@ -32,7 +32,8 @@ class Rehearsal(Session):
         return [AT_ZERO] * min(poses, expected), "as planned"
 
     def status(self):
-        return SimpleNamespace(worst_stddev=1e-3 / math.sqrt(self.poses))
+        worst = 1e-3 / math.sqrt(max(1, self.poses))
+        return SimpleNamespace(worst_stddev=worst, shortest_capture=0.2, longest_capture=60.0)
 
     # What it does beside.
     def _measure(self, poses):
