@@ -22,7 +22,7 @@ def description():
 
 def parameters_of(actuator):
     """The message of a description."""
-    message = ActuatorParameters(actuator=actuator["name"], source="identified", revision=1)
+    message = ActuatorParameters(actuator=actuator["name"], source="identified", revision=1, has_joints=True)
     for joint, item in zip(message.joints, actuator["joints"]):
         joint.axis.x, joint.axis.y, joint.axis.z = item["axis"]
         joint.offset = item["offset"]
