@@ -183,11 +183,12 @@ class Judge {
       const bool is_one = ids.size() == 1;
       const char* them = is_one ? "it" : "them";
       steps.push_back(
-          format("Add poses near %s %s: nothing checks %s, so that an error in %s would "
-                 "not be noticed.",
-                 is_one ? "that of sample" : "those of samples",
-                 enumerate(ids).c_str(),
+          format("%s %s checked by no other: an error in %s would show in held-out samples alone. "
+                 "Further poses near %s would check %s.",
+                 is_one ? "Sample" : "Samples",
+                 (enumerate(ids) + (is_one ? " is" : " are")).c_str(),
                  them,
+                 is_one ? "its own" : "theirs",
                  them));
     }
   }
