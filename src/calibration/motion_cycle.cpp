@@ -164,7 +164,7 @@ std::string failure(const MotionProblem& problem,
              "currents in all coils.";
     case Termination::kIterationLimit:
     case Termination::kNumericalFailure:
-      return "no convergence; check the streams and the nominal description.";
+      return "no convergence; check signs and clocks of the streams, and the nominal description.";
     case Termination::kConverged:
       break;
   }
@@ -184,8 +184,11 @@ std::string failure(const MotionProblem& problem,
     return format("residuals of %s are %.1f times their noise; the motion does not fit the model. ",
                   is_balance ? "the momentum balance" : "the tracker",
                   std::sqrt(worst)) +
-           (is_balance ? "Check torque curve, strengths, polarities, currents and joint sensors."
-                       : "Check joint sensors, frames and the tracker.");
+           (is_balance
+                ? "Check signs and channels of currents, torque curve, strengths, polarities, "
+                  "joint sensors and the clocks of the streams. Where a force/torque sensor "
+                  "is at hand, samples at rest tell which it is (diagnose)."
+                : "Check joint sensors, frames, and the tracker with its clock.");
   }
   const std::string sign = wrongSign(problem.model->space(), estimate, problem.free);
   return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;
