@@ -209,6 +209,12 @@ class CapturingAPose(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, r"It is so for 6\d s"):
             course.capture(POSE, ())
 
+    def test_a_rest_that_ends_whenever_current_flows_ends_it_too(self):
+        clock, bench = [0.0], Bench(itertools.cycle([CapturePlannedResponse.REST, ""]))
+        course = PoseCourse(bench, bench, Options(current_timeout=20.0), Hour(clock), Account())
+        with self.assertRaisesRegex(RuntimeError, r"Flaw: rest\. It is so for 2\d s"):
+            course.capture(POSE, (3,))
+
     def test_the_time_that_a_hand_needs_is_none_of_a_refusal(self):
         clock, bench = [0.0], Bench(["pose", "orientation", ""])
         course = PoseCourse(bench, bench, Options(current_timeout=20.0), Hour(clock), Account())

@@ -213,13 +213,11 @@ class PoseCourse:
         return pattern not in patterns
 
     def _mend(self, flaw, pose):
-        """What is to be done about a flaw that the node tells of, beside another capture. Returns whether that was
-        something."""
+        """What is to be done about a flaw that the node tells of, beside another capture. Returns whether
+        somebody had to bring the rotor back: that takes its time."""
         if flaw == CapturePlannedResponse.POSE:
             self.excite(())
             self.wait_for_rest(pose)
         elif flaw == CapturePlannedResponse.REST:
             self.capture(pose, ())
-        else:
-            return False
-        return True
+        return flaw == CapturePlannedResponse.POSE
