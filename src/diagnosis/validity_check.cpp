@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 
@@ -12,6 +14,8 @@
 
 namespace sac {
 namespace {
+
+constexpr char kOrientations[] = "the orientation";
 
 /// Residuals that one kind of change would show in.
 struct Group {
@@ -42,12 +46,20 @@ struct Group {
   }
 };
 
-/// The samples in use, with only the newest of the held-out ones held out.
-std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples) {
+/// The newest of the held-out samples, and of each coil the newest that it is on in: a change of
+/// one coil shows in no other.
+std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples, double current_threshold) {
   std::vector<Sample> newest;
-  for (auto sample = samples.rbegin(); sample != samples.rend() && newest.size() < kCheckedSamples;
-       ++sample) {
-    if (sample->validation) {
+  std::map<std::size_t, std::size_t> of_coil;
+  for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
+    if (!sample->validation) {
+      continue;
+    }
+    bool is_wanted = newest.size() < kCheckedSamples;
+    for (const Excitation& excitation : excitedCoils(*sample, current_threshold)) {
+      is_wanted = of_coil[excitation.coil]++ < kCheckedSamplesOfACoil || is_wanted;
+    }
+    if (is_wanted) {
       newest.push_back(*sample);
     }
   }
@@ -55,7 +67,49 @@ std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples) {
   return newest;
 }
 
-/// Orientations, and torques by the coil that is on: "the orientation", "coil 3".
+std::vector<Sample> allHeldOut(const std::vector<Sample>& samples) {
+  std::vector<Sample> all;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(all), [](const Sample& sample) {
+    return sample.validation;
+  });
+  return all;
+}
+
+/// "3, 5 and 7"; empty where samples with torques tell of every coil, or there are none.
+std::string coilsNotSeen(const Actuator& actuator,
+                         const std::vector<Sample>& samples,
+                         double current_threshold) {
+  std::set<std::size_t> seen;
+  for (const Sample& sample : samples) {
+    for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
+      if (sample.has_torque) {
+        seen.insert(excitation.coil);
+      }
+    }
+  }
+  std::string numbers;
+  for (std::size_t coil = 0; coil < actuator.coils.size() && !seen.empty(); ++coil) {
+    if (seen.count(coil) == 0) {
+      numbers += (numbers.empty() ? "" : ", ") + std::to_string(numberOf(coil));
+    }
+  }
+  return numbers;
+}
+
+std::string coilsInWords(const std::vector<Excitation>& excited) {
+  constexpr std::size_t kMostNamed = 3;
+  if (excited.size() > kMostNamed) {
+    return "several coils together";
+  }
+  std::string words;
+  for (const Excitation& excitation : excited) {
+    words += (words.empty() ? "coil " : " with coil ") + std::to_string(numberOf(excitation.coil));
+  }
+  return words.empty() ? "torques without current" : words;
+}
+
+/// Orientations, and torques by the coils that are on: "the orientation", "coil 3", "coil 3 with
+/// coil 7".
 std::map<std::string, Group> groupsOf(const std::vector<Sample>& samples,
                                       const HeldOutValidation& validation,
                                       double current_threshold) {
@@ -65,15 +119,12 @@ std::map<std::string, Group> groupsOf(const std::vector<Sample>& samples,
       continue;
     }
     if (residual.quantity == Quantity::kOrientation) {
-      groups["the orientation"].add(residual);
+      groups[kOrientations].add(residual);
       continue;
     }
     const auto sample = std::find_if(
         samples.begin(), samples.end(), [&](const Sample& one) { return one.id == residual.id; });
-    const std::vector<Excitation> excited = excitedCoils(*sample, current_threshold);
-    groups[excited.size() == 1 ? "coil " + std::to_string(numberOf(excited.front().coil))
-                               : "several coils together"]
-        .add(residual);
+    groups[coilsInWords(excitedCoils(*sample, current_threshold))].add(residual);
   }
   return groups;
 }
@@ -95,30 +146,39 @@ double usualOutlierRate(const CalibrationSession& session) {
   return static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used);
 }
 
+/// Of torques that of the coil that is judged least: a change of one shows in no other.
 std::string boundsInWords(const std::map<std::string, Group>& groups) {
   std::string text;
-  Group torques;
+  double torques = 0.0;
   for (const auto& [name, group] : groups) {
-    if (name == "the orientation") {
+    if (name == kOrientations) {
       text = format("%.2g mrad (99 %%)", 1e3 * group.bound());
     } else {
-      torques.observations += group.observations;
-      torques.squared_residual += group.squared_residual;
-      torques.chi_square += group.chi_square;
+      torques = std::max(torques, group.bound());
     }
   }
-  if (torques.observations > 0) {
-    text +=
-        (text.empty() ? "" : ", torques to ") + format("%.2g mN.m (99 %%)", 1e3 * torques.bound());
+  if (torques > 0.0) {
+    text += (text.empty() ? "" : ", torques of each coil judged to ") +
+            format("%.2g mN.m (99 %%)", 1e3 * torques);
   }
   return text;
 }
 
+/// What no sample tells of.
+std::string unseenInWords(const std::string& coils) {
+  return coils.empty() ? ""
+                       : " No sample judges coils " + coils +
+                             ": nothing is said of them; capture one with each.";
+}
+
 }  // namespace
 
-ValidityCheck checkValidity(const CalibrationSession& session) {
+ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples checked) {
   ValidityCheck check;
-  const std::vector<Sample> newest = newestHeldOut(session.samples());
+  const double threshold = session.config().estimation.current_threshold;
+  const std::vector<Sample> newest = checked == CheckedSamples::kAll
+                                         ? allHeldOut(session.samples())
+                                         : newestHeldOut(session.samples(), threshold);
   const HeldOutValidation validation = validateHeldOut(session.model(),
                                                        newest,
                                                        session.state(),
@@ -129,8 +189,7 @@ ValidityCheck checkValidity(const CalibrationSession& session) {
         "Nothing can be told: capture some poses for validation, 3 or more, and check again.";
     return check;
   }
-  const std::map<std::string, Group> groups =
-      groupsOf(newest, validation, session.config().estimation.current_threshold);
+  const std::map<std::string, Group> groups = groupsOf(newest, validation, threshold);
   const double least = kLeastProbability / static_cast<double>(groups.size() + 1);
   std::string changed;
   for (const auto& [name, group] : groups) {
@@ -146,14 +205,17 @@ ValidityCheck checkValidity(const CalibrationSession& session) {
   check.is_valid = changed.empty() && validation.probability >= least;
   if (check.is_valid) {
     check.message = format(
-        "Valid to %s, by %zu held-out samples%s. This holds beside the registrations: frames that "
-        "were off when the unit was calibrated, and still are, show in no sample.",
-        boundsInWords(groups).c_str(),
-        validation.samples,
-        validation.outliers > 0
-            ? format(" (%zu outliers, as rare as the others', are not judged)", validation.outliers)
-                  .c_str()
-            : "");
+                        "Valid to %s, by %zu held-out samples%s. This holds beside the "
+                        "registrations: frames that "
+                        "were off when the unit was calibrated, and still are, show in no sample.",
+                        boundsInWords(groups).c_str(),
+                        validation.samples,
+                        validation.outliers > 0
+                            ? format(" (%zu outliers, as rare as the others', are not judged)",
+                                     validation.outliers)
+                                  .c_str()
+                            : "") +
+                    unseenInWords(coilsNotSeen(session.start().actuator, newest, threshold));
     return check;
   }
   check.message = changed.empty() ? format(

@@ -39,12 +39,13 @@ bool printCheck(const CalibrationSession& session) {
   for (Sample& sample : samples) {
     sample.validation = true;
   }
-  const ValidityCheck check =
-      checkValidity(CalibrationSession(session.start(), samples, session.config()));
-  std::cout << "check: " << (check.is_valid ? "valid" : "not valid") << "\n"
-            << check.message << "\n"
-            << "All samples of the recording count as held out here, the newest are judged: a "
-               "description that was made of them is judged by what it was fitted to.\n";
+  const ValidityCheck check = checkValidity(
+      CalibrationSession(session.start(), samples, session.config()), CheckedSamples::kAll);
+  std::cout
+      << "check: " << (check.is_valid ? "valid" : "not valid") << "\n"
+      << check.message << "\n"
+      << "All samples of the recording count as held out here: a description that was made of "
+         "them is judged by what it was fitted to.\n";
   return check.is_valid;
 }
 

@@ -302,6 +302,55 @@ TEST_F(Validity, EndsWhenAJointWasMoved) {
   EXPECT_NE(check.message.find("the orientation"), std::string::npos) << check.message;
 }
 
+/// A calibrated session whose coil 1 was turned since; `others` torques of coil 2 are newer than
+/// the four that show it.
+ValidityCheck checkedWithATurnedCoil(CalibrationSession calibrated, std::size_t others) {
+  calibrated.run({Cycle::kJoint});
+  calibrated.run({Cycle::kRefine});
+  Actuator now = scenarios::paperTruth();
+  now.coils[0].polar += 0.02;
+  scenarios::Generator generator(6);
+  std::uint32_t id = 2000;
+  for (const auto& [coil, count] : {std::pair<std::size_t, std::size_t>{0, 4}, {1, others}}) {
+    const std::vector<Eigen::Vector3d> poses = scenarios::randomPoses(count, 0.3, generator);
+    for (Sample& sample : scenarios::torqueSamples(now, poses, coil, 2.0, 1e-3, 1e-3, generator)) {
+      sample.id = id++;
+      sample.validation = true;
+      calibrated.add(sample);
+    }
+  }
+  return checkValidity(calibrated);
+}
+
+TEST_F(Validity, EndsWhenACoilWasTurnedThatFewSamplesShow) {
+  const ValidityCheck check = checkedWithATurnedCoil(session(scenarios::paperTruth(), 3), 30);
+  EXPECT_FALSE(check.is_valid) << check.message;
+  EXPECT_NE(check.message.find("coil 1 ("), std::string::npos) << check.message;
+}
+
+TEST_F(Validity, NamesTheCoilsOfWhichItSaysNothing) {
+  CalibrationSession calibrated = session(scenarios::paperTruth(), 3);
+  calibrated.run({Cycle::kJoint});
+  calibrated.run({Cycle::kRefine});
+  scenarios::Generator generator(6);
+  std::uint32_t id = 2000;
+  for (Sample& sample : scenarios::torqueSamples(scenarios::paperTruth(),
+                                                 scenarios::randomPoses(6, 0.3, generator),
+                                                 1,
+                                                 2.0,
+                                                 1e-3,
+                                                 1e-3,
+                                                 generator)) {
+    sample.id = id++;
+    sample.validation = true;
+    calibrated.add(sample);
+  }
+  const ValidityCheck check = checkValidity(calibrated);
+  EXPECT_TRUE(check.is_valid) << check.message;
+  EXPECT_NE(check.message.find("No sample judges coils 1, 3, 4"), std::string::npos)
+      << check.message;
+}
+
 TEST_F(Validity, CannotBeToldWithoutHeldOutSamples) {
   const ValidityCheck check = checkValidity(session(scenarios::paperTruth(), 5));
   EXPECT_FALSE(check.is_valid);

@@ -18,13 +18,20 @@ struct ValidityCheck {
   std::vector<Diagnosis> changes;
 };
 
-/// How many of the newest held-out samples judge.
+/// How many of the newest held-out samples judge, and how many of each coil at least, where there
+/// are so many.
 inline constexpr std::size_t kCheckedSamples = 24;
+inline constexpr std::size_t kCheckedSamplesOfACoil = 4;
 
-/// Judges the newest held-out samples against the parameters in force: orientations, and torques of
-/// each coil, by a chi-square test each. What they would not have noticed is told as the largest
-/// rms error that would have passed with a probability of 1 % (non-central chi-square). Changes
-/// nothing.
-ValidityCheck checkValidity(const CalibrationSession& session);
+/// Which held-out samples judge: of a session that goes on for long the newest.
+enum class CheckedSamples { kNewest, kAll };
+
+/// Judges held-out samples against the parameters in force: orientations, and torques of each coil,
+/// by a chi-square test each. What they would not have noticed is told as the largest rms error of
+/// the orientations, and of the torques of the coil that is judged least, that would have passed
+/// with a probability of 1 % (non-central chi-square); coils that no sample judges are named.
+/// Changes nothing.
+ValidityCheck checkValidity(const CalibrationSession& session,
+                            CheckedSamples checked = CheckedSamples::kNewest);
 
 }  // namespace sac
