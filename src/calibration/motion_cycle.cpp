@@ -187,7 +187,7 @@ std::string failure(const MotionProblem& problem,
            (is_balance
                 ? "Check signs and channels of currents, torque curve, strengths, polarities, "
                   "joint sensors and the clocks of the streams. Where a force/torque sensor "
-                  "is at hand, samples at rest tell which it is (diagnose)."
+                  "is at hand, samples at rest tell more (diagnose)."
                 : "Check joint sensors, frames, and the tracker with its clock.");
   }
   const std::string sign = wrongSign(problem.model->space(), estimate, problem.free);
@@ -279,7 +279,8 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   report.doubts = motionDoubts(found);
   if (!hasStrengths(model.space())) {
     const std::string uneven = unevenStrengths(problem, found.estimate.belief.x, silent, config);
-    report.doubts.insert(report.doubts.end(), uneven.empty() ? 0 : 1, uneven);
+    // First, as it names what to mend: that windows contradict each other may follow from it.
+    report.doubts.insert(report.doubts.begin(), uneven.empty() ? 0 : 1, uneven);
   }
   CycleCoordinates coordinates;
   coordinates.requested = asked;

@@ -8,6 +8,7 @@
 
 #include "evidence.hpp"
 #include "explanation_words.hpp"
+#include "motion_wiring.hpp"
 #include "single_explanations.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
 
@@ -19,6 +20,9 @@ constexpr double kBeyondChance = 6.0;
 
 /// So many samples that are far off may have a cause in common.
 constexpr std::uint32_t kManyRejected = 2;
+
+/// Iterations of a motion: what explains is found soon; what does not goes on for minutes.
+constexpr int kSoonFound = 12;
 
 /// A refinement from the start with some laboratory effects.
 struct RefinedFit {
@@ -85,6 +89,12 @@ RefinedFit refined(const CalibrationSession& session,
   return fit;
 }
 
+/// Of what leaves a misfit, against none [nats].
+double evidenceOf(const RefinedFit& unchanged, double reduced_chi_square_with) {
+  return 0.5 * unchanged.freedom * (unchanged.reduced_chi_square - reduced_chi_square_with) /
+         std::max(1.0, reduced_chi_square_with);
+}
+
 /// Whether less misfit is left than what does not count as an explanation.
 bool explains(double with_it, double without_it) {
   return with_it - 1.0 <= (1.0 - kExplainedShare) * (without_it - 1.0);
@@ -106,11 +116,36 @@ std::vector<ParameterEstimate> valuesOf(const std::string& effect,
   return own;
 }
 
+/// A mistake of wiring that explains a misfit of the motion.
+std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session,
+                                                const RefinedFit& unchanged) {
+  for (const Candidate& candidate : suspectedWiring(session)) {
+    CorrectedMotion motion =
+        correctedMotion(session.start().actuator, *session.motion(), candidate);
+    CalibrationConfig config = session.config();
+    config.estimation.max_iterations = kSoonFound;
+    CalibrationSession trial({motion.actuator}, {}, config);
+    trial.setMotion(std::make_shared<const MotionRecording>(std::move(motion.recording)));
+    const CycleReport& report = trial.run(withoutExpectedErrors({Cycle::kMotion}));
+    if (!report.success) {
+      continue;
+    }
+    std::vector<Diagnosis> diagnoses;
+    for (const Hypothesis& hypothesis : candidate) {
+      Diagnosis diagnosis;
+      diagnosis.cause = hypothesis.cause;
+      diagnosis.message = hypothesis.sentence(hypothesis.start);
+      diagnosis.evidence = evidenceOf(unchanged, report.reduced_chi_square);
+      diagnoses.push_back(std::move(diagnosis));
+    }
+    return diagnoses;
+  }
+  return {};
+}
+
 /// Single effects that explain a misfit of the motion, the best first.
 std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& session,
                                                 const RefinedFit& unchanged) {
-  // What explains is found soon; what does not goes on for minutes.
-  constexpr int kMostIterations = 12;
   std::vector<std::pair<double, Diagnosis>> found;
   for (const std::string& effect : effectNames()) {
     if (session.config().effects.has(effect) || !canHaveEffect(session.start().actuator, effect) ||
@@ -119,7 +154,7 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
     }
     EffectSelection effects = session.config().effects;
     effects[effect] = true;
-    const RefinedFit fit = refined(session, effects, kMostIterations);
+    const RefinedFit fit = refined(session, effects, kSoonFound);
     const ParameterSpace space(session.start().actuator, effects);
     const std::vector<ParameterEstimate> values = valuesOf(effect, space, fit.estimates);
     if (!fit.converged || !explains(fit.reduced_chi_square, unchanged.reduced_chi_square) ||
@@ -131,9 +166,7 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
     diagnosis.message = valuesInWords(values) +
                         explainsInWords(unchanged.reduced_chi_square, fit.reduced_chi_square) +
                         " Model it: effects: {" + effect + ": true} in calibration.yaml.";
-    diagnosis.evidence = 0.5 * unchanged.freedom *
-                         (unchanged.reduced_chi_square - fit.reduced_chi_square) /
-                         std::max(1.0, fit.reduced_chi_square);
+    diagnosis.evidence = evidenceOf(unchanged, fit.reduced_chi_square);
     found.emplace_back(fit.bic(), std::move(diagnosis));
   }
   std::stable_sort(
@@ -162,7 +195,12 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session) {
   const RefinedFit unchanged =
       refined(session, session.config().effects, session.config().estimation.max_iterations);
   if (session.motion() != nullptr) {
-    return unchanged.isBeyondChance() ? effectsThatExplainMotion(session, unchanged) : diagnoses;
+    // Where nothing is near, no descent ends.
+    if (unchanged.converged && !unchanged.isBeyondChance()) {
+      return diagnoses;
+    }
+    diagnoses = wiringThatExplainsMotion(session, unchanged);
+    return diagnoses.empty() ? effectsThatExplainMotion(session, unchanged) : diagnoses;
   }
   if (unchanged.converged && !unchanged.isBeyondChance() && unchanged.rejected < kManyRejected) {
     return diagnoses;

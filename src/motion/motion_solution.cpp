@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "delay_search.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
@@ -221,51 +222,18 @@ void MotionDescent::adaptDamping(int halvings) {
   damping_ = damping_ > kFirst ? 0.1 * damping_ : 0.0;
 }
 
-/// Currents vary too fast for a start half a period off: of several delays the one with the least
-/// misfit after one step, by a part of the windows.
-void MotionDescent::findDelay(const TermOrder& order) {
-  constexpr double kGrid = 0.01;       // [s]
-  constexpr double kLoose = 0.1;       // coordinates may go so far [rad]
-  constexpr std::size_t kEnough = 30;  // windows
-  const Eigen::Index place = terms_.places().current_delay;
-  if (place < 0) {
-    return;
-  }
-  TermOrder sparse = order;
-  sparse.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
-  sparse.orientations = false;
-  const ParameterSpace& space = problem_.model->space();
-  const double scale = space.effects().scale(place - space.effect());
-  std::vector<Eigen::Index> others = problem_.free;
-  others.erase(std::remove(others.begin(), others.end(), place), others.end());
-  double least = std::numeric_limits<double>::infinity();
-  double best = 0.0;
-  const int reach = static_cast<int>(std::floor(options_.largest_delay / kGrid + 1e-9));
-  for (int n = -reach; n <= reach; ++n) {
-    Eigen::VectorXd x = problem_.prior.x;
-    x[place] = kGrid * n / scale;
-    terms_.linearize(x, sparse);
-    const InformationSum sum = terms_.balance(x);
-    Eigen::MatrixXd information = sum.information()(others, others);
-    information.diagonal().array() += 1.0 / (kLoose * kLoose);
-    const Eigen::VectorXd gradient = sum.gradient()(others);
-    const double left = sum.squaredMisfit() - gradient.dot(information.ldlt().solve(gradient));
-    if (left < least) {
-      least = left;
-      best = x[place];
-    }
-  }
-  x_[place] = best;
-}
-
 void MotionDescent::solveCoarsely() {
   constexpr int kMostSteps = 8;
   constexpr double kNear = 3.0;
   constexpr std::size_t kEnough = 100;  // windows
+  constexpr double kLoose = 0.1;        // coordinates may go so far in one step [rad]
   terms_.setScales(1e12, 1e12);
   TermOrder order;
   order.balance.stride = terms_.coarseStride();
-  findDelay(order);
+  if (terms_.places().current_delay >= 0) {
+    const Eigen::VectorXd loose = Eigen::VectorXd::Constant(x_.size(), kLoose);
+    x_[terms_.places().current_delay] = searchDelay(problem_, options_, loose, terms_).delay;
+  }
   order.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
   linearizeAt(x_, order);
   rescale();

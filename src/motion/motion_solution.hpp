@@ -51,7 +51,6 @@ class MotionDescent {
   const std::vector<double>& errors() const { return errors_; }
 
  private:
-  void findDelay(const TermOrder& order);
   bool settle(double tolerance);
   double advance(const Eigen::VectorXd& start, const TermOrder& order);
   double lengthOf(const Eigen::VectorXd& change) const;

@@ -129,6 +129,32 @@ class Motion(unittest.TestCase):
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
 
+    def diagnosed(self, change):
+        """What is said of the motion with other currents recorded."""
+        recording = self.record()
+        stamps, currents = recording["currents"]
+        recording["currents"] = stamps, change(np.array(currents))
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "wired.bag")
+            write_bag(bag, recording, len(self.unit.coils))
+            result = self.calibrate_bags(folder, "motion", [bag])
+        self.assertEqual(result.returncode, 1, result.stdout)
+        return [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
+
+    def test_names_a_coil_that_counts_the_wrong_way_round(self):
+        def turned(currents):
+            currents[:, 4] *= -1.0
+            return currents
+
+        self.assertEqual(self.diagnosed(turned), ["coil_sign:5"])
+
+    def test_names_coils_that_are_exchanged(self):
+        def exchanged(currents):
+            currents[:, [2, 15]] = currents[:, [15, 2]]
+            return currents
+
+        self.assertEqual(self.diagnosed(exchanged), ["coil_swap:3:16"])
+
     def dwells_and_motion(self, folder, errors):
         """Bags of both: dwells of a unit with these errors."""
         sensors, rng = laboratory.Laboratory(), np.random.default_rng(SEED)

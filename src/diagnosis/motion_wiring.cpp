@@ -1,0 +1,171 @@
+#include "motion_wiring.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
+#include "spherical_actuator_calibration/motion/motion_excerpt.hpp"
+#include "spherical_actuator_calibration/motion/rough_motion.hpp"
+#include "torque_hypotheses.hpp"
+
+namespace sac {
+namespace {
+
+/// How well a step from the description explains the motion without the mistakes of a candidate.
+double misfitWithout(const CalibrationSession& session,
+                     const MotionRecording& excerpt,
+                     const Candidate& candidate,
+                     double variance) {
+  const CorrectedMotion motion = correctedMotion(session.start().actuator, excerpt, candidate);
+  const CalibrationModel model(
+      ParameterSpace(motion.actuator, withMotionEffects(session.config().effects)));
+  const ParameterSpace& space = model.space();
+  MotionProblem problem;
+  problem.model = &model;
+  problem.recording = &motion.recording;
+  problem.prior = nominalState(space, session.config().tolerance).belief;
+  for (Eigen::Index p = 0; p < space.size(); ++p) {
+    problem.free.push_back(p);
+  }
+  return roughMisfit(problem, variance);
+}
+
+/// Mistakes of one coil or pole, or of all currents.
+std::vector<Candidate> singleMistakes(const Actuator& actuator) {
+  std::vector<Candidate> mistakes{
+      {currentSign()}, {coilShift(1)}, {coilShift(actuator.coils.size() - 1)}};
+  for (std::size_t coil = 0; coil < actuator.coils.size(); ++coil) {
+    mistakes.push_back({coilSign(coil)});
+    mistakes.push_back({coilDead(coil)});
+  }
+  for (std::size_t pole = 0; pole < actuator.poles.size(); ++pole) {
+    mistakes.push_back({polePolarity(pole)});
+    mistakes.push_back({poleMissing(pole)});
+  }
+  return mistakes;
+}
+
+struct RankedCandidate {
+  Candidate parts;
+  double misfit = 0.0;
+};
+
+void sortByMisfit(std::vector<RankedCandidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return a.misfit < b.misfit;
+  });
+}
+
+/// The coil that a single mistake is at; nothing: at none.
+std::optional<std::size_t> coilOf(const Candidate& single, std::size_t coils) {
+  for (std::size_t coil = 0; coil < coils; ++coil) {
+    if (single.front().family == coilSign(coil).family) {
+      return coil;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Coils that are exchanged, among those at which single mistakes were promising.
+std::vector<Candidate> exchanges(const std::vector<Candidate>& singles, std::size_t coils) {
+  std::set<std::size_t> suspected;
+  for (const Candidate& single : singles) {
+    if (const std::optional<std::size_t> coil = coilOf(single, coils)) {
+      suspected.insert(*coil);
+    }
+  }
+  std::vector<Candidate> pairs;
+  for (auto first = suspected.begin(); first != suspected.end(); ++first) {
+    for (auto second = std::next(first); second != suspected.end(); ++second) {
+      pairs.push_back({coilSwap(*first, *second)});
+    }
+  }
+  return pairs;
+}
+
+/// A mistake and each of the others that is at another place.
+std::vector<Candidate> both(const Candidate& first, const std::vector<Candidate>& others) {
+  std::vector<Candidate> pairs;
+  for (const Candidate& other : others) {
+    if (other.front().family != first.front().family) {
+      pairs.push_back({first.front(), other.front()});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<Candidate> suspectedWiring(const CalibrationSession& session) {
+  constexpr std::size_t kPromising = 8;
+  constexpr std::size_t kMostTried = 2;
+  // A mistake leaves a half of the misfit at most; what is none a tenth more or less.
+  constexpr double kBetter = 0.75;
+  constexpr double kExcerpt = 30.0;  // [s]
+  const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
+  const double unchanged = misfitWithout(session, excerpt, {}, 0.0);
+  if (unchanged < 0.0) {
+    return {};
+  }
+  std::vector<RankedCandidate> all;
+  const auto rank = [&](const std::vector<Candidate>& candidates) {
+    for (const Candidate& candidate : candidates) {
+      all.push_back({candidate, misfitWithout(session, excerpt, candidate, unchanged)});
+    }
+    sortByMisfit(all);
+  };
+  const Actuator& actuator = session.start().actuator;
+  rank(singleMistakes(actuator));
+  std::vector<Candidate> promising;
+  for (std::size_t n = 0; n < std::min(kPromising, all.size()); ++n) {
+    promising.push_back(all[n].parts);
+  }
+  rank(exchanges(promising, actuator.coils.size()));
+  if (promising.front().front().family == all.front().parts.front().family) {
+    rank(both(promising.front(), promising));
+  }
+  std::vector<Candidate> suspected;
+  for (const RankedCandidate& candidate : all) {
+    if (suspected.size() < kMostTried && candidate.misfit < kBetter * unchanged) {
+      suspected.push_back(candidate.parts);
+    }
+  }
+  return suspected;
+}
+
+CorrectedMotion correctedMotion(const Actuator& actuator,
+                                const MotionRecording& recording,
+                                const Candidate& candidate) {
+  // What it does to one ampere in each coil.
+  const auto coils = static_cast<Eigen::Index>(actuator.coils.size());
+  WiringCase described{actuator, {}};
+  for (Eigen::Index coil = 0; coil < coils; ++coil) {
+    Sample sample;
+    sample.current = Eigen::VectorXd::Unit(coils, coil);
+    described.samples.push_back(sample);
+  }
+  const WiringCase undone = corrected(described, candidate, startOf(candidate));
+  StreamCurrents change(coils, coils);
+  for (Eigen::Index coil = 0; coil < coils; ++coil) {
+    change.row(coil) =
+        undone.samples[static_cast<std::size_t>(coil)].current.transpose().cast<float>();
+  }
+  CorrectedMotion result{undone.actuator, recording};
+  for (MotionStreams& streams : result.recording.spans) {
+    streams.currents = streams.currents * change;
+    if (streams.commanded != nullptr) {
+      CommandedCurrents commanded = *streams.commanded;
+      commanded.currents = commanded.currents * change;
+      streams.commanded = std::make_shared<const CommandedCurrents>(std::move(commanded));
+    }
+  }
+  return result;
+}
+
+}  // namespace sac

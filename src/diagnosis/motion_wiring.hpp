@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
+#include "wiring_case.hpp"
+
+namespace sac {
+
+/// Mistakes at coils and poles that the motion of a session may have been recorded with, two at the
+/// most together, the most promising first; none: as it is described, it is explained as well. By
+/// how much misfit one step from the description leaves: where all axes are off, coils that
+/// counteract each other tell so little of strengths that these cannot be asked for.
+/// Precondition: the session has a motion.
+std::vector<Candidate> suspectedWiring(const CalibrationSession& session);
+
+/// What would have been recorded without the mistakes of a candidate.
+struct CorrectedMotion {
+  Actuator actuator;
+  MotionRecording recording;
+};
+
+CorrectedMotion correctedMotion(const Actuator& actuator,
+                                const MotionRecording& recording,
+                                const Candidate& candidate);
+
+}  // namespace sac
