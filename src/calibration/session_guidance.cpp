@@ -47,6 +47,13 @@ class Guide {
     if (progress_.samples == 0 && progress_.isAllIdentified()) {
       return closingStep();  // by a motion: there is nothing to refine
     }
+    if (progress_.contradicted && progress_.isAllIdentified() && !isSeenWell()) {
+      return "Do not use the parameters in force, which held-out samples contradict. Call "
+             "diagnose, "
+             "and check what was changed at the machine; then calibrate anew by a session of its "
+             "own, as plan_poses or guided_session plans: the samples in use do not tell all "
+             "parameters.";
+    }
     if (!progress_.joint_done) {
       return jointStep();
     }
@@ -68,6 +75,14 @@ class Guide {
   }
 
   bool isIdentifiedOnce() const { return progress_.poles_done && !firstOpenCoil(); }
+
+  /// By samples enough for all parameters: what is identified may be so by the description.
+  bool isSeenWell() const {
+    const auto is_seen_well = [](const Coverage& part) { return part.isSeenWell(); };
+    return progress_.joint.isSeenWell() &&
+           std::all_of(progress_.poles.begin(), progress_.poles.end(), is_seen_well) &&
+           std::all_of(progress_.coils.begin(), progress_.coils.end(), is_seen_well);
+  }
 
   /// The torques tell of every pole and coil, without enough of a coil alone for its own cycle:
   /// those of a planned session, which no paper's protocol is to follow.

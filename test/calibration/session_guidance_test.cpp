@@ -109,6 +109,23 @@ TEST(SessionGuidance, WhatIsContradictedIsNeverDone) {
   }
 }
 
+// A calibrated unit that has drifted, as two poses and their held-out ones have shown: a refinement
+// by them alone would identify less than is in force.
+TEST(SessionGuidance, WhatIsContradictedIsNotRefinedByTheFewSamplesThatTellSo) {
+  CalibrationSession session = paperSession();
+  for (const CycleRequest& request : progressOf(session).next_cycles) {
+    ASSERT_TRUE(session.run(request).success);
+  }
+  const std::vector<Sample> few(session.samples().begin(), session.samples().begin() + 3);
+  SessionProgress progress =
+      progressOf(session.model(), few, session.state(), session.config().estimation);
+  ASSERT_TRUE(progress.isAllIdentified());
+  progress.contradicted = true;
+  const std::string step = nextStep(session, progress);
+  EXPECT_EQ(step.rfind("Do not use the parameters", 0), 0U) << step;
+  EXPECT_EQ(step.find("Call refine"), std::string::npos) << step;
+}
+
 TEST(SessionGuidance, ARefusedCycleIsNotToBeRepeatedAsItIs) {
   CalibrationSession session = paperSession();
   SessionProgress progress = progressOf(session);
