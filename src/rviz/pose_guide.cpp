@@ -134,9 +134,9 @@ std::string PoseGuide::advice() const {
   }
   const std::optional<std::size_t> next = this->next();
   if (!next) {
-    return (poses_.size() == 1 ? "The one pose is measured: "
-                               : "All " + std::to_string(poses_.size()) + " poses are measured: ") +
-           (poses_.front().pose.validation != 0 ? "validate." : "calibrate.");
+    // What to do then tells the status: by what they were measured for may be known already.
+    return poses_.size() == 1 ? "The one pose is measured."
+                              : "All " + std::to_string(poses_.size()) + " poses are measured.";
   }
   const msg::PoseProgress& pose = poses_[*next];
   const std::string which = "Pose " + std::to_string(numberOf(*next)) + " of " +

@@ -87,7 +87,7 @@ TEST_F(PoseGuideTest, GoesOnWhereTheNodeSaysThatAPoseIsMeasured) {
   EXPECT_EQ(guide_.advice(), "Pose 2 of 2: there. Clamp the rotor, then measure.");
   guide_.receive(plan({progress(0.1, 0.0, -1.0, {}, true), progress(0.3, 0.2, 1.0, {}, true)}));
   EXPECT_FALSE(guide_.next());
-  EXPECT_EQ(guide_.advice(), "All 2 poses are measured: calibrate.");
+  EXPECT_EQ(guide_.advice(), "All 2 poses are measured.");
   // A sample was removed.
   guide_.receive(plan({progress(0.1, 0.0, -1.0, {{2}}, true), progress(0.3, 0.2, 1.0, {}, true)}));
   EXPECT_EQ(guide_.next(), 0U);
@@ -110,7 +110,7 @@ TEST_F(PoseGuideTest, TellsOfAPlanToJudgeBy) {
   EXPECT_EQ(guide_.advice(), "Pose 1 of 1, held out: the joint angles are silent.");
   to_judge.poses[0].is_measured = 1;
   guide_.receive(to_judge);
-  EXPECT_EQ(guide_.advice(), "The one pose is measured: validate.");
+  EXPECT_EQ(guide_.advice(), "The one pose is measured.");
 }
 
 TEST_F(PoseGuideTest, LeavesItToASessionToLeadWhileOneWorks) {

@@ -88,8 +88,13 @@ class Reader {
 
   /// Samples that a node took of the streams of the group, and which stretches it took them of.
   std::vector<Sample> takenLive(const BagGroup& group) {
-    if (options_.source == SampleSource::kDwells ||
-        !topics_.isRecorded(group, TopicRole::kSamples)) {
+    if (!topics_.isRecorded(group, TopicRole::kSamples)) {
+      return {};
+    }
+    if (options_.source == SampleSource::kDwells) {
+      recording_.report.notes.emplace_back(
+          "Every rest gives samples to calibrate from, also those that the session held out to "
+          "judge by: dwells do not tell which.");
       return {};
     }
     RecordedSamples recorded(nominal_, options_.frames);
