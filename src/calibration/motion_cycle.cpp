@@ -278,9 +278,12 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   fillReport(found, report);
   report.doubts = motionDoubts(found);
   if (!hasStrengths(model.space())) {
-    const std::string uneven = unevenStrengths(problem, found.estimate.belief.x, silent, config);
-    // First, as it names what to mend: that windows contradict each other may follow from it.
-    report.doubts.insert(report.doubts.begin(), uneven.empty() ? 0 : 1, uneven);
+    const UnevenStrengths uneven =
+        unevenStrengths(problem, found.estimate.belief.x, silent, config);
+    // First where it names what to mend: that windows contradict each other may follow from it.
+    report.doubts.insert(uneven.stands_out ? report.doubts.begin() : report.doubts.end(),
+                         uneven.words.empty() ? 0 : 1,
+                         uneven.words);
   }
   CycleCoordinates coordinates;
   coordinates.requested = asked;

@@ -119,10 +119,10 @@ MotionEstimate withGains(const MotionProblem& problem,
 
 }  // namespace
 
-std::string unevenStrengths(const MotionProblem& problem,
-                            const Eigen::VectorXd& x,
-                            const std::vector<std::size_t>& silent,
-                            const CalibrationConfig& config) {
+UnevenStrengths unevenStrengths(const MotionProblem& problem,
+                                const Eigen::VectorXd& x,
+                                const std::vector<std::size_t>& silent,
+                                const CalibrationConfig& config) {
   constexpr double kSignificance = 1e-5;
   EffectSelection selection = withMotionEffects(config.effects);
   selection[effect_name::kCoilGains] = true;
@@ -141,16 +141,21 @@ std::string unevenStrengths(const MotionProblem& problem,
     return {};
   }
   constexpr double kPercent = 100.0;
-  return format(
+  constexpr double kStandsOut = 6.0;  // standard deviations
+  UnevenStrengths uneven;
+  uneven.stands_out = std::abs(worst.difference) > kStandsOut * worst.stddev;
+  uneven.words = format(
       "The motion fits better where %s differ in strength, %s %zu by %.2g +- %.2g %% from the "
-      "others: that may bias the parameters. Model %s, or check %s, torque curve and friction.",
+      "others: that may bias the parameters. Model %s, or check %s, torque curve%s.",
       are_coils ? "coils" : "poles",
       are_coils ? "coil" : "pole",
       static_cast<std::size_t>(numberOf(worst.number)),
       kPercent * worst.difference,
       kPercent * worst.stddev,
       are_coils ? effect_name::kCoilGains : effect_name::kPoleGains,
-      are_coils ? "amplifiers" : "magnets");
+      are_coils ? "amplifiers" : "magnets",
+      uneven.stands_out ? " and friction" : ", friction and the clock that stamps the currents");
+  return uneven;
 }
 
 }  // namespace sac

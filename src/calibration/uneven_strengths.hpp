@@ -9,15 +9,21 @@
 
 namespace sac {
 
-/// Whether a motion fits clearly better where each coil and pole has a strength of its own, in a
-/// sentence; empty: not. A coil that is 0.1 % stronger than the others shows here, long before
-/// windows do not fit, and shifts axes beyond their intervals.
+/// What a motion tells of strengths that differ.
+struct UnevenStrengths {
+  std::string words;        ///< in a sentence; empty: they do not differ
+  bool stands_out = false;  ///< the one that it names, beyond doubt
+};
+
+/// Whether a motion fits clearly better where each coil and pole has a strength of its own. A coil
+/// that is 0.1 % stronger than the others shows here, long before windows do not fit, and shifts
+/// axes beyond their intervals.
 ///
 /// `problem` was solved at `x`, and has no strengths. `silent`: coils without current. Takes less
 /// time than the solution, and some 0.2 s however long the recording is. (doc/motion.md, How)
-std::string unevenStrengths(const MotionProblem& problem,
-                            const Eigen::VectorXd& x,
-                            const std::vector<std::size_t>& silent,
-                            const CalibrationConfig& config);
+UnevenStrengths unevenStrengths(const MotionProblem& problem,
+                                const Eigen::VectorXd& x,
+                                const std::vector<std::size_t>& silent,
+                                const CalibrationConfig& config);
 
 }  // namespace sac
