@@ -276,7 +276,7 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
     return outcome;
   }
   fillReport(found, report);
-  report.doubts = motionDoubts(found);
+  report.doubts = motionDoubts(found, recording);
   if (!hasStrengths(model.space())) {
     const UnevenStrengths uneven =
         unevenStrengths(problem, found.estimate.belief.x, silent, config);

@@ -54,13 +54,42 @@ std::string driftInWords(const WindowMeansMisfit& orientations) {
       std::sqrt(orientations.reduced()));
 }
 
+/// Measurements have noise: where most readings of all coils are those before to the last digit,
+/// they are setpoints, or one measurement that was told several times.
+std::string repetitionInWords(const MotionRecording& recording) {
+  constexpr double kMost = 0.5;
+  Eigen::Index pairs = 0;
+  Eigen::Index equal = 0;
+  for (const MotionStreams& streams : recording.spans) {
+    for (Eigen::Index n = 1; n < streams.currents.rows(); ++n) {
+      ++pairs;
+      equal += streams.currents.row(n) == streams.currents.row(n - 1) ? 1 : 0;
+    }
+  }
+  const double share =
+      static_cast<double>(equal) / static_cast<double>(std::max<Eigen::Index>(1, pairs));
+  if (share < kMost) {
+    return {};
+  }
+  constexpr double kPercent = 100.0;
+  return format(
+      "%.0f %% of the currents repeat the reading before in all coils to the last digit: "
+      "setpoints, or "
+      "measurements that were told several times. Inertia, friction and delays may be off by more "
+      "than "
+      "is stated: record each measured current once.",
+      kPercent * share);
+}
+
 }  // namespace
 
-std::vector<std::string> motionDoubts(const MotionEstimate& found) {
+std::vector<std::string> motionDoubts(const MotionEstimate& found,
+                                      const MotionRecording& recording) {
   // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
   constexpr double kLarge = 1.1;
   std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
-                                 driftInWords(found.orientations)};
+                                 driftInWords(found.orientations),
+                                 repetitionInWords(recording)};
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
     words.push_back(
         format("Residuals are %.2f times their noise: something acts that is not modelled, as a "

@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {
 
 /// What may have biased an estimate from motion, in sentences: such a calibration is usable at
 /// most. Empty: nothing. (doc/motion.md, How)
-std::vector<std::string> motionDoubts(const MotionEstimate& found);
+std::vector<std::string> motionDoubts(const MotionEstimate& found,
+                                      const MotionRecording& recording);
 
 }  // namespace sac

@@ -133,6 +133,12 @@ void writePlan(PlanMotionOptions& options) {
               result.excitation,
               1e3 * result.worst_stddev,
               result.worst_parameter.c_str());
+  constexpr double kCoarse = 1e-3;  // [rad] ten poses in a fixture tell four times as much
+  if (result.worst_stddev > kCoarse) {
+    std::printf(
+        "That is coarse: a longer motion tells more, and so do larger limits of current and "
+        "tilt.\n");
+  }
   writeFileAtomically(options.output_path, renderMotionPlan(result.record), options.overwrite);
   std::printf("Plan: %s\n", options.output_path.c_str());
 }

@@ -131,6 +131,18 @@ bool isDoubted(const CycleReport& report, const std::string& begin) {
   });
 }
 
+TEST_F(MotionCycleTest, DoubtsSetpointsInPlaceOfMeasuredCurrents) {
+  MotionRecording recording = noisy(moving_.record());
+  MotionStreams::Currents& currents = recording.spans.front().currents;
+  for (Eigen::Index n = 0; n < currents.rows(); ++n) {
+    currents.row(n) = Eigen::RowVectorXf(currents.row(n - n % 3));
+  }
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_TRUE(isDoubted(report, "67 % of the currents repeat")) << report.message;
+}
+
 // Either part fits as well without the other one.
 TEST_F(MotionCycleTest, DoubtsCurrentsWhoseClockJumps) {
   moving_.duration = 15.0;
