@@ -51,15 +51,10 @@ std::vector<Candidate> singleMistakes(const Actuator& actuator) {
   return mistakes;
 }
 
-struct RankedCandidate {
-  Candidate parts;
-  double misfit = 0.0;
-};
-
-void sortByMisfit(std::vector<RankedCandidate>& candidates) {
-  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.misfit < b.misfit;
-  });
+/// A mistake leaves a half of the misfit at most; what is none a tenth more or less.
+bool explainsLittle(const SuspectedWiring& wiring) {
+  constexpr double kMostLeft = 0.75;
+  return !(wiring.share_left < kMostLeft);
 }
 
 /// The coil that a single mistake is at; nothing: at none.
@@ -102,23 +97,23 @@ std::vector<Candidate> both(const Candidate& first, const std::vector<Candidate>
 
 }  // namespace
 
-std::vector<Candidate> suspectedWiring(const CalibrationSession& session) {
+std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session) {
   constexpr std::size_t kPromising = 8;
   constexpr std::size_t kMostTried = 2;
-  // A mistake leaves a half of the misfit at most; what is none a tenth more or less.
-  constexpr double kBetter = 0.75;
   constexpr double kExcerpt = 30.0;  // [s]
   const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
   const double unchanged = misfitWithout(session, excerpt, {}, 0.0);
-  if (unchanged < 0.0) {
+  if (!(unchanged > 0.0)) {
     return {};
   }
-  std::vector<RankedCandidate> all;
+  std::vector<SuspectedWiring> all;
   const auto rank = [&](const std::vector<Candidate>& candidates) {
     for (const Candidate& candidate : candidates) {
-      all.push_back({candidate, misfitWithout(session, excerpt, candidate, unchanged)});
+      all.push_back({candidate, misfitWithout(session, excerpt, candidate, unchanged) / unchanged});
     }
-    sortByMisfit(all);
+    std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
+      return one.share_left < other.share_left;
+    });
   };
   const Actuator& actuator = session.start().actuator;
   rank(singleMistakes(actuator));
@@ -130,13 +125,9 @@ std::vector<Candidate> suspectedWiring(const CalibrationSession& session) {
   if (promising.front().front().family == all.front().parts.front().family) {
     rank(both(promising.front(), promising));
   }
-  std::vector<Candidate> suspected;
-  for (const RankedCandidate& candidate : all) {
-    if (suspected.size() < kMostTried && candidate.misfit < kBetter * unchanged) {
-      suspected.push_back(candidate.parts);
-    }
-  }
-  return suspected;
+  all.erase(std::find_if(all.begin(), all.end(), explainsLittle), all.end());
+  all.resize(std::min(kMostTried, all.size()));
+  return all;
 }
 
 CorrectedMotion correctedMotion(const Actuator& actuator,

@@ -8,12 +8,18 @@
 
 namespace sac {
 
+/// Mistakes that a motion may have been recorded with.
+struct SuspectedWiring {
+  Candidate parts;
+  double share_left = 1.0;  ///< of the misfit as described, without them
+};
+
 /// Mistakes at coils and poles that the motion of a session may have been recorded with, two at the
 /// most together, the most promising first; none: as it is described, it is explained as well. By
 /// how much misfit one step from the description leaves: where all axes are off, coils that
 /// counteract each other tell so little of strengths that these cannot be asked for.
 /// Precondition: the session has a motion.
-std::vector<Candidate> suspectedWiring(const CalibrationSession& session);
+std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session);
 
 /// What would have been recorded without the mistakes of a candidate.
 struct CorrectedMotion {

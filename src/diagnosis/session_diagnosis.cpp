@@ -89,12 +89,6 @@ RefinedFit refined(const CalibrationSession& session,
   return fit;
 }
 
-/// Of what leaves a misfit, against none [nats].
-double evidenceOf(const RefinedFit& unchanged, double reduced_chi_square_with) {
-  return 0.5 * unchanged.freedom * (unchanged.reduced_chi_square - reduced_chi_square_with) /
-         std::max(1.0, reduced_chi_square_with);
-}
-
 /// Whether less misfit is left than what does not count as an explanation.
 bool explains(double with_it, double without_it) {
   return with_it - 1.0 <= (1.0 - kExplainedShare) * (without_it - 1.0);
@@ -117,11 +111,10 @@ std::vector<ParameterEstimate> valuesOf(const std::string& effect,
 }
 
 /// A mistake of wiring that explains a misfit of the motion.
-std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session,
-                                                const RefinedFit& unchanged) {
-  for (const Candidate& candidate : suspectedWiring(session)) {
+std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session) {
+  for (const SuspectedWiring& suspected : suspectedWiring(session)) {
     CorrectedMotion motion =
-        correctedMotion(session.start().actuator, *session.motion(), candidate);
+        correctedMotion(session.start().actuator, *session.motion(), suspected.parts);
     CalibrationConfig config = session.config();
     config.estimation.max_iterations = kSoonFound;
     CalibrationSession trial({motion.actuator}, {}, config);
@@ -131,11 +124,12 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
       continue;
     }
     std::vector<Diagnosis> diagnoses;
-    for (const Hypothesis& hypothesis : candidate) {
+    for (const Hypothesis& hypothesis : suspected.parts) {
       Diagnosis diagnosis;
       diagnosis.cause = hypothesis.cause;
       diagnosis.message = hypothesis.sentence(hypothesis.start);
-      diagnosis.evidence = evidenceOf(unchanged, report.reduced_chi_square);
+      diagnosis.evidence =
+          0.5 * report.degrees_of_freedom * (1.0 - suspected.share_left) / suspected.share_left;
       diagnoses.push_back(std::move(diagnosis));
     }
     return diagnoses;
@@ -166,7 +160,9 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
     diagnosis.message = valuesInWords(values) +
                         explainsInWords(unchanged.reduced_chi_square, fit.reduced_chi_square) +
                         " Model it: effects: {" + effect + ": true} in calibration.yaml.";
-    diagnosis.evidence = evidenceOf(unchanged, fit.reduced_chi_square);
+    diagnosis.evidence = 0.5 * unchanged.freedom *
+                         (unchanged.reduced_chi_square - fit.reduced_chi_square) /
+                         std::max(1.0, fit.reduced_chi_square);
     found.emplace_back(fit.bic(), std::move(diagnosis));
   }
   std::stable_sort(
@@ -181,6 +177,23 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
   return diagnoses;
 }
 
+/// Wiring first: from where a mistake of it leads, descents go on for ever.
+std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
+  const EffectSelection& effects = session.config().effects;
+  RefinedFit unchanged = refined(session, effects, kSoonFound);
+  if (unchanged.converged && !unchanged.isBeyondChance()) {
+    return {};
+  }
+  std::vector<Diagnosis> diagnoses = wiringThatExplainsMotion(session);
+  if (!diagnoses.empty()) {
+    return diagnoses;
+  }
+  if (!unchanged.converged) {
+    unchanged = refined(session, effects, session.config().estimation.max_iterations);
+  }
+  return unchanged.isBeyondChance() ? effectsThatExplainMotion(session, unchanged) : diagnoses;
+}
+
 }  // namespace
 
 std::vector<Diagnosis> diagnoseMistakes(const CalibrationSession& session) {
@@ -192,16 +205,11 @@ std::vector<Diagnosis> diagnose(const CalibrationSession& session) {
   if (!diagnoses.empty()) {
     return diagnoses;
   }
+  if (session.motion() != nullptr) {
+    return explainMotion(session);
+  }
   const RefinedFit unchanged =
       refined(session, session.config().effects, session.config().estimation.max_iterations);
-  if (session.motion() != nullptr) {
-    // Where nothing is near, no descent ends.
-    if (unchanged.converged && !unchanged.isBeyondChance()) {
-      return diagnoses;
-    }
-    diagnoses = wiringThatExplainsMotion(session, unchanged);
-    return diagnoses.empty() ? effectsThatExplainMotion(session, unchanged) : diagnoses;
-  }
   if (unchanged.converged && !unchanged.isBeyondChance() && unchanged.rejected < kManyRejected) {
     return diagnoses;
   }
