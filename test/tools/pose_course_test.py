@@ -93,6 +93,28 @@ class WaitingForRest(unittest.TestCase):
             self.waited(noise=1e-2, rest_spread=3e-3)
 
 
+class Deaf(Trembling):
+    """A rotor in a fixture that has not heard where to go."""
+
+    def __init__(self):
+        super().__init__(noise=0.0, rest_spread=3e-3)
+        self._joints = (0.4, 0.0, 0.0)
+
+    def fresh(self):
+        return self._joints
+
+    def drive_to(self, joints):
+        self._joints = joints
+
+
+class WaitingForAFixture(unittest.TestCase):
+    def test_tells_it_its_pose_again_where_it_rests_elsewhere(self):
+        clock, rotor = [0.0], Deaf()
+        options = Options(pose_timeout=60.0, drive_fixture=True)
+        PoseCourse(rotor, rotor, options, Hour(clock), Account()).wait_for_rest(POSE)
+        self.assertLess(clock[0], 10.0)
+
+
 class WaitingForCurrent(unittest.TestCase):
     def waited(self, cured_at, needs_zero=False, timeout=60.0):
         """Time [s] until the coils carried current, and what was said meanwhile."""

@@ -10,6 +10,7 @@ from . import progress
 from .options import OptionError
 
 POLL = 0.05  # [s]
+AGAIN = 2.0  # [s] of rest elsewhere after which a fixture is told its pose once more, which may have been lost
 SLOW = 5.0  # [s] after which the operator is told what is waited for
 # [s] without current before it is tried again: a driver whose currents deviated follows again after zero was commanded
 # and measured.
@@ -123,7 +124,7 @@ class PoseCourse:
         """Until joint sensors, or without joints the tracker, see the rotor at rest at the pose; None: anywhere.
         Raises RuntimeError when that takes too long."""
         self._account.set(stage=MeasurementProgress.TURNING, is_at_rest=False)
-        begin = still_since = self._task.time()
+        begin = still_since = told = self._task.time()
         readings = self._laboratory.readings
         spread = self._calibration.status().rest_spread
         last = None
@@ -139,8 +140,12 @@ class PoseCourse:
             elif now - still_since >= self._options.rest and not way:
                 self._account.set(is_at_rest=True)
                 return
-            elif way and now - begin > SLOW and self._options.drive_fixture:
-                self._account.say_once(f"The rotor is not at the pose ({way}): check fixture and {readings.device}.")
+            elif way and self._options.drive_fixture:
+                if min(now - told, now - still_since) > AGAIN:
+                    self._laboratory.drive_to(pose.joints)
+                    told = now
+                if now - begin > SLOW:
+                    self._account.say_once(f"The rotor is not at the pose ({way}): check fixture and {readings.device}.")
             if now - begin > self._options.pose_timeout:
                 raise RuntimeError(
                     f"The rotor did not come to rest at the pose in {now - begin:.0f} s "
