@@ -128,6 +128,7 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
       Diagnosis diagnosis;
       diagnosis.cause = hypothesis.cause;
       diagnosis.message = hypothesis.sentence(hypothesis.start);
+      // By what one step leaves: with the mistake a fit may find no end.
       diagnosis.evidence =
           0.5 * report.degrees_of_freedom * (1.0 - suspected.share_left) / suspected.share_left;
       diagnoses.push_back(std::move(diagnosis));

@@ -56,8 +56,9 @@ std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples, double cur
       continue;
     }
     bool is_wanted = newest.size() < kCheckedSamples;
+    const bool tells_coils = sample->has_torque;
     for (const Excitation& excitation : excitedCoils(*sample, current_threshold)) {
-      is_wanted = of_coil[excitation.coil]++ < kCheckedSamplesOfACoil || is_wanted;
+      is_wanted = (tells_coils && of_coil[excitation.coil]++ < kCheckedSamplesOfACoil) || is_wanted;
     }
     if (is_wanted) {
       newest.push_back(*sample);
@@ -75,7 +76,7 @@ std::vector<Sample> allHeldOut(const std::vector<Sample>& samples) {
   return all;
 }
 
-/// "3, 5 and 7"; empty where samples with torques tell of every coil, or there are none.
+/// "3, 5, 7"; empty where samples with torques tell of every coil, or there are none.
 std::string coilsNotSeen(const Actuator& actuator,
                          const std::vector<Sample>& samples,
                          double current_threshold) {
