@@ -78,21 +78,29 @@ void LiveMotionWork::chooseFree() {
   holds_uncertain_ = !held.isZero(0.0);
 }
 
-/// The first estimate, where the windows are enough for one.
+/// The first estimate, of the newer half of the windows, where they are enough for one. Where
+/// nothing fits, as long as a fixture turns the rotor, it is tried in vain: it must stay short, and
+/// seldom.
 void LiveMotionWork::begin() {
+  constexpr int kMostIterations = 8;  // a motion that fits takes two or three
+  const std::size_t few = live_.first_windows;
+  const std::size_t newest = std::clamp(estimate_.windows / 2, few, 2 * few);
   MotionRecording recording;
-  for (const LiveWindow& window : kept_) {
-    recording.spans.push_back(window.streams());
-    recording.windows.push_back(window.range());
+  for (std::size_t n = kept_.size() - std::min(newest, kept_.size()); n < kept_.size(); ++n) {
+    recording.spans.push_back(kept_[n].streams());
+    recording.windows.push_back(kept_[n].range());
   }
   MotionProblem problem;
   problem.model = model_;
   problem.recording = &recording;
   problem.free = free_;
   problem.prior = prior_;
-  const MotionEstimate found = estimateMotion(problem, estimation_, options_);
+  EstimationOptions brief = estimation_;
+  brief.max_iterations = std::min(brief.max_iterations, kMostIterations);
+  const MotionEstimate found = estimateMotion(problem, brief, options_);
   if (found.estimate.termination != Termination::kConverged) {
-    next_begin_ = estimate_.windows + std::max<std::size_t>(1, live_.first_windows / 2);
+    const std::size_t further = std::min(estimate_.windows, live_.kept_windows) / 2;
+    next_begin_ = estimate_.windows + std::max<std::size_t>(1, further);
     return;
   }
   x_ = found.estimate.belief.x;

@@ -128,6 +128,29 @@ TEST_F(LiveMotionTest, LeavesOutWindowsInWhichAHandTouchesTheRotor) {
   }
 }
 
+TEST_F(LiveMotionTest, BeginsAfterAFixtureHasTurnedTheRotor) {
+  LiveMotion live = this->live();
+  std::size_t driven = 0;
+  for (const MotionStreams& streams : noisy(moving_.record()).spans) {
+    for (MotionSlice& slice : slicesOf(streams)) {
+      // Not by these currents was it turned.
+      constexpr std::size_t kDriven = 20;
+      if (driven < kDriven) {
+        ++driven;
+        StreamCurrents& currents = slice.streams.currents;
+        currents = StreamCurrents(currents.colwise().reverse());
+        live.add(std::move(slice));
+        EXPECT_FALSE(live.estimate().is_told);
+      } else {
+        live.add(std::move(slice));
+      }
+    }
+  }
+  const LiveEstimate& found = live.estimate();
+  ASSERT_TRUE(found.is_told);
+  EXPECT_GE(found.left_out, driven / 2);
+}
+
 TEST_F(LiveMotionTest, HoldsACoilUntilCurrentFlowsInIt) {
   constexpr std::size_t kCoil = 4;
   moving_.coil_that_is_off = kCoil;
