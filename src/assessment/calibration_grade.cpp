@@ -137,9 +137,10 @@ class CalibrationGrader::Examiner {
     if (!open.empty() || !doubt.empty()) {
       return open + doubt;
     }
-    std::string missed = missedAccuracy();
-    if (!missed.empty()) {
-      return missed;
+    for (std::string missed : {undecided(), missedAccuracy()}) {
+      if (!missed.empty()) {
+        return missed;
+      }
     }
     if (isUnasked()) {
       return ", but no refinement asked all samples together whether something is not modelled: "
@@ -147,6 +148,14 @@ class CalibrationGrader::Examiner {
     }
     const std::string confounded = confoundedRegistration(parameters);
     return confounded.empty() ? unstatedRegistration() : confounded;
+  }
+
+  /// Of what held-out samples should judge, and do not.
+  std::string undecided() const {
+    return validation_ == nullptr || validation_->undecided_coils.empty()
+               ? std::string()
+               : ", but held-out torques of " + coilsInWords(validation_->undecided_coils) +
+                     " are outliers alone: hold out others";
   }
 
   std::string unidentified() const {
@@ -272,7 +281,7 @@ class CalibrationGrader::Examiner {
         }
         return "Do not use this calibration yet: " + identified() + ", but the " +
                (validation_->probability < kLeastProbability ? "" : "newest ") +
-               "held-out samples contradict them.";
+               "held-out samples contradict them" + contradicting() + ".";
       case Grade::kNotValidated:
         return "The calibration is not validated: " + identified() + shortcoming_ + unjudged() +
                expected_errors_;
@@ -284,6 +293,11 @@ class CalibrationGrader::Examiner {
     }
     return "The calibration is good to use: " + identified() + ", and held-out samples agree" +
            outliers() + "." + expected_errors_;
+  }
+
+  std::string contradicting() const {
+    const std::vector<HeldOutGroup> groups = validation_->contradicting();
+    return groups.empty() ? std::string() : ", by " + inWords(groups);
   }
 
   std::string outliers() const {

@@ -290,7 +290,8 @@ const CycleReport* CalibrationSession::lastSuccess() const {
 HeldOutJudge CalibrationSession::heldOutJudge() const {
   const CycleReport* last = lastSuccess();
   const bool has_residuals = last != nullptr && !last->residuals.empty();
-  HeldOutJudge judge(model_, state_, config_.estimation, has_residuals ? outlierRate(*last) : 0.0);
+  HeldOutJudge judge(
+      model_, state_, config_.estimation, has_residuals ? usualOutliers(*last) : UsualOutliers());
   const bool is_motion = last != nullptr && last->motion;
   const bool joins_motion = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
   if (is_motion || joins_motion) {

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
-#include <boost/math/distributions/binomial.hpp>
-
+#include "held_out_groups.hpp"
+#include "held_out_outliers.hpp"
 #include "linear_coils.hpp"
 #include "repeated_observations.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -20,16 +21,6 @@
 
 namespace sac {
 namespace {
-
-/// Whether so many outliers among `count` are no more than the rate of those elsewhere.
-bool areUsual(std::size_t outliers, std::size_t count, double rate, double most) {
-  if (outliers == 0 || static_cast<double>(outliers) > most * static_cast<double>(count)) {
-    return outliers == 0;
-  }
-  const boost::math::binomial_distribution<double> usual(static_cast<double>(count), rate);
-  return boost::math::cdf(boost::math::complement(usual, static_cast<double>(outliers) - 1.0)) >=
-         kLeastProbability;
-}
 
 SampleResidual residualOf(const Sample& sample,
                           Quantity quantity,
@@ -55,9 +46,9 @@ class HeldOutJudge::Judgement {
   Judgement(const CalibrationModel& model,
             const CalibrationState& state,
             const EstimationOptions& options,
-            double outlier_rate)
+            UsualOutliers outliers)
       : options_(options),
-        outlier_rate_(outlier_rate),
+        usual_(std::move(outliers)),
         linear_coils_(linearCoils(model.space(), state.belief, state.identified)),
         point_(model, state.belief.x),
         all_(ChosenCoordinates::all(model.space().size())),
@@ -105,16 +96,6 @@ class HeldOutJudge::Judgement {
     return result_;
   }
 
-  /// A measurement with what the test needs of it.
-  struct Judged {
-    Quantity quantity = Quantity::kOrientation;
-    bool counts = false;         ///< in the test
-    std::size_t dwell = 0;       ///< that shares its errors
-    double squared_norm = 0.0;   ///< of its residual
-    WhitenedObservation misfit;  ///< empty where it does not count
-    SharedLoading loading = SharedLoading::Zero();
-  };
-
   /// Whether new samples in use change what an orientation map leaves open of those before. Those
   /// that are held out have no part in it, so that each of them is looked at once.
   bool changesTrackerNoise(const std::vector<Sample>& samples) {
@@ -136,6 +117,8 @@ class HeldOutJudge::Judgement {
     dwell_.reset();
     dwells_ = 0;
     judged_.clear();
+    groups_ = HeldOutGroups();
+    in_use_.clear();
     update_.reset();
     result_ = HeldOutValidation();
   }
@@ -161,6 +144,8 @@ class HeldOutJudge::Judgement {
     if (held_out) {
       validate(sample, model.space().coils());
       ++result_.samples;
+    } else {
+      noteInUse(n);
     }
     if (model.observesOrientation(sample) &&
         !takeObservation({n, Quantity::kOrientation}, held_out)) {
@@ -169,6 +154,22 @@ class HeldOutJudge::Judgement {
     return !sample.has_torque || !model.hasTorqueModel() ||
            excitedCoils(sample, options_.current_threshold).empty() ||
            takeObservation({n, Quantity::kTorque}, held_out);
+  }
+
+  /// As far as the last cycle has looked at it.
+  void noteInUse(std::size_t n) {
+    const Sample& sample = (*problem_.samples)[n];
+    if (!sample.has_torque || sample.id > usual_.newest_torque) {
+      return;
+    }
+    for (const std::size_t coil : coilsOf({n, Quantity::kTorque}, sample)) {
+      TorquesInUse& torques = in_use_[coil];
+      if (usual_.torques.count(sample.id) > 0) {
+        torques.rejected.push_back(n);
+      } else {
+        torques.last_agreeing = n;
+      }
+    }
   }
 
   bool takeObservation(const Observation& observation, bool held_out) {
@@ -195,9 +196,11 @@ class HeldOutJudge::Judgement {
       ++result_.repeated;
       return;
     }
-    Judged one;
+    HeldOutMeasurement one;
     one.quantity = observation.quantity;
-    one.counts = isJudged(observation, sample);
+    one.sample = observation.sample;
+    one.coils = coilsOf(observation, sample);
+    one.counts = isJudged(one);
     one.dwell = dwells_;
     one.squared_norm = linear_.residual.squaredNorm();
     if (one.counts) {
@@ -217,28 +220,35 @@ class HeldOutJudge::Judgement {
     }
   }
 
-  /// Whether the test counts an observation.
-  bool isJudged(const Observation& observation, const Sample& sample) const {
-    if (observation.quantity == Quantity::kOrientation) {
-      return true;
+  /// That are on, where it is a torque.
+  std::vector<std::size_t> coilsOf(const Observation& observation, const Sample& sample) const {
+    std::vector<std::size_t> coils;
+    if (observation.quantity == Quantity::kTorque) {
+      for (const Excitation& one : excitedCoils(sample, options_.current_threshold)) {
+        coils.push_back(one.coil);
+      }
     }
-    const std::vector<Excitation> excitations = excitedCoils(sample, options_.current_threshold);
-    return std::all_of(excitations.begin(), excitations.end(), [this](const Excitation& one) {
-      return linear_coils_[one.coil];
-    });
+    return coils;
   }
 
-  void whitenJudged(const ObservationEvaluator& evaluator, Judged& one) const {
+  /// Whether the test counts a measurement.
+  bool isJudged(const HeldOutMeasurement& one) const {
+    return std::all_of(
+        one.coils.begin(), one.coils.end(), [this](std::size_t j) { return linear_coils_[j]; });
+  }
+
+  void whitenJudged(const ObservationEvaluator& evaluator, HeldOutMeasurement& one) const {
     const Eigen::Matrix3d W =
         whiteningOf(dwell_ ? evaluator.ownNoise(0, linear_) : evaluator.noise(0, linear_));
     whiten(linear_, W, all_, one.misfit);
+    one.whitening = W;
     if (dwell_) {
       one.loading = W * evaluator.sharedErrors(0, linear_);
     }
   }
 
   void conclude() {
-    setOutliersAside();
+    const std::vector<bool> set_aside = setOutliersAside();
     addMisfits();
     const std::size_t judged =
         result_.residuals.size() - result_.unjudged_torques - result_.outliers;
@@ -248,19 +258,21 @@ class HeldOutJudge::Judgement {
       result_.reduced_chi_square = chi_square / values;
       result_.probability = chiSquareProbability(values, chi_square);
     }
+    result_.groups = groups_.judge(judged_, set_aside, problem_.prior.covariance);
+    const auto among = static_cast<double>(result_.groups.size() + 1);
+    for (const HeldOutGroup& group : result_.contradicting()) {
+      result_.probability = std::min(result_.probability, among * group.probability());
+    }
   }
 
   /// Marks what stands out as rejected, where it is no more than elsewhere.
-  void setOutliersAside() {
-    const std::vector<std::size_t> outliers = this->outliers();
-    const std::size_t count = judged_.size() - result_.unjudged_torques;
-    const bool are_usual =
-        areUsual(outliers.size(), count, outlier_rate_, options_.max_rejected_fraction);
-    result_.outliers = are_usual ? outliers.size() : 0;
-    std::vector<bool> is_rejected(judged_.size(), false);
-    for (std::size_t k = 0; k < result_.outliers; ++k) {
-      is_rejected[outliers[k]] = true;
-    }
+  std::vector<bool> setOutliersAside() {
+    OutlierChoice choice =
+        chooseOutliers(judged_, outliers(), in_use_, usual_.rate, options_.max_rejected_fraction);
+    result_.outliers = choice.count;
+    result_.undecided_coils = std::move(choice.undecided_coils);
+    result_.doubtful_coils = std::move(choice.doubtful_coils);
+    const std::vector<bool>& is_rejected = choice.set_aside;
     for (std::size_t n = 0; n < judged_.size(); ++n) {
       SampleResidual& residual = result_.residuals[n];
       if (residual.rejected == is_rejected[n]) {
@@ -274,6 +286,7 @@ class HeldOutJudge::Judgement {
         update_.reset();
       }
     }
+    return choice.set_aside;
   }
 
   /// Those that stand out by themselves, ascending.
@@ -312,7 +325,7 @@ class HeldOutJudge::Judgement {
     result_.torque_rms = rootMean(torque_squares_, result_.torques);
   }
 
-  void addMisfit(const Judged& one) {
+  void addMisfit(const HeldOutMeasurement& one) {
     const bool is_orientation = one.quantity == Quantity::kOrientation;
     (is_orientation ? result_.orientations : result_.torques) += 1;
     (is_orientation ? orientation_squares_ : torque_squares_) += one.squared_norm;
@@ -327,7 +340,7 @@ class HeldOutJudge::Judgement {
   }
 
   const EstimationOptions options_;
-  const double outlier_rate_;
+  const UsualOutliers usual_;
   const std::vector<bool> linear_coils_;
   const ModelPoint point_;  ///< the model at the state
   const ChosenCoordinates all_;
@@ -343,7 +356,9 @@ class HeldOutJudge::Judgement {
   RepeatSearch repeats_;
   std::optional<Sample> dwell_;  ///< the first sample of the present one, where it shares errors
   std::size_t dwells_ = 0;
-  std::vector<Judged> judged_;  ///< in the order of the residuals
+  std::vector<HeldOutMeasurement> judged_;  ///< in the order of the residuals
+  HeldOutGroups groups_;
+  std::map<std::size_t, TorquesInUse> in_use_;  ///< by coil
 
   std::optional<SequentialUpdate> update_;  ///< the first added_ of judged_ that are not rejected
   std::size_t added_ = 0;
@@ -360,8 +375,8 @@ class HeldOutJudge::Judgement {
 HeldOutJudge::HeldOutJudge(const CalibrationModel& model,
                            const CalibrationState& state,
                            const EstimationOptions& options,
-                           double outlier_rate)
-    : judgement_(std::make_unique<Judgement>(model, state, options, outlier_rate)) {}
+                           UsualOutliers outliers)
+    : judgement_(std::make_unique<Judgement>(model, state, options, std::move(outliers))) {}
 
 HeldOutJudge::~HeldOutJudge() = default;
 HeldOutJudge::HeldOutJudge(HeldOutJudge&& other) noexcept = default;
@@ -383,8 +398,8 @@ HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
                                   const EstimationOptions& options,
-                                  double outlier_rate) {
-  return HeldOutJudge(model, state, options, outlier_rate).judge(samples);
+                                  const UsualOutliers& outliers) {
+  return HeldOutJudge(model, state, options, outliers).judge(samples);
 }
 
 }  // namespace sac

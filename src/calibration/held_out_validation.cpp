@@ -1,19 +1,68 @@
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "cycle_conclusion.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
 
-double outlierRate(const CycleReport& report) {
-  const auto rejected = std::count_if(
-      report.residuals.begin(), report.residuals.end(), [](const SampleResidual& residual) {
-        return residual.rejected;
-      });
+double HeldOutGroup::probability() const {
+  return chiSquareProbability(freedom(), std::max(chi_square, 0.0));
+}
+
+double HeldOutValidation::leastOfAGroup() const {
+  return kLeastProbability / static_cast<double>(groups.size() + 1);
+}
+
+std::vector<HeldOutGroup> HeldOutValidation::contradicting() const {
+  std::vector<HeldOutGroup> found;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(found), [this](const auto& group) {
+    return group.probability() < leastOfAGroup();
+  });
+  return found;
+}
+
+std::string inWords(const std::vector<HeldOutGroup>& groups) {
+  std::string words;
+  for (const HeldOutGroup& group : groups) {
+    words += (words.empty() ? "" : ", ") + group.name +
+             format(" (chi-square %.3g of %.0f, probability %.2g)",
+                    group.chi_square,
+                    group.freedom(),
+                    group.probability());
+  }
+  return words;
+}
+
+std::string coilsInWords(const std::vector<std::size_t>& coils) {
+  std::string words = coils.size() == 1 ? "coil " : "coils ";
+  for (const std::size_t coil : coils) {
+    words += (coil == coils.front() ? "" : ", ") + std::to_string(numberOf(coil));
+  }
+  return words;
+}
+
+UsualOutliers usualOutliers(const CycleReport& report) {
+  UsualOutliers outliers;
+  std::size_t rejected = 0;
+  for (const SampleResidual& residual : report.residuals) {
+    rejected += residual.rejected ? 1U : 0U;
+    // Those of a motion are windows.
+    if (residual.quantity != Quantity::kTorque || report.motion) {
+      continue;
+    }
+    outliers.newest_torque = std::max(outliers.newest_torque, residual.id);
+    if (residual.rejected) {
+      outliers.torques.insert(residual.id);
+    }
+  }
   const std::size_t count = std::max<std::size_t>(1, report.residuals.size());
-  return static_cast<double>(rejected) / static_cast<double>(count);
+  outliers.rate = static_cast<double>(rejected) / static_cast<double>(count);
+  return outliers;
 }
 
 HeldOutValidation validationOf(const HeldOutMotion& motion) {
@@ -69,12 +118,22 @@ std::string verdict(const HeldOutValidation& validation) {
   text += format(" reduced chi-square %.3g (probability %.2g): ",
                  validation.reduced_chi_square,
                  validation.probability);
+  const std::vector<HeldOutGroup> contradicting = validation.contradicting();
+  if (!contradicting.empty()) {
+    return text + "they contradict the parameters in force, by " + inWords(contradicting) +
+           ". Look at the largest standardized residuals; then calibrate again.";
+  }
   if (validation.probability < kLeastProbability) {
     return text +
            "they contradict the parameters in force. Look at the largest standardized residuals; "
            "then calibrate again.";
   }
-  return text + "they agree with the parameters within the stated uncertainties.";
+  text += "they agree with the parameters within the stated uncertainties.";
+  if (!validation.undecided_coils.empty()) {
+    text += " Torques of " + coilsInWords(validation.undecided_coils) +
+            " are outliers alone: hold out others.";
+  }
+  return text;
 }
 
 }  // namespace sac

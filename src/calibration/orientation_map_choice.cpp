@@ -21,7 +21,7 @@ constexpr int kRegionDepth = 3;
 constexpr double kLeastGain = 10.0;         // [nats] for three amplitudes, noises and lengths
 constexpr double kLargestShare = 0.9;       // of the error without the map
 constexpr double kLeastSignificance = 2.0;  // standard deviations of the mean gain of a region
-constexpr double kMilli = 1e3;
+constexpr double kMilliradian = 1e3;
 /// Of the stated noise, by which axes and corrections are fitted: a bend far beyond it is no reason
 /// to look for no map.
 constexpr double kNoiseFactors[] = {1.0, 5.0, 25.0};
@@ -231,8 +231,8 @@ std::string inWords(const MapRecord& record, bool is_chosen) {
       "with it and to %.3g mrad by axes and corrections alone; %.0f %% within the 95 %% intervals.",
       is_chosen ? "" : " (not taken)",
       static_cast<unsigned>(record.regions),
-      kMilli * record.map_rms,
-      kMilli * record.axes_rms,
+      kMilliradian * record.map_rms,
+      kMilliradian * record.axes_rms,
       100.0 * record.inside);
 }
 

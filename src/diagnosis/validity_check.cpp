@@ -15,36 +15,15 @@
 namespace sac {
 namespace {
 
-constexpr char kOrientations[] = "the orientation";
-
-/// Residuals that one kind of change would show in.
-struct Group {
-  std::size_t observations = 0;
-  double squared_residual = 0.0;  ///< Σ ‖r‖²
-  double chi_square = 0.0;
-
-  void add(const SampleResidual& residual) {
-    observations += 1;
-    squared_residual += residual.residual * residual.residual;
-    chi_square += 3.0 * residual.standardized * residual.standardized;
-  }
-
-  double freedom() const { return 3.0 * static_cast<double>(observations); }
-
-  /// Of a misfit at least this large by chance.
-  double probability() const { return chiSquareProbability(freedom(), chi_square); }
-
-  /// Largest rms norm of a common error that passes as these residuals did with 1 %.
-  double bound() const {
-    constexpr double kUnnoticed = 0.01;
-    // Residuals that are smaller than expected by luck promise nothing.
-    const double judged = std::max(chi_square, freedom());
-    const double excess =
-        boost::math::non_central_chi_squared::find_non_centrality(freedom(), judged, kUnnoticed);
-    const double variance = squared_residual / std::max(chi_square, 1e-300);
-    return std::sqrt(excess * variance / static_cast<double>(observations));
-  }
-};
+/// Largest rms norm of a common error that passes as these measurements did with 1 %.
+double boundOf(const HeldOutGroup& group) {
+  constexpr double kUnnoticed = 0.01;
+  // Residuals that are smaller than expected by luck promise nothing.
+  const double judged = std::max(group.chi_square, group.freedom());
+  const double excess = boost::math::non_central_chi_squared::find_non_centrality(
+      group.freedom(), judged, kUnnoticed);
+  return std::sqrt(excess / group.sensitivity);
+}
 
 /// The newest of the held-out samples, and of each coil the newest that it is on in: a change of
 /// one coil shows in no other.
@@ -97,72 +76,39 @@ std::string coilsNotSeen(const Actuator& actuator,
   return numbers;
 }
 
-std::string coilsInWords(const std::vector<Excitation>& excited) {
-  constexpr std::size_t kMostNamed = 3;
-  if (excited.size() > kMostNamed) {
-    return "several coils together";
-  }
-  std::string words;
-  for (const Excitation& excitation : excited) {
-    words += (words.empty() ? "coil " : " with coil ") + std::to_string(numberOf(excitation.coil));
-  }
-  return words.empty() ? "torques without current" : words;
-}
-
-/// Orientations, and torques by the coils that are on: "the orientation", "coil 3", "coil 3 with
-/// coil 7".
-std::map<std::string, Group> groupsOf(const std::vector<Sample>& samples,
-                                      const HeldOutValidation& validation,
-                                      double current_threshold) {
-  std::map<std::string, Group> groups;
-  for (const SampleResidual& residual : validation.residuals) {
-    if (residual.rejected) {
-      continue;
-    }
-    if (residual.quantity == Quantity::kOrientation) {
-      groups[kOrientations].add(residual);
-      continue;
-    }
-    const auto sample = std::find_if(
-        samples.begin(), samples.end(), [&](const Sample& one) { return one.id == residual.id; });
-    groups[coilsInWords(excitedCoils(*sample, current_threshold))].add(residual);
-  }
-  return groups;
-}
-
 /// At which the last cycle that succeeded rejected single measurements, or the one that made the
 /// description that the session starts from.
-double usualOutlierRate(const CalibrationSession& session) {
+UsualOutliers outliersOf(const CalibrationSession& session) {
   const std::vector<CycleReport>& reports = session.reports();
   const auto last = std::find_if(
       reports.rbegin(), reports.rend(), [](const CycleReport& one) { return one.success; });
   if (last != reports.rend()) {
-    return outlierRate(*last);
+    return usualOutliers(*last);
   }
   const auto& before = session.start().calibration;
   if (!before || before->cycles.empty() || before->cycles.back().samples_used == 0) {
-    return 0.0;
+    return {};
   }
   const CycleRecord& cycle = before->cycles.back();
-  return static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used);
+  return {static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used)};
 }
 
 /// Of torques that of the coil that is judged least: a change of one shows in no other.
-std::string boundsInWords(const std::map<std::string, Group>& groups) {
-  std::string text;
+std::string boundsInWords(const std::vector<HeldOutGroup>& groups) {
+  std::string orientations;
   double torques = 0.0;
-  for (const auto& [name, group] : groups) {
-    if (name == kOrientations) {
-      text = format("%.2g mrad (99 %%)", 1e3 * group.bound());
+  for (const HeldOutGroup& group : groups) {
+    if (group.name == kOrientations) {
+      orientations = format("%.2g mrad (99 %%)", 1e3 * boundOf(group));
     } else {
-      torques = std::max(torques, group.bound());
+      torques = std::max(torques, boundOf(group));
     }
   }
-  if (torques > 0.0) {
-    text += (text.empty() ? "" : ", torques of each coil judged to ") +
-            format("%.2g mN.m (99 %%)", 1e3 * torques);
+  if (!(torques > 0.0)) {
+    return orientations;
   }
-  return text;
+  return orientations + (orientations.empty() ? "" : ", torques of each coil judged to ") +
+         format("%.2g mN.m (99 %%)", 1e3 * torques);
 }
 
 /// What no sample tells of.
@@ -180,36 +126,28 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
   const std::vector<Sample> newest = checked == CheckedSamples::kAll
                                          ? allHeldOut(session.samples())
                                          : newestHeldOut(session.samples(), threshold);
-  const HeldOutValidation validation = validateHeldOut(session.model(),
-                                                       newest,
-                                                       session.state(),
-                                                       session.config().estimation,
-                                                       usualOutlierRate(session));
+  const HeldOutValidation validation = validateHeldOut(
+      session.model(), newest, session.state(), session.config().estimation, outliersOf(session));
   if (!validation.hasVerdict()) {
     check.message =
         "Nothing can be told: capture some poses for validation, 3 or more, and check again.";
     return check;
   }
-  const std::map<std::string, Group> groups = groupsOf(newest, validation, threshold);
-  const double least = kLeastProbability / static_cast<double>(groups.size() + 1);
-  std::string changed;
-  for (const auto& [name, group] : groups) {
-    const double probability = group.probability();
-    if (probability < least) {
-      changed += (changed.empty() ? "" : ", ") + name +
-                 format(" (chi-square %.3g of %.0f, probability %.2g)",
-                        group.chi_square,
-                        group.freedom(),
-                        probability);
-    }
+  const std::string changed = inWords(validation.contradicting());
+  const bool agrees = changed.empty() && validation.probability >= validation.leastOfAGroup();
+  if (agrees && !validation.doubtful_coils.empty()) {
+    check.message = "In doubt: the newest held-out torque of " +
+                    coilsInWords(validation.doubtful_coils) +
+                    " is an outlier. Capture another one for validation, and check again.";
+    return check;
   }
-  check.is_valid = changed.empty() && validation.probability >= least;
+  check.is_valid = agrees;
   if (check.is_valid) {
     check.message = format(
                         "Valid to %s, by %zu held-out samples%s. This holds beside the "
                         "registrations: frames that "
                         "were off when the unit was calibrated, and still are, show in no sample.",
-                        boundsInWords(groups).c_str(),
+                        boundsInWords(validation.groups).c_str(),
                         validation.samples,
                         validation.outliers > 0
                             ? format(" (%zu outliers, as rare as the others', are not judged)",

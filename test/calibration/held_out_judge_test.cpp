@@ -76,7 +76,7 @@ class HeldOutJudgeTest : public ::testing::Test {
   }
 
   HeldOutJudge judge() const {
-    return {session_.model(), session_.state(), session_.config().estimation, kRate};
+    return {session_.model(), session_.state(), session_.config().estimation, UsualOutliers{kRate}};
   }
 
   static void expectEqual(const HeldOutValidation& one,
@@ -95,6 +95,10 @@ class HeldOutJudgeTest : public ::testing::Test {
                 kRounding * (1.0 + other.reduced_chi_square))
         << at;
     EXPECT_NEAR(one.probability, other.probability, kRounding) << at;
+    ASSERT_EQ(one.groups.size(), other.groups.size()) << at;
+    for (std::size_t n = 0; n < one.groups.size(); ++n) {
+      EXPECT_NEAR(one.groups[n].chi_square, other.groups[n].chi_square, 1e-6) << at;
+    }
     ASSERT_EQ(one.residuals.size(), other.residuals.size()) << at;
     for (std::size_t n = 0; n < one.residuals.size(); ++n) {
       EXPECT_EQ(one.residuals[n].id, other.residuals[n].id) << at;
@@ -161,6 +165,45 @@ TEST_F(HeldOutJudgeTest, IsTheMahalanobisNormOfAllResiduals) {
   ASSERT_EQ(validation.outliers, 0U);
   EXPECT_NEAR(
       validation.reduced_chi_square, r.dot(S.llt().solve(r)) / static_cast<double>(r.size()), 1e-6);
+}
+
+// Each group by itself: what the parameters leave open moves all of its misfits together.
+TEST_F(HeldOutJudgeTest, JudgesEachCoilByItself) {
+  std::vector<Sample> samples = session_.samples();
+  const std::vector<Sample> further = furtherSamples();
+  samples.insert(samples.end(), further.begin(), further.end());
+  const HeldOutValidation validation = judge().judge(samples);
+  ASSERT_GT(validation.groups.size(), 2U);
+  std::size_t observations = 0;
+  for (const HeldOutGroup& group : validation.groups) {
+    EXPECT_LE(group.observations, kJudgedOfAGroup);
+    EXPECT_GT(group.probability(), validation.leastOfAGroup()) << group.name;
+    EXPECT_GT(group.sensitivity, 0.0) << group.name;
+    observations += group.observations;
+  }
+  EXPECT_GT(observations, kJudgedOfAGroup);
+  EXPECT_TRUE(validation.contradicting().empty());
+}
+
+// Among all misfits one coil of many does not show.
+TEST_F(HeldOutJudgeTest, NamesTheCoilThatContradictsAmongMany) {
+  std::vector<Sample> samples = session_.samples();
+  constexpr std::size_t kCoil = 4;
+  for (Sample sample : furtherSamples()) {
+    const std::vector<Excitation> on = excitedCoils(sample, 0.05);
+    if (sample.validation && on.size() == 1 && on.front().coil == kCoil) {
+      sample.torque += Eigen::Vector3d::Constant(2.0 * kTorqueNoise);
+    }
+    samples.push_back(sample);
+  }
+  const HeldOutValidation validation = judge().judge(samples);
+  const std::vector<HeldOutGroup> found = validation.contradicting();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().name, "coil 5");
+  EXPECT_EQ(validation.outliers, 0U);
+  EXPECT_LT(validation.probability, kLeastProbability);
+  EXPECT_LT(validation.reduced_chi_square, 1.5);
+  EXPECT_NE(verdict(validation).find("by coil 5 (chi-square"), std::string::npos);
 }
 
 // The first is set aside, until there are more of them than elsewhere.

@@ -81,8 +81,7 @@ std::vector<Sample> heldOut(const Actuator& unit) {
 }
 
 HeldOutValidation validated(const CalibrationSession& session, const std::vector<Sample>& samples) {
-  return validateHeldOut(
-      session.model(), samples, session.state(), session.config().estimation, 0.0);
+  return validateHeldOut(session.model(), samples, session.state(), session.config().estimation);
 }
 
 /// Mean standard deviation of orientations that are measured next [rad].

@@ -1,6 +1,8 @@
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -56,6 +58,48 @@ TEST(ValidityCheck, ExcusesNoneWhereNoneWereInUse) {
 
 TEST(ValidityCheck, ExcusesNoMoreThanAreUsual) {
   EXPECT_FALSE(checked(4, 4).is_valid);
+}
+
+// One glitch among the samples in use excuses no coil of which nothing else tells.
+TEST(ValidityCheck, DoubtsACoilWhoseOnlyTorqueIsAnOutlier) {
+  scenarios::Generator generator(5);
+  std::vector<Sample> samples =
+      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].id = static_cast<std::uint32_t>(n + 1);
+  }
+  std::vector<Sample> later(samples.begin(), samples.begin() + 20);
+  samples[41].torque.x() += 0.03;
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  ASSERT_TRUE(session.run({Cycle::kRefine}).success);
+  const auto captured = [&](std::uint32_t id, double error) {
+    Sample sample =
+        *std::find_if(later.begin(), later.end(), [](const Sample& one) { return one.has_torque; });
+    sample.id = id;
+    sample.validation = true;
+    sample.R_stator_rotor = rotationExp({0.0, 0.0, 1e-8 * id}) * sample.R_stator_rotor;
+    sample.torque += Eigen::Vector3d(error, 1e-8 * id, 0.0);
+    return sample;
+  };
+  for (std::size_t n = 0; n < later.size(); ++n) {
+    Sample sample = later[n];
+    sample.id += 1000;
+    sample.validation = true;
+    sample.torque.y() += 1e-6;
+    sample.R_stator_rotor = rotationExp({0.0, 1e-6, 0.0}) * sample.R_stator_rotor;
+    session.add(sample);
+  }
+  ASSERT_TRUE(checkValidity(session).is_valid) << checkValidity(session).message;
+  session.add(captured(2000, 0.03));
+  const ValidityCheck check = checkValidity(session);
+  EXPECT_FALSE(check.is_valid) << check.message;
+  EXPECT_NE(check.message.find("In doubt"), std::string::npos) << check.message;
+  session.add(captured(2001, 0.0));
+  EXPECT_TRUE(checkValidity(session).is_valid) << checkValidity(session).message;
+  session.add(captured(2002, 0.031));
+  session.add(captured(2003, 0.029));
+  EXPECT_NE(checkValidity(session).message.find("changed are coil"), std::string::npos)
+      << checkValidity(session).message;
 }
 
 TEST(ValidityCheck, PromisesNothingOfFramesThatWereOffBefore) {

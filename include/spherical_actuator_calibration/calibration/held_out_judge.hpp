@@ -18,7 +18,7 @@ class HeldOutJudge {
   HeldOutJudge(const CalibrationModel& model,
                const CalibrationState& state,
                const EstimationOptions& options,
-               double outlier_rate);
+               UsualOutliers outliers);
   ~HeldOutJudge();
   HeldOutJudge(HeldOutJudge&& other) noexcept;
   HeldOutJudge& operator=(HeldOutJudge&& other) noexcept;
@@ -42,12 +42,13 @@ class HeldOutJudge {
 /// Judges the held-out samples under a state. Orientations always count, torques where some coil
 /// is excited and the model has torque; those of coils that are not identified have a residual but
 /// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
-/// `outlier_rate`: at which single outliers come by accident, as among the samples in use; 0: none
-/// is excused. Throws DataError on malformed samples.
+/// `outliers`: those among the samples in use, as often as which single ones come by accident; but
+/// where the newest torques of a coil are outliers, two or more in a row, it has changed. Throws
+/// DataError on malformed samples.
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,
                                   const EstimationOptions& options,
-                                  double outlier_rate = 0.0);
+                                  const UsualOutliers& outliers = {});
 
 }  // namespace sac

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,27 @@
 #include "spherical_actuator_calibration/motion/motion_summary.hpp"
 
 namespace sac {
+
+/// Held-out measurements in which one kind of change would show: among all it might not.
+struct HeldOutGroup {
+  std::string name;              ///< "the orientation", "coil 3", "coil 3 with coil 7"
+  std::size_t observations = 0;  ///< judged together
+  /// Squared Mahalanobis norm of their misfits, with the uncertainty of the parameters, and the
+  /// errors of a dwell, that they have in common.
+  double chi_square = 0.0;
+  /// By how much it grows, in the mean over all directions, with the squared norm of an error that
+  /// all of them have in common [1/rad²], [1/(N·m)²].
+  double sensitivity = 0.0;
+
+  double freedom() const { return 3.0 * static_cast<double>(observations); }
+  /// Of a misfit at least this large by chance.
+  double probability() const;
+};
+
+/// The group of all orientations; those of torques have the names of the coils that were on.
+inline constexpr char kOrientations[] = "the orientation";
+/// So many of a group are judged together, the newest.
+inline constexpr std::size_t kJudgedOfAGroup = 24;
 
 /// How samples that no estimate has used agree with the parameters.
 struct HeldOutValidation {
@@ -25,20 +48,37 @@ struct HeldOutValidation {
   /// That stand out by themselves, where they are no more than among the samples in use: they have
   /// a residual that is `rejected`, and no part in the test.
   std::size_t outliers = 0;
+  /// Coils of which every held-out torque is such an outlier: nothing is told of them. Ascending.
+  std::vector<std::size_t> undecided_coils;
+  /// Coils of which the newest torque is such an outlier, by accident or since they have changed.
+  std::vector<std::size_t> doubtful_coils;
+  /// Each judged by itself, by name.
+  std::vector<HeldOutGroup> groups;
   /// Squared Mahalanobis norm of all misfits over their number, with the noise of the samples and
   /// the common uncertainty of the parameters: 1 on average when both are as stated.
   double reduced_chi_square = 0.0;
-  /// Probability of misfits at least this large when the stated uncertainties hold.
+  /// Probability of misfits at least this large when the stated uncertainties hold; where single
+  /// groups contradict, of what the worst of so many groups shows.
   double probability = 1.0;
   /// One per observation; `standardized` with its own covariance.
   std::vector<SampleResidual> residuals;
 
   /// Whether any observation took part in the test.
   bool hasVerdict() const { return residuals.size() > unjudged_torques; }
+  /// Largest probability at which one of the groups contradicts, so that all of them together
+  /// rarely do by chance.
+  double leastOfAGroup() const;
+  std::vector<HeldOutGroup> contradicting() const;
 };
 
-/// Rate at which a cycle rejected outliers; 0: none, so that none is excused elsewhere.
-double outlierRate(const CycleReport& report);
+/// What a cycle rejected among the samples in use.
+struct UsualOutliers {
+  double rate = 0.0;                     ///< 0: none, so that none is excused elsewhere
+  std::set<std::uint32_t> torques = {};  ///< ids of samples
+  std::uint32_t newest_torque = 0;       ///< id of the last sample that was looked at; 0: none
+};
+
+UsualOutliers usualOutliers(const CycleReport& report);
 
 /// What windows of motion that were held out tell, in the same words: a window is a sample with a
 /// torque, its mean error.
@@ -49,6 +89,12 @@ const HeldOutValidation& severer(const HeldOutValidation& one, const HeldOutVali
 
 /// Smaller probabilities mean that the held-out samples contradict the parameters.
 inline constexpr double kLeastProbability = 1e-3;
+
+/// "coil 3 (chi-square 56 of 12, probability 1e-07), coil 7 (…)".
+std::string inWords(const std::vector<HeldOutGroup>& groups);
+
+/// "coil 3", "coils 3, 7".
+std::string coilsInWords(const std::vector<std::size_t>& coils);
 
 /// The verdict in a sentence that an operator can act on.
 std::string verdict(const HeldOutValidation& validation);

@@ -1,0 +1,95 @@
+#include "held_out_outliers.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <boost/math/distributions/binomial.hpp>
+
+#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+
+namespace sac {
+namespace {
+
+/// Whether so many outliers among `count` are no more than the rate of those elsewhere.
+bool areUsual(std::size_t outliers, std::size_t count, double rate, double most) {
+  if (outliers == 0 || static_cast<double>(outliers) > most * static_cast<double>(count)) {
+    return outliers == 0;
+  }
+  const boost::math::binomial_distribution<double> usual(static_cast<double>(count), rate);
+  return boost::math::cdf(boost::math::complement(usual, static_cast<double>(outliers) - 1.0)) >=
+         kLeastProbability;
+}
+
+/// Held-out torques of a coil that the test counts.
+struct HeldOutTorques {
+  std::vector<std::size_t> set_aside;        ///< measurements
+  std::optional<std::size_t> last_agreeing;  ///< its place among all samples
+};
+
+std::map<std::size_t, HeldOutTorques> torquesByCoil(
+    const std::vector<HeldOutMeasurement>& measurements, const std::vector<bool>& set_aside) {
+  std::map<std::size_t, HeldOutTorques> torques;
+  for (std::size_t n = 0; n < measurements.size(); ++n) {
+    for (const std::size_t coil : measurements[n].coils) {
+      HeldOutTorques& own = torques[coil];
+      if (set_aside[n]) {
+        own.set_aside.push_back(n);
+      } else if (measurements[n].counts) {
+        own.last_agreeing = std::max(own.last_agreeing, std::optional(measurements[n].sample));
+      }
+    }
+  }
+  return torques;
+}
+
+}  // namespace
+
+OutlierChoice chooseOutliers(const std::vector<HeldOutMeasurement>& measurements,
+                             const std::vector<std::size_t>& standing_out,
+                             const std::map<std::size_t, TorquesInUse>& in_use,
+                             double rate,
+                             double most) {
+  OutlierChoice choice;
+  choice.set_aside.assign(measurements.size(), false);
+  const auto counted = std::count_if(measurements.begin(),
+                                     measurements.end(),
+                                     [](const HeldOutMeasurement& one) { return one.counts; });
+  if (!areUsual(standing_out.size(), static_cast<std::size_t>(counted), rate, most)) {
+    return choice;
+  }
+  for (const std::size_t n : standing_out) {
+    choice.set_aside[n] = true;
+  }
+  for (const auto& [coil, torques] : torquesByCoil(measurements, choice.set_aside)) {
+    const auto used = in_use.find(coil);
+    const TorquesInUse others = used == in_use.end() ? TorquesInUse() : used->second;
+    const auto agreeing = std::max(torques.last_agreeing, others.last_agreeing);
+    std::vector<std::size_t> newest;
+    for (const std::size_t n : torques.set_aside) {
+      if (std::optional(measurements[n].sample) > agreeing) {
+        newest.push_back(n);
+      }
+    }
+    const auto rejected =
+        std::count_if(others.rejected.begin(), others.rejected.end(), [&](std::size_t sample) {
+          return std::optional(sample) > agreeing;
+        });
+    if (newest.size() + static_cast<std::size_t>(rejected) > 1) {
+      for (const std::size_t n : newest) {
+        choice.set_aside[n] = false;
+      }
+      continue;
+    }
+    if (!torques.set_aside.empty() && !torques.last_agreeing) {
+      choice.undecided_coils.push_back(coil);
+    }
+    if (!newest.empty()) {
+      choice.doubtful_coils.push_back(coil);
+    }
+  }
+  choice.count =
+      static_cast<std::size_t>(std::count(choice.set_aside.begin(), choice.set_aside.end(), true));
+  return choice;
+}
+
+}  // namespace sac
