@@ -29,6 +29,8 @@ class JointTrack {
   std::size_t size() const { return times_.size(); }
   double time(std::size_t n) const { return times_[n]; }
   const Eigen::Vector3d& reading(std::size_t n) const { return streams_->joints[n]; }
+  /// The first reading that is not before a time, or size().
+  std::size_t firstFrom(double time) const { return times_.firstFrom(time); }
   /// Usual step between readings [s].
   double step() const { return step_; }
   /// Whether no reading is missing between n and n + 1.

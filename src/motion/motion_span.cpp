@@ -142,6 +142,26 @@ std::string refusalOf(const MotionSpan& span,
   return largestSpeed(span.track, window) < options.least_speed ? "the rotor rests" : "";
 }
 
+bool restsAt(const MotionSpan& span, double time, double least_speed) {
+  constexpr double kHalf = 0.05;  // [s]
+  const JointTrack& track = span.track;
+  const std::size_t begin = track.firstFrom(time - kHalf);
+  const std::size_t middle = track.firstFrom(time);
+  const std::size_t end = track.firstFrom(time + kHalf);
+  if (begin == middle || middle == end) {
+    return false;
+  }
+  // Means, so that the noise of readings is no speed.
+  const auto mean = [&track](std::size_t first, std::size_t last) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t n = first; n < last; ++n) {
+      sum += track.reading(n);
+    }
+    return Eigen::Vector3d(sum / static_cast<double>(last - first));
+  };
+  return (mean(middle, end) - mean(begin, middle)).norm() < least_speed * kHalf;
+}
+
 std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out) {

@@ -57,6 +57,10 @@ std::string refusalOf(const MotionSpan& span,
                       const MotionWindow& window,
                       const MotionOptions& options);
 
+/// Whether the rotor turns at no more than a speed around a time of a span: what is measured then
+/// is of a dwell, if of anything.
+bool restsAt(const MotionSpan& span, double time, double least_speed);
+
 /// Counts one more window left out for a reason.
 void countLeftOut(const std::string& reason, std::vector<WindowsLeftOut>& left_out);
 

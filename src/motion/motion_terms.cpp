@@ -120,7 +120,7 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       windows_(termsOf(
           thinned(windowsOf(*problem.recording, spans_, options, left_out_), options.most_windows),
           options)),
-      orientations_(*problem.model, places_, spans_, options.window, heldOutOf(windows_, spans_)),
+      orientations_(*problem.model, places_, spans_, options, heldOutOf(windows_, spans_)),
       sums_(problem.prior.x.size()),
       evaluators_(std::max(1U, std::thread::hardware_concurrency()),
                   BalanceEvaluator(options, noise_.joint)) {}

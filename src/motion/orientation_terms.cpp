@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 
@@ -61,26 +62,32 @@ void OrientationMean::add(const OrientationMean& other) {
 OrientationTerms::OrientationTerms(const CalibrationModel& model,
                                    const MotionPlaces& places,
                                    const std::vector<MotionSpan>& spans,
-                                   double length,
+                                   const MotionOptions& options,
                                    const std::vector<HeldOutStretch>& held_out)
     : model_(model),
       places_(places),
       spans_(spans),
       coordinates_(orientingCoordinates(model.space(), places)) {
   for (std::size_t s = 0; s < spans.size(); ++s) {
-    group(s, length, held_out);
+    group(s, options, held_out);
   }
 }
 
 void OrientationTerms::group(std::size_t span,
-                             double length,
+                             const MotionOptions& options,
                              const std::vector<HeldOutStretch>& held_out) {
   const StampTimes& times = spans_[span].orientation_times;
   double begin = 0.0;
+  bool moved = false;  // since the orientation before
   for (std::size_t n = 0; n < times.size(); ++n) {
+    const bool moved_before =
+        std::exchange(moved, !restsAt(spans_[span], times[n], options.least_speed));
+    if (!moved) {
+      continue;
+    }
     const HeldOutStretch* const stretch = stretchAt(held_out, span, times[n]);
     const std::size_t window = stretch == nullptr ? 0 : stretch->window;
-    const bool begins = n == 0 || times[n] - begin > length;
+    const bool begins = !moved_before || times[n] - begin > options.window;
     if (begins) {
       begin = times[n];
     }

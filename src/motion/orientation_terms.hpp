@@ -53,16 +53,17 @@ struct HeldOutStretch {
   std::size_t window = 0;
 };
 
-/// The orientations of a recording: linearised one by one, and kept in sums of a window's length,
-/// whose size does not depend on the tracker's rate. Robust weights are those of where they were
-/// linearised.
+/// The orientations of a recording while the rotor moves, since those of a rest are measurements of
+/// a dwell, which are independent of a motion only as long as it does without: linearised one by
+/// one, and kept in sums of a window's length, whose size does not depend on the tracker's rate.
+/// Robust weights are those of where they were linearised.
 class OrientationTerms {
  public:
-  /// Keeps references. `length`: of a group [s].
+  /// Keeps references. Of the options the length of a window is that of a group.
   OrientationTerms(const CalibrationModel& model,
                    const MotionPlaces& places,
                    const std::vector<MotionSpan>& spans,
-                   double length,
+                   const MotionOptions& options,
                    const std::vector<HeldOutStretch>& held_out);
 
   const std::vector<OrientationTerm>& terms() const { return terms_; }
@@ -88,7 +89,9 @@ class OrientationTerms {
   void admitHeldOut();
 
  private:
-  void group(std::size_t span, double length, const std::vector<HeldOutStretch>& held_out);
+  void group(std::size_t span,
+             const MotionOptions& options,
+             const std::vector<HeldOutStretch>& held_out);
   void sumUp(TrackerTerm& tracker, OrientationGroup& group);
   void sumUpWhatChanged();
   Eigen::VectorXd apart(const Eigen::VectorXd& x) const {
