@@ -130,6 +130,22 @@ std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session) 
   return all;
 }
 
+Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string>& causes) {
+  std::vector<Candidate> all = singleMistakes(actuator);
+  for (std::size_t first = 0; first < actuator.coils.size(); ++first) {
+    for (std::size_t second = first + 1; second < actuator.coils.size(); ++second) {
+      all.push_back({coilSwap(first, second)});
+    }
+  }
+  Candidate found;
+  for (const Candidate& candidate : all) {
+    if (std::find(causes.begin(), causes.end(), candidate.front().cause) != causes.end()) {
+      found.push_back(candidate.front());
+    }
+  }
+  return found;
+}
+
 CorrectedMotion correctedMotion(const Actuator& actuator,
                                 const MotionRecording& recording,
                                 const Candidate& candidate) {

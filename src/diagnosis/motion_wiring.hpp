@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
@@ -20,6 +21,9 @@ struct SuspectedWiring {
 /// counteract each other tell so little of strengths that these cannot be asked for.
 /// Precondition: the session has a motion.
 std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session);
+
+/// The mistakes of these causes among those that are looked for; of others none.
+Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string>& causes);
 
 /// What would have been recorded without the mistakes of a candidate.
 struct CorrectedMotion {

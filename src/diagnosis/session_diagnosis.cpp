@@ -89,9 +89,9 @@ RefinedFit refined(const CalibrationSession& session,
   return fit;
 }
 
-/// Whether less misfit is left than what does not count as an explanation.
-bool explains(double with_it, double without_it) {
-  return with_it - 1.0 <= (1.0 - kExplainedShare) * (without_it - 1.0);
+/// Whether less misfit is left than what does not count as an explanation, and than a cycle bears.
+bool explains(double with_it, double without_it, double most) {
+  return with_it <= most && with_it - 1.0 <= (1.0 - kExplainedShare) * (without_it - 1.0);
 }
 
 /// Its own values, and nothing where no observation tells them.
@@ -141,6 +141,7 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
 /// Single effects that explain a misfit of the motion, the best first.
 std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& session,
                                                 const RefinedFit& unchanged) {
+  const double most = session.config().estimation.max_reduced_chi_square;
   std::vector<std::pair<double, Diagnosis>> found;
   for (const std::string& effect : effectNames()) {
     if (session.config().effects.has(effect) || !canHaveEffect(session.start().actuator, effect) ||
@@ -152,7 +153,7 @@ std::vector<Diagnosis> effectsThatExplainMotion(const CalibrationSession& sessio
     const RefinedFit fit = refined(session, effects, kSoonFound);
     const ParameterSpace space(session.start().actuator, effects);
     const std::vector<ParameterEstimate> values = valuesOf(effect, space, fit.estimates);
-    if (!fit.converged || !explains(fit.reduced_chi_square, unchanged.reduced_chi_square) ||
+    if (!fit.converged || !explains(fit.reduced_chi_square, unchanged.reduced_chi_square, most) ||
         std::none_of(values.begin(), values.end(), isSignificant)) {
       continue;
     }
@@ -196,6 +197,27 @@ std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
 }
 
 }  // namespace
+
+std::optional<Redescription> redescribedMotion(const Actuator& nominal,
+                                               const std::vector<Diagnosis>& diagnoses) {
+  std::vector<std::string> causes;
+  for (const Diagnosis& diagnosis : diagnoses) {
+    causes.push_back(diagnosis.cause);
+  }
+  const Candidate mistakes = motionMistakes(nominal, causes);
+  if (mistakes.empty()) {
+    return std::nullopt;
+  }
+  Redescription result{nominal, {}};
+  for (const Hypothesis& mistake : mistakes) {
+    if (mistake.redescribe) {
+      mistake.redescribe(result.actuator, mistake.start);
+    } else {
+      result.beyond_description.push_back(mistake.cause);
+    }
+  }
+  return result;
+}
 
 std::vector<Diagnosis> diagnoseMistakes(const CalibrationSession& session) {
   return diagnoseWiring(session.start().actuator, session.samples(), session.config()).mistakes;

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/diagnosis/session_diagnosis.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
@@ -22,6 +23,21 @@ std::string effectOf(const std::string& cause) {
 
 bool isOfJointNames(const Diagnosis& diagnosis) {
   return diagnosis.cause.rfind("joint_swap", 0) == 0;
+}
+
+void writeRedescribed(const Actuator& actuator,
+                      const std::vector<std::string>& beyond_description,
+                      const std::string& path,
+                      OverwritePolicy policy) {
+  if (!beyond_description.empty()) {
+    std::cout << "No description can correct " << beyond_description.front()
+              << ": follow its diagnosis. " << path << " is not written.\n";
+    return;
+  }
+  CalibratedDescription description;
+  description.actuator = actuator;
+  saveDescription(path, description, policy);
+  std::cout << "Corrected description: " << path << "\n";
 }
 
 }  // namespace
@@ -56,19 +72,16 @@ void writeCorrection(const CalibrationSession& session,
   const WiringDiagnosis wiring =
       diagnoseWiring(session.start().actuator, session.samples(), session.config());
   if (!wiring.mistakes.empty()) {
-    if (!wiring.beyond_description.empty()) {
-      std::cout << "No description can correct " << wiring.beyond_description.front()
-                << ": follow its diagnosis. " << path << " is not written.\n";
-      return;
-    }
-    CalibratedDescription description;
-    description.actuator = wiring.redescribed;
-    saveDescription(path, description, policy);
-    std::cout << "Corrected description: " << path << "\n";
-    if (std::any_of(wiring.mistakes.begin(), wiring.mistakes.end(), isOfJointNames)) {
+    writeRedescribed(wiring.redescribed, wiring.beyond_description, path, policy);
+    if (wiring.beyond_description.empty() &&
+        std::any_of(wiring.mistakes.begin(), wiring.mistakes.end(), isOfJointNames)) {
       std::cout << "It exchanges names of joints, which act on streams alone: calibrate by it with "
                    "--from streams, for recorded samples keep their order.\n";
     }
+    return;
+  }
+  if (const auto motion = redescribedMotion(session.start().actuator, diagnoses)) {
+    writeRedescribed(motion->actuator, motion->beyond_description, path, policy);
     return;
   }
   const std::vector<std::string>& effects = effectNames();

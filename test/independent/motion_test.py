@@ -130,7 +130,8 @@ class Motion(unittest.TestCase):
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
 
     def diagnosed(self, change):
-        """What is said of the first seconds of the motion with other currents recorded."""
+        """What is said of the first seconds of the motion with other currents recorded, and the coils of the description
+        that corrects it, where there is one."""
         recording = {name: [(t, value) for t, value in zip(*stream) if t < 7.0] for name, stream in self.record().items()}
         recording = {name: tuple(zip(*stream)) for name, stream in recording.items()}
         stamps, currents = recording["currents"]
@@ -138,23 +139,35 @@ class Motion(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "wired.bag")
             write_bag(bag, recording, len(self.unit.coils))
-            result = self.calibrate_bags(folder, "motion", [bag])
+            corrected = os.path.join(folder, "corrected.yaml")
+            result = self.calibrate_bags(folder, "motion", [bag], "--apply-diagnosis", corrected)
+            coils = None
+            if os.path.exists(corrected):
+                with open(corrected, encoding="utf-8") as file:
+                    coils = [[coil["polar"], coil["azimuth"]] for coil in yaml.safe_load(file)["actuator"]["coils"]]
         self.assertEqual(result.returncode, 1, result.stdout)
-        return [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
+        return coils, [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
 
     def test_names_a_coil_that_counts_the_wrong_way_round(self):
         def turned(currents):
             currents[:, 4] *= -1.0
             return currents
 
-        self.assertEqual(self.diagnosed(turned), ["coil_sign:5"])
+        coils, causes = self.diagnosed(turned)
+        self.assertEqual(causes, ["coil_sign:5"])
+        self.assertIsNone(coils)
 
     def test_names_coils_that_are_exchanged(self):
         def exchanged(currents):
             currents[:, [2, 15]] = currents[:, [15, 2]]
             return currents
 
-        self.assertEqual(self.diagnosed(exchanged), ["coil_swap:3:16"])
+        coils, causes = self.diagnosed(exchanged)
+        self.assertEqual(causes, ["coil_swap:3:16"])
+        expected = self.unit.coils.copy()
+        expected[[2, 15]] = expected[[15, 2]]
+        apart = (np.array(coils) - expected + np.pi) % (2.0 * np.pi) - np.pi
+        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
 
     def dwells_and_motion(self, folder, errors):
         """Bags of both: dwells of a unit with these errors."""

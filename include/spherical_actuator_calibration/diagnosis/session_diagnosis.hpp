@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/diagnosis/diagnosis.hpp"
 
@@ -15,6 +17,17 @@ std::vector<Diagnosis> diagnoseMistakes(const CalibrationSession& session);
 /// effects of the laboratory and small turns of frames that explain it, each by a refinement from
 /// the start. Changes nothing.
 std::vector<Diagnosis> diagnose(const CalibrationSession& session);
+
+/// A description that fits what was recorded.
+struct Redescription {
+  Actuator actuator;
+  /// Causes of mistakes that no description can hold.
+  std::vector<std::string> beyond_description;
+};
+
+/// By the mistakes of wiring that a motion was diagnosed with; nothing: it names none.
+std::optional<Redescription> redescribedMotion(const Actuator& nominal,
+                                               const std::vector<Diagnosis>& diagnoses);
 
 /// Sentences of all diagnoses, one after the other; empty without any.
 std::string inWords(const std::vector<Diagnosis>& diagnoses);
