@@ -162,7 +162,7 @@ class HeldOutJudge::Judgement {
     if (!sample.has_torque || sample.id > usual_.newest_torque) {
       return;
     }
-    for (const std::size_t coil : coilsOf({n, Quantity::kTorque}, sample)) {
+    for (const std::size_t coil : coilsOn(sample, options_.current_threshold)) {
       TorquesInUse& torques = in_use_[coil];
       if (usual_.torques.count(sample.id) > 0) {
         torques.rejected.push_back(n);
@@ -199,7 +199,9 @@ class HeldOutJudge::Judgement {
     HeldOutMeasurement one;
     one.quantity = observation.quantity;
     one.sample = observation.sample;
-    one.coils = coilsOf(observation, sample);
+    if (one.quantity == Quantity::kTorque) {
+      one.coils = coilsOn(sample, options_.current_threshold);
+    }
     one.counts = isJudged(one);
     one.dwell = dwells_;
     one.squared_norm = linear_.residual.squaredNorm();
@@ -218,17 +220,6 @@ class HeldOutJudge::Judgement {
       ++dwells_;
       dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;
     }
-  }
-
-  /// That are on, where it is a torque.
-  std::vector<std::size_t> coilsOf(const Observation& observation, const Sample& sample) const {
-    std::vector<std::size_t> coils;
-    if (observation.quantity == Quantity::kTorque) {
-      for (const Excitation& one : excitedCoils(sample, options_.current_threshold)) {
-        coils.push_back(one.coil);
-      }
-    }
-    return coils;
   }
 
   /// Whether the test counts a measurement.

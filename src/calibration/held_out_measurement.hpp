@@ -6,6 +6,7 @@
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
 
@@ -21,5 +22,14 @@ struct HeldOutMeasurement {
   SharedLoading loading = SharedLoading::Zero();
   Whitening whitening;
 };
+
+/// Those that a sample has current in.
+inline std::vector<std::size_t> coilsOn(const Sample& sample, double current_threshold) {
+  std::vector<std::size_t> coils;
+  for (const Excitation& one : excitedCoils(sample, current_threshold)) {
+    coils.push_back(one.coil);
+  }
+  return coils;
+}
 
 }  // namespace sac
