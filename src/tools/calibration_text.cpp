@@ -46,8 +46,8 @@ std::string rms(const CycleReport& report) {
   return text;
 }
 
-std::string rejectedLine(const SampleResidual& residual) {
-  return format("  rejected: sample %u, ", residual.id) +
+std::string rejectedLine(const SampleResidual& residual, Cycle cycle) {
+  return format("  rejected: %s %u, ", cycle == Cycle::kMotion ? "window" : "sample", residual.id) +
          (residual.quantity == Quantity::kOrientation ? "orientation" : "torque") + ": " +
          residual.reason + "\n";
 }
@@ -159,7 +159,7 @@ std::string cycleParagraph(const CycleReport& report) {
           rms(report) + "\n";
   for (const SampleResidual& residual : report.residuals) {
     if (residual.rejected) {
-      text += rejectedLine(residual);
+      text += rejectedLine(residual, report.cycle);
     }
   }
   return text;

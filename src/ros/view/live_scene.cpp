@@ -51,13 +51,16 @@ void LiveScene::receive(const msg::ActuatorParameters& message) {
 
 void LiveScene::receive(const msg::CalibrationReport& message) {
   residuals_.clear();
+  changed_ = true;
+  if (message.cycle == msg::CalibrationReport::MOTION) {  // of its windows
+    return;
+  }
   // A sample may have two, of its orientation and its torque: the worse one is shown.
   for (const auto& residual : message.residuals) {
     Residual& shown = residuals_[residual.id];
     shown.standardized = std::max(shown.standardized, residual.standardized);
     shown.rejected = shown.rejected || residual.rejected != 0;
   }
-  changed_ = true;
 }
 
 void LiveScene::receive(const msg::CoilCurrents& message) {

@@ -212,17 +212,17 @@ class Report:
     def residual_figures(self):
         pictures = []
         for quantity in QUANTITIES:
-            residuals = self._residuals(quantity)
+            kind, residuals = self._residuals(quantity)
             if residuals:
                 influential = [item["id"] for item in self._most_influential() if item["quantity"] == quantity]
-                pictures.append(figures.residuals_of(quantity, residuals, influential))
-                pictures.append(figures.standardized_of(quantity, residuals, influential))
+                pictures.append(figures.residuals_of(quantity, kind, residuals, influential))
+                pictures.append(figures.standardized_of(quantity, kind, residuals, influential))
         positions = {sample["id"]: figures.position_of(sample) for sample in self._report["samples"]}
         for quantity in QUANTITIES:
-            residuals = [item for item in self._residuals(quantity) if item["id"] in positions]
+            kind, residuals = self._residuals(quantity)
+            residuals = [item for item in residuals if kind == "sample" and item["id"] in positions]
             if residuals:
-                joints = self._joints()
-                pictures.append(figures.residuals_by_joint(quantity, residuals, positions, joints))
+                pictures.append(figures.residuals_by_joint(quantity, residuals, positions, self._joints()))
         return pictures
 
     def residual_cycle(self):
@@ -240,7 +240,7 @@ class Report:
                 "reason": item["reason"],
             }
             for quantity in QUANTITIES
-            for item in self._residuals(quantity)
+            for item in self._residuals(quantity)[1]
             if item["rejected"]
         ]
 
@@ -262,12 +262,12 @@ class Report:
         return ordered[:MOST_INFLUENTIAL]
 
     def _residuals(self, quantity):
-        """Of the last successful cycle that has any."""
+        """What they are of, samples or windows of a motion, and those of the last successful cycle that has any."""
         for cycle in reversed(self._cycles):
             chosen = [item for item in cycle["residuals"] if item["quantity"] == quantity]
             if cycle["success"] and chosen:
-                return chosen
-        return []
+                return "window" if cycle["cycle"] == "motion" else "sample", chosen
+        return "sample", []
 
     def _last_success(self):
         return next((cycle for cycle in reversed(self._cycles) if cycle["success"]), None)

@@ -84,7 +84,7 @@ def _logarithmic_if_wide(axes, values):
         _from_zero(axes, ordered)
 
 
-def _draw_residuals(axes, residuals, key, factor, colour, influential):
+def _draw_residuals(axes, kind, residuals, key, factor, colour, influential):
     used = [item for item in residuals if not item["rejected"]]
     rejected = [item for item in residuals if item["rejected"]]
     marked = sorted(
@@ -105,22 +105,22 @@ def _draw_residuals(axes, residuals, key, factor, colour, influential):
                 str(item["id"]), (item["id"], factor * item[key]), (5, 4), textcoords="offset points", fontsize=7
             )
     _logarithmic_if_wide(axes, points(residuals)[1])
-    axes.set_xlabel("sample")
+    axes.set_xlabel(kind)
     if rejected or marked:
         axes.legend(loc="best", ncol=3, handletextpad=0.2, columnspacing=1.0)
 
 
-def residuals_of(quantity, residuals, influential):
-    """Residual norm of each sample, in its unit."""
+def residuals_of(quantity, kind, residuals, influential):
+    """Residual norm of each sample, or window: its kind."""
     unit = residuals[0]["unit"]
     factor, name = shown_in(unit)
     with Figure(f"residuals_{quantity}", f"{quantity.capitalize()} residuals") as figure:
-        _draw_residuals(figure.axes, residuals, "residual", factor, COLOURS[quantity], influential)
+        _draw_residuals(figure.axes, kind, residuals, "residual", factor, COLOURS[quantity], influential)
         figure.axes.set_ylabel(f"residual [{name}]")
         largest = max((item["residual"] for item in residuals if not item["rejected"]), default=0.0)
         count = sum(item["rejected"] for item in residuals)
         figure.alt = (
-            f"{quantity.capitalize()} residual of each of {len(residuals)} samples: at most "
+            f"{quantity.capitalize()} residual of each of {len(residuals)} {kind}s: at most "
             f"{with_unit(largest, unit)} among those used, {count} rejected."
         )
     return figure
@@ -153,16 +153,16 @@ def _usual_line(axes):
     axes.axhline(USUAL_STANDARDIZED, color=GREY, linewidth=1.0, linestyle="--")
 
 
-def standardized_of(quantity, residuals, influential):
+def standardized_of(quantity, kind, residuals, influential):
     """Residuals over their stated uncertainty."""
     with Figure(f"standardized_{quantity}", f"{quantity.capitalize()}, standardised") as figure:
-        _draw_residuals(figure.axes, residuals, "standardized", 1.0, COLOURS[quantity], influential)
+        _draw_residuals(figure.axes, kind, residuals, "standardized", 1.0, COLOURS[quantity], influential)
         _usual_line(figure.axes)
         figure.axes.set_ylabel("residual / uncertainty")
         used = [item["standardized"] for item in residuals if not item["rejected"]]
         share = sum(value < USUAL_STANDARDIZED for value in used) / max(len(used), 1)
         figure.alt = (
-            f"Standardised {quantity} residual of each sample; {100 * share:.0f} % of those used lie below the dashed "
+            f"Standardised {quantity} residual of each {kind}; {100 * share:.0f} % of those used lie below the dashed "
             f"line at {USUAL_STANDARDIZED:.2f}, where 95 % should."
         )
     return figure

@@ -119,6 +119,19 @@ TEST(LiveScene, ResidualsOfTheLastReportGoToTheirSamples) {
   EXPECT_FALSE(samples[1].standardized);
 }
 
+TEST(LiveScene, WindowsOfAMotionAreNoSamples) {
+  LiveScene scene = paperScene();
+  scene.receive(sampleOf(1));
+  scene.receive(reportOf(1, 0.9, false));
+  CycleReport report;
+  report.cycle = Cycle::kMotion;
+  report.residuals.push_back({1, Quantity::kTorque, 1e-3, 9.0, true, "misfit"});
+  scene.receive(reportToRos(report, {}));
+  const auto samples = scene.scene().samples;
+  EXPECT_FALSE(samples.at(0).standardized);
+  EXPECT_FALSE(samples.at(0).rejected);
+}
+
 TEST(LiveScene, TheWorseResidualOfASampleIsShown) {
   LiveScene scene = paperScene();
   scene.receive(sampleOf(3));
