@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/calibration/session_guidance.hpp"
 #include "spherical_actuator_calibration/calibration/session_progress.hpp"
+#include "spherical_actuator_calibration/estimation/misfit.hpp"
 
 namespace sac {
 namespace {
@@ -112,7 +113,7 @@ class Judge {
             session_.model().space(), session_.samples(), {Cycle::kRefine}, estimation),
         {Cycle::kPoles, polesCoil()},
         session_.state().belief.x,
-        estimation.current_threshold,
+        estimation,
         coordinates);
     steps.insert(steps.end(), advice.begin(), advice.end());
   }
@@ -165,11 +166,14 @@ class Judge {
     if (last_success_ == nullptr || last_success_->reduced_chi_square < kNotable) {
       return;
     }
+    const double freedom = last_success_->degrees_of_freedom;
     steps.push_back(
         format("Residuals are %.1f times their stated uncertainty: model a laboratory effect "
-               "(effects in the configuration), or correct the stated noise. All standard "
-               "deviations here are already widened by it.",
-               std::sqrt(last_success_->reduced_chi_square)));
+               "(effects in the configuration), or correct the stated noise.%s",
+               std::sqrt(last_success_->reduced_chi_square),
+               isMisfit(freedom * last_success_->reduced_chi_square, freedom)
+                   ? " All standard deviations here are already widened by it."
+                   : " It may be chance: standard deviations are not widened by it."));
   }
 
   void addIrreplaceable(std::vector<std::string>& steps) const {

@@ -291,7 +291,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 problem.observations,
                                                                 request,
                                                                 state.belief.x,
-                                                                options.current_threshold,
+                                                                options,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
     refuse(problem, estimate, advice, report);

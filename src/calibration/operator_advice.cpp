@@ -118,13 +118,18 @@ std::string poseInWords(const CalibrationModel& model, const Eigen::Vector3d& q)
   return words;
 }
 
-std::string adviceForJoint(const CalibrationModel& model, Part part, std::size_t index) {
+std::string adviceForJoint(const CalibrationModel& model,
+                           Part part,
+                           std::size_t index,
+                           double least_motion) {
+  constexpr double kAmple = 3.0;  // times what just counts as moved
   const std::string& name = model.space().nominal().joints[index].name;
   if (part == Part::kJointOffset) {
     return "The offset of " + name +
            " is not told apart by the samples: add poses with all joints moved.";
   }
-  return "The axis of " + name + " is not observable: move " + name + " by at least 0.3 rad.";
+  return "The axis of " + name + " is not observable: move " + name + " by " +
+         format("%.2g rad or more.", kAmple * least_motion);
 }
 
 std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinate) {
@@ -169,13 +174,13 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
                                                const std::vector<Observation>& observations,
                                                const CycleRequest& request,
                                                const Eigen::VectorXd& x,
-                                               double current_threshold,
+                                               const EstimationOptions& options,
                                                const std::vector<Eigen::Index>& unobservable) {
   if (unobservable.empty()) {
     return {};
   }
   const SampleCoverage coverage =
-      sampleCoverage(model, samples, observations, x, current_threshold);
+      sampleCoverage(model, samples, observations, x, options.current_threshold);
   std::vector<std::string> advice;
   std::map<std::pair<Part, std::size_t>, bool> told;
   for (const Eigen::Index parameter : unobservable) {
@@ -189,7 +194,7 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
       continue;
     }
     advice.push_back(part == Part::kJointOffset || part == Part::kJointAxis
-                         ? adviceForJoint(model, part, id.index)
+                         ? adviceForJoint(model, part, id.index, options.min_joint_motion)
                          : adviceForTorque(model, request, x, coverage, part, id.index));
   }
   return advice;

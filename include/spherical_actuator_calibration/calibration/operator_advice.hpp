@@ -13,14 +13,13 @@ namespace sac {
 
 /// What to measure so that coordinates which a cycle left open become observable, one sentence per
 /// joint, pole or coil: "Pole 5 is seen by no sample: excite coil 1 with joint_3 near 2.40 rad."
-/// `x` are the coordinates in force, `current_threshold` is the current from which on a coil counts
-/// as excited [A].
+/// `x` are the coordinates in force; of the options what counts as excited, and as moved.
 std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
                                                const std::vector<Sample>& samples,
                                                const std::vector<Observation>& observations,
                                                const CycleRequest& request,
                                                const Eigen::VectorXd& x,
-                                               double current_threshold,
+                                               const EstimationOptions& options,
                                                const std::vector<Eigen::Index>& unobservable);
 
 }  // namespace sac
