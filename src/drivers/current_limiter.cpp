@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
@@ -50,6 +51,10 @@ const Eigen::VectorXd& CurrentLimiter::follow(const Eigen::VectorXd& command, do
     setpoints_ *= limits_.total / on_the_way;
   }
   return setpoints_;
+}
+
+std::string CurrentLimiter::limitsInWords() const {
+  return format("limits/coil %.3g A, limits/total %.3g A", limits_.coil, limits_.total);
 }
 
 const Eigen::VectorXd& CurrentLimiter::stop() {

@@ -145,9 +145,10 @@ class CoilDriver(unittest.TestCase):
         self.assertTrue(self.is_zero())
 
     def test_never_goes_beyond_the_limits(self):
-        self.started()
+        node = self.started(watchdog=PATIENT)
         self.commander.command = [50.0] * COILS
         wait_for(lambda: sum(self.setpoints()) > 7.5, "the largest sum")
+        wait_for(lambda: "limits/coil 2.5 A, limits/total 8 A" in node.message("output"), "that it clamps")
         self.commander.command = self.pattern(1, -9.0)
         wait_for(lambda: abs(self.setpoints()[0] + 2.5) < MILLI, "the largest current")
         coil, total = self.largest_written()

@@ -35,6 +35,8 @@ class CurrentLimiter {
   const Eigen::VectorXd& setpoints() const { return setpoints_; }
   /// How often a command was beyond a limit of one coil or of the sum.
   std::size_t clamped() const { return clamped_; }
+  /// "limits/coil 2.5 A, limits/total 8 A".
+  std::string limitsInWords() const;
 
  private:
   CurrentLimits limits_;

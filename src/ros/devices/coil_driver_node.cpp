@@ -257,6 +257,12 @@ void CoilDriverNode::diagnoseOutput(DiagnosticStatus& status) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         std::string("unattended amplifier: ") + kUnattended);
   }
+  if (clamped_ > told_clamped_) {
+    told_clamped_ = clamped_;
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "commands are beyond the limits of this driver (" +
+                            driver_.limiter().limitsInWords() + ") and are clamped");
+  }
   addTextOrNone(status, "commander", supervisor.owner(steadySeconds()));
   status.add("zero measured", supervisor.isZeroConfirmed() ? "yes" : "no");
   status.add("largest setpoint [A]", setpoints_.cwiseAbs().maxCoeff());

@@ -70,11 +70,12 @@ class CoilDriverNode {
   bool stopped_ = false;
   bool is_leaving_ = false;          ///< of the control loop alone
   std::atomic<bool> failed_{false};  ///< the control loop, by an exception
-  std::mutex mutex_;                 ///< of what follows, down to clamped_
+  std::mutex mutex_;                 ///< of what follows, down to told_clamped_
   std::string zero_reason_;
   bool fault_ = false;
   Eigen::VectorXd setpoints_;
-  std::size_t clamped_ = 0;
+  std::size_t clamped_ = 0;       ///< commands so far
+  std::size_t told_clamped_ = 0;  ///< of these when diagnostics last looked
 
   ros::Publisher publisher_;
   StreamMonitor commands_;
