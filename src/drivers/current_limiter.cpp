@@ -40,7 +40,8 @@ const Eigen::VectorXd& CurrentLimiter::follow(const Eigen::VectorXd& command, do
   if (total > limits_.total) {
     wanted *= limits_.total / total;
   }
-  if (wanted != command) {
+  constexpr double kRounding = 1e-9;  // of a sum that was scaled to the limit
+  if ((wanted - command).cwiseAbs().maxCoeff() > kRounding * limits_.total) {
     ++clamped_;
   }
   const double step = limits_.slew * std::max(elapsed, 0.0);
