@@ -103,6 +103,9 @@ void LiveMotionWork::begin() {
     next_begin_ = estimate_.windows + std::max<std::size_t>(1, further);
     return;
   }
+  // What was before may have been driven by something else: among many such the others would be
+  // the outliers.
+  kept_.erase(kept_.begin(), kept_.end() - static_cast<std::ptrdiff_t>(recording.windows.size()));
   x_ = found.estimate.belief.x;
   estimate_.is_told = true;
   linearizeAnew(true);

@@ -18,7 +18,8 @@ class LiveMotionWork;
 /// The estimate from motion while it goes on (doc/motion.md): each window adds its information, and
 /// estimate and covariance follow from the sum. Where the estimate has moved so far that the
 /// derivatives of old windows mislead it, those that are kept are linearised anew. The first
-/// estimate is estimateMotion() of the windows until then. Memory does not grow with the motion.
+/// estimate is estimateMotion() of the newest windows until then. Memory does not grow with the
+/// motion.
 ///
 /// Other than estimateMotion(), the prior counts as a measurement, and nothing is held out: the
 /// last word has the cycle.
