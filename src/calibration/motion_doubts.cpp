@@ -44,14 +44,15 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
 std::string driftInWords(const WindowMeansMisfit& orientations) {
   constexpr double kSignificance = 1e-3;
   if (!(orientations.freedom > 0.0) ||
-      orientations.squares <= chiSquareLimit(orientations.freedom, kSignificance)) {
+      orientations.squares <=
+          orientations.expected * chiSquareLimit(orientations.freedom, kSignificance)) {
     return {};
   }
   return format(
       "Orientations, in the mean of a window, are %.2f times their noise off: the tracker or its "
       "clock drifts or jumps, or a joint sensor is not as modelled, and that may bias the "
       "parameters: check the tracker's stamps and mounting, and model errors of the joint sensors.",
-      std::sqrt(orientations.reduced()));
+      std::sqrt(orientations.reduced() / orientations.expected));
 }
 
 /// Measurements have noise: where most readings of all coils are those before to the last digit,

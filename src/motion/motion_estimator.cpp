@@ -164,6 +164,7 @@ void Estimator::judgeMisfit() {
   result_.summary.window_chi_square = squares / freedom;
   const auto joints = static_cast<double>(problem_.model->space().pole(0));
   result_.orientations = terms_.orientations().misfit(descent_.x(), joints);
+  result_.orientations.expected = meansOverDifferences(terms_.noise(), terms_.spans());
   result_.summary.orientation_chi_square = result_.orientations.reduced();
   estimate.reduced_chi_square = squares / freedom;
   estimate.covariance_scale = std::sqrt(misfitVariance(squares, freedom));

@@ -63,6 +63,17 @@ double trackerNoise(const std::vector<MotionSpan>& spans,
   return std::max(kLeast, differences.stddev());
 }
 
+double meansOverDifferences(const MotionNoise& noise, const std::vector<MotionSpan>& spans) {
+  double orientations = 0.0;
+  double readings = 0.0;
+  for (const MotionSpan& span : spans) {
+    orientations += static_cast<double>(span.orientation_times.size());
+    readings += static_cast<double>(span.track.size());
+  }
+  const double shared = noise.joint.squaredNorm() / 3.0 * orientations / std::max(1.0, readings);
+  return 1.0 + shared / (noise.orientation * noise.orientation);
+}
+
 MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
                     const Eigen::VectorXd& x) {

@@ -23,6 +23,10 @@ MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,
                     const Eigen::VectorXd& x);
 
+/// By how much the noise of readings may enlarge the variance of means of orientations over that of
+/// their differences, at the most.
+double meansOverDifferences(const MotionNoise& noise, const std::vector<MotionSpan>& spans);
+
 /// That of the tracker alone, by so many orientations of each span [rad].
 double trackerNoise(const std::vector<MotionSpan>& spans,
                     const CalibrationModel& model,

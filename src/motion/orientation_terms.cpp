@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -77,8 +78,8 @@ void OrientationTerms::group(std::size_t span,
                              const MotionOptions& options,
                              const std::vector<HeldOutStretch>& held_out) {
   const StampTimes& times = spans_[span].orientation_times;
-  double begin = 0.0;
-  bool moved = false;  // since the orientation before
+  double begin = -std::numeric_limits<double>::infinity();  // of a cell
+  bool moved = false;                                       // since the orientation before
   for (std::size_t n = 0; n < times.size(); ++n) {
     const bool moved_before =
         std::exchange(moved, !restsAt(spans_[span], times[n], options.least_speed));
@@ -87,12 +88,12 @@ void OrientationTerms::group(std::size_t span,
     }
     const HeldOutStretch* const stretch = stretchAt(held_out, span, times[n]);
     const std::size_t window = stretch == nullptr ? 0 : stretch->window;
-    const bool begins = !moved_before || times[n] - begin > options.window;
+    const bool begins = times[n] - begin > options.window;
     if (begins) {
       begin = times[n];
     }
     const std::size_t cell = groups_.empty() ? 0 : groups_.back().cell + (begins ? 1 : 0);
-    if (begins || groups_.back().held_out != (stretch != nullptr) ||
+    if (begins || !moved_before || groups_.back().held_out != (stretch != nullptr) ||
         groups_.back().window != window) {
       OrientationGroup next;
       next.span = span;

@@ -174,6 +174,26 @@ TEST_F(MotionCycleTest, DoubtsATrackerWhoseClockJumps) {
   }
 }
 
+// Neighbouring orientations are compared with the same few readings, whose noise they share.
+TEST_F(MotionCycleTest, DoubtsNoTrackerForCoarseJoints) {
+  constexpr double kCoarse = 6e-4;  // [rad]
+  constexpr std::size_t kSeldom = 5;
+  moving_.duration = 15.0;
+  MotionRecording recording = noisy(moving_.record(), kCoarse);
+  MotionStreams& streams = recording.spans.front();
+  const std::size_t count = streams.joints.size() / kSeldom;
+  for (std::size_t n = 0; n < count; ++n) {
+    streams.joints[n] = streams.joints[kSeldom * n];
+    streams.joint_stamps[n] = streams.joint_stamps[kSeldom * n];
+  }
+  streams.joints.resize(count);
+  streams.joint_stamps.resize(count);
+  session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  ASSERT_TRUE(report.success) << report.message;
+  EXPECT_FALSE(isDoubted(report, "Orientations, in the mean")) << report.message;
+}
+
 TEST_F(MotionCycleTest, DoubtsATrackerWhoseMarkerSlips) {
   moving_.duration = 15.0;
   MotionRecording recording = noisy(moving_.record());

@@ -99,7 +99,8 @@ struct MovingRotor {
 
 /// A recording with the noise of good sensors: 2e-5 rad of joints, 1 mA of currents, 5e-4 rad of
 /// orientations. Without any, what the rotor does between samples is all misfit.
-inline MotionRecording noisy(MotionRecording recording) {
+/// `joint_stddev`: of readings [rad].
+inline MotionRecording noisy(MotionRecording recording, double joint_stddev = 2e-5) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   const auto noise = [&](double stddev) -> Eigen::Vector3d {
@@ -107,7 +108,7 @@ inline MotionRecording noisy(MotionRecording recording) {
   };
   for (MotionStreams& streams : recording.spans) {
     for (Eigen::Vector3d& reading : streams.joints) {
-      reading += noise(2e-5);
+      reading += noise(joint_stddev);
     }
     for (Eigen::Index n = 0; n < streams.currents.size(); ++n) {
       streams.currents.data()[n] += static_cast<float>(1e-3 * normal(generator));

@@ -37,6 +37,9 @@ struct HeldOutMotion {
 struct WindowMeansMisfit {
   double squares = 0.0;  ///< χ²
   double freedom = 0.0;
+  /// Reduced χ² that the noise of readings may make of them: neighbours have it in common where
+  /// joints are read as seldom as the tracker.
+  double expected = 1.0;
 
   double reduced() const { return freedom > 0.0 ? squares / freedom : 0.0; }
 };
