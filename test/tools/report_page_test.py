@@ -223,7 +223,7 @@ class ReportPage(unittest.TestCase):
         self.assertTrue(rejected)
         for item in rejected:
             self.assertIn(
-                (str(item["id"]), item["quantity"], item["reason"]),
+                (f"sample {item['id']}", item["quantity"], item["reason"]),
                 [(row[0], row[1], row[-1]) for row in self.page.rows if len(row) == 4],
             )
 
@@ -315,6 +315,7 @@ class ReportPage(unittest.TestCase):
         page = self.render(dict(self.figures, cycles=[*self.figures["cycles"], cycle]), "motion")
         for part in ("10 of 12", "something else moved the rotor", "600 (3 rejected)", "0.02 mrad, 0.03 mrad, 0.04 mrad", "1.02", "3.500 ± 0.012 ms later", "some 2 ms"):
             self.assertIn(part, page.text)
+        self.assertIn(["window 12", "torque"], [row[:2] for row in page.rows])
         self.assertEqual(page.row("rotor_inertia/zz")[1:], ["0.0014300 ± 0.0000010 kg·m²", "0.0013", "+10.00 %"])
         self.assertIn("0.000420 ± 0.000025 N·m", page.row("coulomb_friction"))
         self.assertIn("not identified", page.row("tracker_delay")[0])

@@ -227,20 +227,20 @@ class Report:
 
     def residual_cycle(self):
         """Name of the cycle whose residuals are shown."""
-        last = self._last_success()
-        return last["title"] if last else None
+        return (self._last_success() or {}).get("title")
 
     def rejected(self):
         """Rows of measurements that were taken for outliers by the last successful cycles."""
+        shown = [(quantity, *self._residuals(quantity)) for quantity in QUANTITIES]
         return [
             {
-                "id": item["id"],
-                "quantity": item["quantity"],
+                "of": f"{kind} {item['id']}",
+                "quantity": quantity,
                 "residual": with_unit(item["residual"], item["unit"]),
                 "reason": item["reason"],
             }
-            for quantity in QUANTITIES
-            for item in self._residuals(quantity)[1]
+            for quantity, kind, residuals in shown
+            for item in residuals
             if item["rejected"]
         ]
 
