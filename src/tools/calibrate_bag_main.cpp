@@ -74,7 +74,8 @@ Files prepareFiles(const CalibrateBagOptions& options, const Actuator& nominal) 
   }
   if (options.report_folder) {
     files.report = (fs::path(*options.report_folder) / "report.yaml").string();
-    files.report_page = (fs::path(*options.report_folder) / "report.html").string();
+    const fs::path page = fs::path(*options.report_folder) / "report.html";
+    files.report_page = options.no_page ? "" : page.string();
   }
   files.covariance = options.covariance_path.value_or("");
   files.certificate = options.certificate_path.value_or("");
@@ -319,11 +320,12 @@ void writeResult(const CalibrationSession& session,
 void writeReport(const std::string& report, const Files& files, OverwritePolicy policy) {
   writeFileAtomically(files.report, report, policy);
   std::cout << "All figures: " << files.report << "\n" << std::flush;
-  const std::string failure = writeReportPage(files.report, files.report_page);
-  if (failure.empty()) {
-    std::cout << "Report: " << files.report_page << "\n";
-  } else {
+  const bool is_wanted = !files.report_page.empty();
+  const std::string failure = is_wanted ? writeReportPage(files.report, files.report_page) : "";
+  if (!failure.empty()) {
     std::fprintf(stderr, "calibrate_bag: warning: %s\n", failure.c_str());
+  } else if (is_wanted) {
+    std::cout << "Report: " << files.report_page << "\n";
   }
 }
 

@@ -54,6 +54,9 @@ void check(const CalibrateBagOptions& options) {
   if (options.output_path.empty() && (options.urdf_path || options.report_folder)) {
     throw ConfigError("--urdf and --report need --output: without it nothing is written.");
   }
+  if (options.no_page && !options.report_folder) {
+    throw ConfigError("--no-page is of a --report, and there is none.");
+  }
   if (options.output_path.empty() && (options.covariance_path || options.certificate_path)) {
     throw ConfigError(
         "--covariance and --certificate need --output: without it nothing is written.");
@@ -129,6 +132,7 @@ void addOutputs(CommandLine& line, CalibrateBagOptions& options, Words& words) {
            options.report_folder,
            "DIR",
            "folder for the report: report.html for people, report.yaml with all figures");
+  line.addSwitch("no-page", options.no_page, "with --report: report.yaml alone, in less time");
   line.addOutput("covariance",
                  options.covariance_path,
                  "YAML",

@@ -31,6 +31,7 @@ struct CalibrateBagOptions {
   std::optional<std::string> certificate_path;
   std::optional<std::string> issuer_path;  ///< who issues the certificate
   std::optional<std::string> report_folder;
+  bool no_page = false;             ///< the figures of the report alone
   std::optional<std::string> date;  ///< of the calibration; nothing: now
   OverwritePolicy overwrite = OverwritePolicy::kRefuse;
 };

@@ -187,7 +187,7 @@ class Motion(unittest.TestCase):
 
     def errors_and_stddevs(self, folder, cycles, *bags):
         report = os.path.join(folder, cycles)
-        result = self.calibrate_bags(folder, cycles, bags, "--report", report)
+        result = self.calibrate_bags(folder, cycles, bags, "--report", report, "--no-page")
         self.assertEqual(result.returncode, 0, result.stdout)
         with open(os.path.join(report, "report.yaml"), encoding="utf-8") as file:
             rows = {row["name"]: row for row in yaml.safe_load(file)["calibration_report"]["parameters"]}

@@ -47,7 +47,7 @@ class TorqueLinearity(unittest.TestCase):
                 recorder.rest_at(rest)
             recorder.close()
             result = subprocess.run(
-                [PROGRAM, "--actuator", ACTUATOR, "--from", "streams", "--cycles", "coils", "--report", report]
+                [PROGRAM, "--actuator", ACTUATOR, "--from", "streams", "--cycles", "coils", "--report", report, "--no-page"]
                 + ["--output", os.path.join(folder, "calibrated.yaml"), bag],
                 capture_output=True,
                 text=True,
