@@ -71,7 +71,7 @@ class CalibrationGrader::Examiner {
     if (!isValidated()) {
       return Grade::kNotValidated;
     }
-    return shortcoming_.empty() ? Grade::kGood : Grade::kUsable;
+    return shortcoming_.empty() && undecided().empty() ? Grade::kGood : Grade::kUsable;
   }
 
   bool isContradicted() const {
@@ -137,10 +137,9 @@ class CalibrationGrader::Examiner {
     if (!open.empty() || !doubt.empty()) {
       return open + doubt;
     }
-    for (std::string missed : {undecided(), missedAccuracy()}) {
-      if (!missed.empty()) {
-        return missed;
-      }
+    std::string missed = missedAccuracy();
+    if (!missed.empty()) {
+      return missed;
     }
     if (isUnasked()) {
       return ", but no refinement asked all samples together whether something is not modelled: "
@@ -286,8 +285,8 @@ class CalibrationGrader::Examiner {
         return "The calibration is not validated: " + identified() + shortcoming_ + unjudged() +
                expected_errors_;
       case Grade::kUsable:
-        return "The calibration can be used as far as it goes: " + identified() + shortcoming_ +
-               "; held-out samples agree" + outliers() + "." + expected_errors_;
+        return "The calibration can be used as far as it goes: " + identified() + undecided() +
+               shortcoming_ + "; held-out samples agree" + outliers() + "." + expected_errors_;
       case Grade::kGood:
         break;
     }

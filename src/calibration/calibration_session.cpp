@@ -289,9 +289,7 @@ const CycleReport* CalibrationSession::lastSuccess() const {
 
 HeldOutJudge CalibrationSession::heldOutJudge() const {
   const CycleReport* last = lastSuccess();
-  const bool has_residuals = last != nullptr && !last->residuals.empty();
-  HeldOutJudge judge(
-      model_, state_, config_.estimation, has_residuals ? usualOutliers(*last) : UsualOutliers());
+  HeldOutJudge judge(model_, state_, config_.estimation, usualOutliers(reports_));
   const bool is_motion = last != nullptr && last->motion;
   const bool joins_motion = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
   if (is_motion || joins_motion) {

@@ -9,19 +9,8 @@
 namespace sac {
 namespace {
 
-std::string nameOfGroup(const HeldOutMeasurement& measurement) {
-  constexpr std::size_t kMostNamed = 3;
-  if (measurement.quantity == Quantity::kOrientation) {
-    return kOrientations;
-  }
-  if (measurement.coils.size() > kMostNamed) {
-    return "several coils together";
-  }
-  std::string words;
-  for (const std::size_t coil : measurement.coils) {
-    words += (words.empty() ? "coil " : " with coil ") + std::to_string(numberOf(coil));
-  }
-  return words.empty() ? "torques without current" : words;
+std::string nameOf(std::size_t coil) {
+  return "coil " + std::to_string(numberOf(coil));
 }
 
 /// By all that members have in common: the parameters, and the errors of a dwell.
@@ -57,16 +46,30 @@ HeldOutGroup judgeTogether(const std::vector<HeldOutMeasurement>& measurements,
 }  // namespace
 
 std::vector<HeldOutGroup> HeldOutGroups::judge(const std::vector<HeldOutMeasurement>& measurements,
-                                               const std::vector<bool>& set_aside,
+                                               const OutlierChoice& outliers,
                                                const Eigen::MatrixXd& covariance) {
   std::map<std::string, std::vector<std::size_t>> members;
-  for (std::size_t n = measurements.size(); n-- > 0;) {
-    if (!measurements[n].counts || set_aside[n]) {
-      continue;
-    }
-    std::vector<std::size_t>& own = members[nameOfGroup(measurements[n])];
+  const auto add = [&members](const std::string& name, std::size_t n) {
+    std::vector<std::size_t>& own = members[name];
     if (own.size() < kJudgedOfAGroup) {
       own.push_back(n);
+    }
+  };
+  for (std::size_t n = measurements.size(); n-- > 0;) {
+    const HeldOutMeasurement& one = measurements[n];
+    if (!one.counts || outliers.set_aside[n]) {
+      continue;
+    }
+    if (one.quantity == Quantity::kOrientation) {
+      add(kOrientations, n);
+    }
+    for (const std::size_t coil : one.coils) {
+      add(nameOf(coil), n);
+    }
+  }
+  for (const auto& [coil, newest] : outliers.changed_coils) {
+    for (const std::size_t n : newest) {
+      add("the newest of " + nameOf(coil), n);
     }
   }
   std::vector<HeldOutGroup> groups;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "held_out_measurement.hpp"
+#include "held_out_outliers.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 
 namespace sac {
@@ -15,10 +16,11 @@ namespace sac {
 /// Groups of held-out measurements as more of them come: what has not changed is not judged again.
 class HeldOutGroups {
  public:
-  /// Those that count and are not set aside, the newest kJudgedOfAGroup of each group.
+  /// Those that count and are not set aside, the newest kJudgedOfAGroup of each group:
+  /// orientations, torques with each coil on, and the newest of a coil that has changed.
   /// @param covariance of the parameters, P×P
   std::vector<HeldOutGroup> judge(const std::vector<HeldOutMeasurement>& measurements,
-                                  const std::vector<bool>& set_aside,
+                                  const OutlierChoice& outliers,
                                   const Eigen::MatrixXd& covariance);
 
  private:

@@ -68,6 +68,9 @@ class HeldOutJudge::Judgement {
       return *other_;
     }
     const HeldOutValidation& of_samples = judgeSamples(samples);
+    if (other_) {
+      other_->undecided_coils = of_samples.undecided_coils;
+    }
     return other_ ? severer(of_samples, *other_) : of_samples;
   }
 
@@ -156,15 +159,16 @@ class HeldOutJudge::Judgement {
            takeObservation({n, Quantity::kTorque}, held_out);
   }
 
-  /// As far as the last cycle has looked at it.
+  /// Where a cycle has looked at it.
   void noteInUse(std::size_t n) {
     const Sample& sample = (*problem_.samples)[n];
-    if (!sample.has_torque || sample.id > usual_.newest_torque) {
+    const auto looked_at = usual_.torques.find(sample.id);
+    if (looked_at == usual_.torques.end()) {
       return;
     }
     for (const std::size_t coil : coilsOn(sample, options_.current_threshold)) {
       TorquesInUse& torques = in_use_[coil];
-      if (usual_.torques.count(sample.id) > 0) {
+      if (looked_at->second) {
         torques.rejected.push_back(n);
       } else {
         torques.last_agreeing = n;
@@ -239,7 +243,7 @@ class HeldOutJudge::Judgement {
   }
 
   void conclude() {
-    const std::vector<bool> set_aside = setOutliersAside();
+    const OutlierChoice choice = setOutliersAside();
     addMisfits();
     const std::size_t judged =
         result_.residuals.size() - result_.unjudged_torques - result_.outliers;
@@ -249,7 +253,7 @@ class HeldOutJudge::Judgement {
       result_.reduced_chi_square = chi_square / values;
       result_.probability = chiSquareProbability(values, chi_square);
     }
-    result_.groups = groups_.judge(judged_, set_aside, problem_.prior.covariance);
+    result_.groups = groups_.judge(judged_, choice, problem_.prior.covariance);
     const auto among = static_cast<double>(result_.groups.size() + 1);
     for (const HeldOutGroup& group : result_.contradicting()) {
       result_.probability = std::min(result_.probability, among * group.probability());
@@ -257,12 +261,12 @@ class HeldOutJudge::Judgement {
   }
 
   /// Marks what stands out as rejected, where it is no more than elsewhere.
-  std::vector<bool> setOutliersAside() {
+  OutlierChoice setOutliersAside() {
     OutlierChoice choice =
         chooseOutliers(judged_, outliers(), in_use_, usual_.rate, options_.max_rejected_fraction);
     result_.outliers = choice.count;
-    result_.undecided_coils = std::move(choice.undecided_coils);
-    result_.doubtful_coils = std::move(choice.doubtful_coils);
+    result_.undecided_coils = choice.undecided_coils;
+    result_.doubtful_coils = choice.doubtful_coils;
     const std::vector<bool>& is_rejected = choice.set_aside;
     for (std::size_t n = 0; n < judged_.size(); ++n) {
       SampleResidual& residual = result_.residuals[n];
@@ -277,7 +281,7 @@ class HeldOutJudge::Judgement {
         update_.reset();
       }
     }
-    return choice.set_aside;
+    return choice;
   }
 
   /// Those that stand out by themselves, ascending.

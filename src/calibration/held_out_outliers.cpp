@@ -42,6 +42,34 @@ std::map<std::size_t, HeldOutTorques> torquesByCoil(
   return torques;
 }
 
+/// Torques of a coil that stand out since the last one that agreed.
+struct Newest {
+  std::vector<std::size_t> held_out;  ///< measurements
+  std::size_t in_use = 0;
+};
+
+Newest newestOf(const std::vector<HeldOutMeasurement>& measurements,
+                const HeldOutTorques& torques,
+                const TorquesInUse& in_use) {
+  const auto agreeing = std::max(torques.last_agreeing, in_use.last_agreeing);
+  Newest newest;
+  for (const std::size_t n : torques.set_aside) {
+    if (std::optional(measurements[n].sample) > agreeing) {
+      newest.held_out.push_back(n);
+    }
+  }
+  newest.in_use = static_cast<std::size_t>(
+      std::count_if(in_use.rejected.begin(), in_use.rejected.end(), [&](std::size_t sample) {
+        return std::optional(sample) > agreeing;
+      }));
+  return newest;
+}
+
+TorquesInUse ofCoil(std::size_t coil, const std::map<std::size_t, TorquesInUse>& in_use) {
+  const auto found = in_use.find(coil);
+  return found == in_use.end() ? TorquesInUse() : found->second;
+}
+
 }  // namespace
 
 OutlierChoice chooseOutliers(const std::vector<HeldOutMeasurement>& measurements,
@@ -61,29 +89,21 @@ OutlierChoice chooseOutliers(const std::vector<HeldOutMeasurement>& measurements
     choice.set_aside[n] = true;
   }
   for (const auto& [coil, torques] : torquesByCoil(measurements, choice.set_aside)) {
-    const auto used = in_use.find(coil);
-    const TorquesInUse others = used == in_use.end() ? TorquesInUse() : used->second;
-    const auto agreeing = std::max(torques.last_agreeing, others.last_agreeing);
-    std::vector<std::size_t> newest;
-    for (const std::size_t n : torques.set_aside) {
-      if (std::optional(measurements[n].sample) > agreeing) {
-        newest.push_back(n);
-      }
+    const Newest newest = newestOf(measurements, torques, ofCoil(coil, in_use));
+    if (!newest.held_out.empty() && newest.held_out.size() + newest.in_use > 1) {
+      choice.changed_coils[coil] = newest.held_out;
     }
-    const auto rejected =
-        std::count_if(others.rejected.begin(), others.rejected.end(), [&](std::size_t sample) {
-          return std::optional(sample) > agreeing;
-        });
-    if (newest.size() + static_cast<std::size_t>(rejected) > 1) {
-      for (const std::size_t n : newest) {
-        choice.set_aside[n] = false;
-      }
-      continue;
+  }
+  for (const auto& [coil, stay] : choice.changed_coils) {
+    for (const std::size_t n : stay) {
+      choice.set_aside[n] = false;
     }
+  }
+  for (const auto& [coil, torques] : torquesByCoil(measurements, choice.set_aside)) {
     if (!torques.set_aside.empty() && !torques.last_agreeing) {
       choice.undecided_coils.push_back(coil);
     }
-    if (!newest.empty()) {
+    if (!newestOf(measurements, torques, ofCoil(coil, in_use)).held_out.empty()) {
       choice.doubtful_coils.push_back(coil);
     }
   }

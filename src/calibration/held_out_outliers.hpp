@@ -21,6 +21,8 @@ struct OutlierChoice {
   std::size_t count = 0;                     ///< of these
   std::vector<std::size_t> undecided_coils;  ///< all of whose torques are set aside, ascending
   std::vector<std::size_t> doubtful_coils;   ///< whose newest torque is set aside, ascending
+  /// Measurements with the newest torques of a coil that has changed.
+  std::map<std::size_t, std::vector<std::size_t>> changed_coils;
 };
 
 /// Those that stand out, ascending, where they are no more than `rate` elsewhere, and at most the

@@ -23,19 +23,25 @@ std::vector<HeldOutGroup> HeldOutValidation::contradicting() const {
   std::copy_if(groups.begin(), groups.end(), std::back_inserter(found), [this](const auto& group) {
     return group.probability() < leastOfAGroup();
   });
+  std::sort(found.begin(), found.end(), [](const HeldOutGroup& one, const HeldOutGroup& other) {
+    return one.probability() < other.probability();
+  });
   return found;
 }
 
 std::string inWords(const std::vector<HeldOutGroup>& groups) {
+  constexpr std::size_t kMostNamed = 4;
   std::string words;
-  for (const HeldOutGroup& group : groups) {
+  for (std::size_t n = 0; n < std::min(kMostNamed, groups.size()); ++n) {
+    const HeldOutGroup& group = groups[n];
     words += (words.empty() ? "" : ", ") + group.name +
              format(" (chi-square %.3g of %.0f, probability %.2g)",
                     group.chi_square,
                     group.freedom(),
                     group.probability());
   }
-  return words;
+  return groups.size() > kMostNamed ? words + format(" and %zu more", groups.size() - kMostNamed)
+                                    : words;
 }
 
 std::string coilsInWords(const std::vector<std::size_t>& coils) {
@@ -46,22 +52,23 @@ std::string coilsInWords(const std::vector<std::size_t>& coils) {
   return words;
 }
 
-UsualOutliers usualOutliers(const CycleReport& report) {
+UsualOutliers usualOutliers(const std::vector<CycleReport>& reports) {
   UsualOutliers outliers;
-  std::size_t rejected = 0;
-  for (const SampleResidual& residual : report.residuals) {
-    rejected += residual.rejected ? 1U : 0U;
-    // Those of a motion are windows.
-    if (residual.quantity != Quantity::kTorque || report.motion) {
+  for (const CycleReport& report : reports) {
+    if (!report.success) {
       continue;
     }
-    outliers.newest_torque = std::max(outliers.newest_torque, residual.id);
-    if (residual.rejected) {
-      outliers.torques.insert(residual.id);
+    std::size_t rejected = 0;
+    for (const SampleResidual& residual : report.residuals) {
+      rejected += residual.rejected ? 1U : 0U;
+      // Those of a motion are of windows.
+      if (residual.quantity == Quantity::kTorque && !report.motion) {
+        outliers.torques[residual.id] = residual.rejected;
+      }
     }
+    const std::size_t count = std::max<std::size_t>(1, report.residuals.size());
+    outliers.rate = static_cast<double>(rejected) / static_cast<double>(count);
   }
-  const std::size_t count = std::max<std::size_t>(1, report.residuals.size());
-  outliers.rate = static_cast<double>(rejected) / static_cast<double>(count);
   return outliers;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <set>
@@ -26,9 +27,10 @@ double boundOf(const HeldOutGroup& group) {
 }
 
 /// The newest of the held-out samples, and of each coil the newest that it is on in: a change of
-/// one coil shows in no other.
-std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples, double current_threshold) {
-  std::vector<Sample> newest;
+/// one coil shows in no other. Ids ascend.
+std::set<std::uint32_t> newestHeldOut(const std::vector<Sample>& samples,
+                                      double current_threshold) {
+  std::set<std::uint32_t> newest;
   std::map<std::size_t, std::size_t> of_coil;
   for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
     if (!sample->validation) {
@@ -40,19 +42,33 @@ std::vector<Sample> newestHeldOut(const std::vector<Sample>& samples, double cur
       is_wanted = (tells_coils && of_coil[excitation.coil]++ < kCheckedSamplesOfACoil) || is_wanted;
     }
     if (is_wanted) {
-      newest.push_back(*sample);
+      newest.insert(sample->id);
     }
   }
-  std::reverse(newest.begin(), newest.end());
   return newest;
 }
 
-std::vector<Sample> allHeldOut(const std::vector<Sample>& samples) {
-  std::vector<Sample> all;
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(all), [](const Sample& sample) {
-    return sample.validation;
+std::vector<Sample> heldOutOf(const std::vector<Sample>& samples) {
+  std::vector<Sample> held_out;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(held_out), [](const Sample& one) {
+    return one.validation;
   });
-  return all;
+  return held_out;
+}
+
+/// Those that judge, and those in use, of which a cycle may have rejected some.
+std::vector<Sample> judgedSamples(const CalibrationSession& session, CheckedSamples checked) {
+  const std::vector<Sample>& all = session.samples();
+  if (checked == CheckedSamples::kAll) {
+    return all;
+  }
+  const std::set<std::uint32_t> newest =
+      newestHeldOut(all, session.config().estimation.current_threshold);
+  std::vector<Sample> judged;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(judged), [&](const Sample& sample) {
+    return !sample.validation || newest.count(sample.id) > 0;
+  });
+  return judged;
 }
 
 /// "3, 5, 7"; empty where samples with torques tell of every coil, or there are none.
@@ -76,21 +92,19 @@ std::string coilsNotSeen(const Actuator& actuator,
   return numbers;
 }
 
-/// At which the last cycle that succeeded rejected single measurements, or the one that made the
-/// description that the session starts from.
+/// Those of the cycles that succeeded, or of the one that made the description that the session
+/// starts from.
 UsualOutliers outliersOf(const CalibrationSession& session) {
   const std::vector<CycleReport>& reports = session.reports();
-  const auto last = std::find_if(
-      reports.rbegin(), reports.rend(), [](const CycleReport& one) { return one.success; });
-  if (last != reports.rend()) {
-    return usualOutliers(*last);
-  }
   const auto& before = session.start().calibration;
-  if (!before || before->cycles.empty() || before->cycles.back().samples_used == 0) {
-    return {};
+  const bool has_success = std::any_of(
+      reports.begin(), reports.end(), [](const CycleReport& one) { return one.success; });
+  if (has_success || !before || before->cycles.empty() || before->cycles.back().samples_used == 0) {
+    return usualOutliers(reports);
   }
   const CycleRecord& cycle = before->cycles.back();
-  return {static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used)};
+  return {static_cast<double>(cycle.samples_rejected) / static_cast<double>(cycle.samples_used),
+          {}};
 }
 
 /// Of torques that of the coil that is judged least: a change of one shows in no other.
@@ -111,6 +125,15 @@ std::string boundsInWords(const std::vector<HeldOutGroup>& groups) {
          format("%.2g mN.m (99 %%)", 1e3 * torques);
 }
 
+/// Of coils of which an outlier tells last, or nothing else.
+std::string doubtInWords(const std::vector<std::size_t>& coils, CheckedSamples checked) {
+  return checked == CheckedSamples::kAll
+             ? "In doubt: all torques of " + coilsInWords(coils) +
+                   " are outliers. Record others, and check again."
+             : "In doubt: the newest held-out torque of " + coilsInWords(coils) +
+                   " is an outlier. Capture another one for validation, and check again.";
+}
+
 /// What no sample tells of.
 std::string unseenInWords(const std::string& coils) {
   return coils.empty() ? ""
@@ -123,22 +146,21 @@ std::string unseenInWords(const std::string& coils) {
 ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples checked) {
   ValidityCheck check;
   const double threshold = session.config().estimation.current_threshold;
-  const std::vector<Sample> newest = checked == CheckedSamples::kAll
-                                         ? allHeldOut(session.samples())
-                                         : newestHeldOut(session.samples(), threshold);
+  const std::vector<Sample> judged = judgedSamples(session, checked);
+  const std::vector<Sample> held_out = heldOutOf(judged);
   const HeldOutValidation validation = validateHeldOut(
-      session.model(), newest, session.state(), session.config().estimation, outliersOf(session));
+      session.model(), judged, session.state(), session.config().estimation, outliersOf(session));
   if (!validation.hasVerdict()) {
     check.message =
         "Nothing can be told: capture some poses for validation, 3 or more, and check again.";
     return check;
   }
   const std::string changed = inWords(validation.contradicting());
-  const bool agrees = changed.empty() && validation.probability >= validation.leastOfAGroup();
-  if (agrees && !validation.doubtful_coils.empty()) {
-    check.message = "In doubt: the newest held-out torque of " +
-                    coilsInWords(validation.doubtful_coils) +
-                    " is an outlier. Capture another one for validation, and check again.";
+  const bool agrees = validation.probability >= kLeastProbability;
+  const std::vector<std::size_t>& doubted =
+      checked == CheckedSamples::kAll ? validation.undecided_coils : validation.doubtful_coils;
+  if (agrees && !doubted.empty()) {
+    check.message = doubtInWords(doubted, checked);
     return check;
   }
   check.is_valid = agrees;
@@ -154,7 +176,7 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
                                      validation.outliers)
                                   .c_str()
                             : "") +
-                    unseenInWords(coilsNotSeen(session.start().actuator, newest, threshold));
+                    unseenInWords(coilsNotSeen(session.start().actuator, held_out, threshold));
     return check;
   }
   check.message = changed.empty() ? format(
@@ -163,7 +185,7 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
                                         validation.probability)
                                   : "Not valid any more: changed are " + changed + ".";
   const Actuator in_force = session.model().space().actuatorAt(session.state().belief.x);
-  check.changes = diagnoseWiring(in_force, newest, session.config()).mistakes;
+  check.changes = diagnoseWiring(in_force, held_out, session.config()).mistakes;
   for (const Diagnosis& change : check.changes) {
     check.message += " " + change.message;
   }

@@ -76,7 +76,8 @@ class HeldOutJudgeTest : public ::testing::Test {
   }
 
   HeldOutJudge judge() const {
-    return {session_.model(), session_.state(), session_.config().estimation, UsualOutliers{kRate}};
+    return {
+        session_.model(), session_.state(), session_.config().estimation, UsualOutliers{kRate, {}}};
   }
 
   static void expectEqual(const HeldOutValidation& one,

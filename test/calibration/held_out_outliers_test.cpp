@@ -48,6 +48,7 @@ TEST(HeldOutOutliers, MakeTheNewestTorqueOfACoilDoubtful) {
 
 TEST(HeldOutOutliers, AreNoneWhereTheNewestOfACoilAreTwo) {
   EXPECT_EQ(choose({12, 17}).count, 0U);
+  EXPECT_EQ(choose({12, 17}).changed_coils.at(2), (std::vector<std::size_t>{12, 17}));
   // With one between them that agrees, they are accidents.
   EXPECT_EQ(choose({7, 17}).count, 2U);
 }

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace sac {
 
 /// Held-out measurements in which one kind of change would show: among all it might not.
 struct HeldOutGroup {
-  std::string name;              ///< "the orientation", "coil 3", "coil 3 with coil 7"
+  std::string name;              ///< "the orientation", "coil 3", "the newest of coil 3"
   std::size_t observations = 0;  ///< judged together
   /// Squared Mahalanobis norm of their misfits, with the uncertainty of the parameters, and the
   /// errors of a dwell, that they have in common.
@@ -27,7 +27,8 @@ struct HeldOutGroup {
   double probability() const;
 };
 
-/// The group of all orientations; those of torques have the names of the coils that were on.
+/// The group of all orientations. Those of torques are of a coil that was on, alone or with others,
+/// and of its newest ones where these stand out.
 inline constexpr char kOrientations[] = "the orientation";
 /// So many of a group are judged together, the newest.
 inline constexpr std::size_t kJudgedOfAGroup = 24;
@@ -71,14 +72,15 @@ struct HeldOutValidation {
   std::vector<HeldOutGroup> contradicting() const;
 };
 
-/// What a cycle rejected among the samples in use.
+/// What cycles made of the samples in use.
 struct UsualOutliers {
-  double rate = 0.0;                     ///< 0: none, so that none is excused elsewhere
-  std::set<std::uint32_t> torques = {};  ///< ids of samples
-  std::uint32_t newest_torque = 0;       ///< id of the last sample that was looked at; 0: none
+  double rate = 0.0;  ///< of the last that succeeded; 0: none, so that none is excused elsewhere
+  /// By the id of its sample: whether a torque was rejected, by the last that looked at it.
+  std::map<std::uint32_t, bool> torques = {};
 };
 
-UsualOutliers usualOutliers(const CycleReport& report);
+/// Of those that succeeded.
+UsualOutliers usualOutliers(const std::vector<CycleReport>& reports);
 
 /// What windows of motion that were held out tell, in the same words: a window is a sample with a
 /// torque, its mean error.
