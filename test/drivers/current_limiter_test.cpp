@@ -27,7 +27,7 @@ TEST(CurrentLimiter, HoldsEachCoilAndTheSumWithinTheirLimits) {
   EXPECT_NEAR(scaled.cwiseAbs().sum(), 3.0, 1e-12);
   EXPECT_LT((scaled - currents(1.0, -1.0, 1.0)).norm(), 1e-12);
   EXPECT_EQ(limiter.clamped(), 2U);
-  EXPECT_EQ(limiter.limitsInWords(), "limits/coil 2.5 A, limits/total 8 A");
+  EXPECT_EQ(limiter.limitsInWords(), "limits/coil 2 A, limits/total 3 A");
 }
 
 TEST(CurrentLimiter, MovesNoFasterThanTheSlewLimit) {
