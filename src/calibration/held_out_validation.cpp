@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "cycle_conclusion.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
@@ -24,7 +25,10 @@ std::vector<HeldOutGroup> HeldOutValidation::contradicting() const {
     return group.probability() < leastOfAGroup();
   });
   std::sort(found.begin(), found.end(), [](const HeldOutGroup& one, const HeldOutGroup& other) {
-    return one.probability() < other.probability();
+    const auto rank = [](const HeldOutGroup& group) {
+      return std::pair(group.probability(), -group.chi_square / group.freedom());
+    };
+    return rank(one) < rank(other);
   });
   return found;
 }

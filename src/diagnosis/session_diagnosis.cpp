@@ -200,10 +200,10 @@ std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
 
 std::optional<Redescription> redescribedMotion(const Actuator& nominal,
                                                const std::vector<Diagnosis>& diagnoses) {
-  std::vector<std::string> causes;
-  for (const Diagnosis& diagnosis : diagnoses) {
-    causes.push_back(diagnosis.cause);
-  }
+  std::vector<std::string> causes(diagnoses.size());
+  std::transform(diagnoses.begin(), diagnoses.end(), causes.begin(), [](const Diagnosis& one) {
+    return one.cause;
+  });
   const Candidate mistakes = motionMistakes(nominal, causes);
   if (mistakes.empty()) {
     return std::nullopt;
