@@ -1,5 +1,6 @@
 #include "held_out_groups.hpp"
 
+#include <string>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -9,8 +10,10 @@
 namespace sac {
 namespace {
 
-std::string nameOf(std::size_t coil) {
-  return "coil " + std::to_string(numberOf(coil));
+std::string nameOf(const std::pair<std::size_t, bool>& key) {
+  const auto& [number, is_newest] = key;
+  return number == 0 ? kOrientations
+                     : (is_newest ? "the newest of coil " : "coil ") + std::to_string(number);
 }
 
 /// By all that members have in common: the parameters, and the errors of a dwell.
@@ -48,9 +51,9 @@ HeldOutGroup judgeTogether(const std::vector<HeldOutMeasurement>& measurements,
 std::vector<HeldOutGroup> HeldOutGroups::judge(const std::vector<HeldOutMeasurement>& measurements,
                                                const OutlierChoice& outliers,
                                                const Eigen::MatrixXd& covariance) {
-  std::map<std::string, std::vector<std::size_t>> members;
-  const auto add = [&members](const std::string& name, std::size_t n) {
-    std::vector<std::size_t>& own = members[name];
+  std::map<Key, std::vector<std::size_t>> members;
+  const auto add = [&members](const Key& key, std::size_t n) {
+    std::vector<std::size_t>& own = members[key];
     if (own.size() < kJudgedOfAGroup) {
       own.push_back(n);
     }
@@ -61,24 +64,24 @@ std::vector<HeldOutGroup> HeldOutGroups::judge(const std::vector<HeldOutMeasurem
       continue;
     }
     if (one.quantity == Quantity::kOrientation) {
-      add(kOrientations, n);
+      add({0, false}, n);
     }
     for (const std::size_t coil : one.coils) {
-      add(nameOf(coil), n);
+      add({numberOf(coil), false}, n);
     }
   }
   for (const auto& [coil, newest] : outliers.changed_coils) {
     for (const std::size_t n : newest) {
-      add("the newest of " + nameOf(coil), n);
+      add({numberOf(coil), true}, n);
     }
   }
   std::vector<HeldOutGroup> groups;
-  for (const auto& [name, own] : members) {
-    Judged& judged = judged_[name];
+  for (const auto& [key, own] : members) {
+    Judged& judged = judged_[key];
     if (judged.members != own) {
       judged.members = own;
       judged.group = judgeTogether(measurements, own, covariance);
-      judged.group.name = name;
+      judged.group.name = nameOf(key);
     }
     groups.push_back(judged.group);
   }

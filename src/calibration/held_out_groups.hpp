@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <map>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,11 +24,13 @@ class HeldOutGroups {
                                   const Eigen::MatrixXd& covariance);
 
  private:
+  /// 0: orientations, else the number of a coil, counted from 1; and whether its newest ones alone.
+  using Key = std::pair<std::size_t, bool>;
   struct Judged {
     std::vector<std::size_t> members;
     HeldOutGroup group;
   };
-  std::map<std::string, Judged> judged_;
+  std::map<Key, Judged> judged_;
 };
 
 }  // namespace sac

@@ -9,7 +9,6 @@
 
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 
-#include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
@@ -71,10 +70,10 @@ std::vector<Sample> judgedSamples(const CalibrationSession& session, CheckedSamp
   return judged;
 }
 
-/// "3, 5, 7"; empty where samples with torques tell of every coil, or there are none.
-std::string coilsNotSeen(const Actuator& actuator,
-                         const std::vector<Sample>& samples,
-                         double current_threshold) {
+/// None where samples with torques tell of every coil, or there are none.
+std::vector<std::size_t> coilsNotSeen(const Actuator& actuator,
+                                      const std::vector<Sample>& samples,
+                                      double current_threshold) {
   std::set<std::size_t> seen;
   for (const Sample& sample : samples) {
     for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
@@ -83,13 +82,13 @@ std::string coilsNotSeen(const Actuator& actuator,
       }
     }
   }
-  std::string numbers;
+  std::vector<std::size_t> others;
   for (std::size_t coil = 0; coil < actuator.coils.size() && !seen.empty(); ++coil) {
     if (seen.count(coil) == 0) {
-      numbers += (numbers.empty() ? "" : ", ") + std::to_string(numberOf(coil));
+      others.push_back(coil);
     }
   }
-  return numbers;
+  return others;
 }
 
 /// Those of the cycles that succeeded, or of the one that made the description that the session
@@ -135,9 +134,9 @@ std::string doubtInWords(const std::vector<std::size_t>& coils, CheckedSamples c
 }
 
 /// What no sample tells of.
-std::string unseenInWords(const std::string& coils) {
+std::string unseenInWords(const std::vector<std::size_t>& coils) {
   return coils.empty() ? ""
-                       : " No sample judges coils " + coils +
+                       : " No sample judges " + coilsInWords(coils) +
                              ": nothing is said of them; capture one with each.";
 }
 

@@ -42,9 +42,9 @@ class HeldOutJudge {
 /// Judges the held-out samples under a state. Orientations always count, torques where some coil
 /// is excited and the model has torque; those of coils that are not identified have a residual but
 /// no part in the test. Misfits share the uncertainty of the parameters; the test accounts for it.
-/// `outliers`: those among the samples in use, as often as which single ones come by accident; but
-/// where the newest torques of a coil are outliers, two or more in a row, it has changed. Throws
-/// DataError on malformed samples.
+/// `outliers`: what cycles rejected among the samples in use. As many, by their rate, come by
+/// accident and are set aside; but where the newest torques of a coil are outliers, two or more in
+/// a row, it has changed (doc/method.md, Held-out samples). Throws DataError on malformed samples.
 HeldOutValidation validateHeldOut(const CalibrationModel& model,
                                   const std::vector<Sample>& samples,
                                   const CalibrationState& state,

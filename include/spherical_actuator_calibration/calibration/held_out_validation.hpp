@@ -11,7 +11,8 @@
 
 namespace sac {
 
-/// Held-out measurements in which one kind of change would show: among all it might not.
+/// Held-out measurements in which one kind of change would show: among all it might not
+/// (doc/method.md, Held-out samples).
 struct HeldOutGroup {
   std::string name;              ///< "the orientation", "coil 3", "the newest of coil 3"
   std::size_t observations = 0;  ///< judged together

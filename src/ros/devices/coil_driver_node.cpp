@@ -261,7 +261,7 @@ void CoilDriverNode::diagnoseOutput(DiagnosticStatus& status) {
     told_clamped_ = clamped_;
     status.mergeSummary(DiagnosticStatus::WARN,
                         "commands are beyond the limits of this driver (" +
-                            driver_.limiter().limitsInWords() + ") and are clamped");
+                            driver_.limiter().limitsInWords() + ") and are clamped: ask for less");
   }
   addTextOrNone(status, "commander", supervisor.owner(steadySeconds()));
   status.add("zero measured", supervisor.isZeroConfirmed() ? "yes" : "no");
