@@ -25,7 +25,7 @@ std::optional<Eigen::Vector3d> jointAngles(const JointGeometry& joints,
     if (error.norm() < kConverged) {
       return q;
     }
-    const Eigen::Vector3d step = linear.d_offset.partialPivLu().solve(error);
+    const Eigen::Vector3d step = linear.d_offset.inverse() * error;
     if (!step.allFinite()) {
       return std::nullopt;
     }

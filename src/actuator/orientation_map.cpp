@@ -97,12 +97,12 @@ OrientationMap::OrientationMap(OrientationMapDescription description)
     Eigen::MatrixXd noisy = gram;
     const double ratio = description_.noise[c] / description_.amplitude[c];
     noisy.diagonal().array() += ratio * ratio;
-    factor_[c].compute(noisy);
-    if (factor_[c].info() != Eigen::Success) {
+    factor_[c] = Cholesky(noisy);
+    if (!factor_[c].isPositive()) {
       throw ConfigError("orientation_map.noise: it is too small for these readings.");
     }
     const auto column = static_cast<Eigen::Index>(c);
-    weights_.col(column) = factor_[c].solve(weights_.col(column)).eval();
+    weights_.col(column) = factor_[c].solve(weights_.col(column));
   }
 }
 
@@ -126,7 +126,7 @@ OrientationMap::Uncertainty OrientationMap::uncertainty(const Eigen::Vector3d& r
   for (std::size_t c = 0; c < factor_.size(); ++c) {
     const auto component = static_cast<Eigen::Index>(c);
     const double square = description_.amplitude[c] * description_.amplitude[c];
-    const double explained = std::clamp(factor_[c].matrixL().solve(k).squaredNorm(), 0.0, 1.0);
+    const double explained = std::clamp(factor_[c].half(k).squaredNorm(), 0.0, 1.0);
     // Of the difference between what is there and a share of what the points say.
     result.variance[component] = square * (1.0 - explained * share * (2.0 - share));
     result.noise[component] = description_.noise[c] * description_.noise[c];

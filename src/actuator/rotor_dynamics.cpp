@@ -1,11 +1,11 @@
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -43,8 +43,7 @@ void validate(const RigidRotor& rotor) {
   if (!rotor.inertia.allFinite() || !rotor.inertia.isApprox(rotor.inertia.transpose(), 1e-9)) {
     throw ConfigError("rotor inertia: it must be finite and symmetric [kg m²].");
   }
-  const Eigen::Vector3d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotor.inertia).eigenvalues();
+  const Eigen::Vector3d principal = symmetricEigenvalues(rotor.inertia);
   constexpr double kRounding = 1.0 + 1e-9;
   if (principal[0] <= 0.0 || principal[2] > (principal[0] + principal[1]) * kRounding) {
     throw ConfigError(

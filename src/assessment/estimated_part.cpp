@@ -5,8 +5,9 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
+
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -68,7 +69,7 @@ Eigen::MatrixXd priorInformation(const std::vector<OpenDirection>& open,
       factor.householderQ() * Eigen::MatrixXd::Identity(spanning.rows(), spanning.cols());
   const Eigen::MatrixXd covariance = basis.transpose() * after.covariance * basis;
   const Eigen::MatrixXd directions = basis(coordinates, Eigen::all);
-  return directions * covariance.ldlt().solve(directions.transpose());
+  return directions * solveSemidefinite(covariance, directions.transpose());
 }
 
 }  // namespace sac

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
@@ -30,7 +29,8 @@ void sumUp(const CalibrationSession& session, ModelFit& fit) {
   LinearizedObservation linear;
   for (std::size_t n = 0; n < problem.observations.size(); ++n) {
     evaluator.linearize(n, point, linear);
-    fit.chi_square += linear.residual.dot(evaluator.noise(n, linear).llt().solve(linear.residual));
+    fit.chi_square +=
+        linear.residual.dot(Cholesky3(evaluator.noise(n, linear)).solve(linear.residual));
     fit.values += 3;
   }
 }

@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
 #include "estimated_part.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
@@ -156,13 +155,13 @@ struct LeftOut {
 LeftOut leaveOut(const Eigen::Matrix3d& hat, const Eigen::Vector3d& residual) {
   // A standard deviation that would grow a thousandfold is no prediction.
   constexpr double kSmallestCheck = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (hat + hat.transpose()));
+  const SymmetricEigen eigen = symmetricEigen(0.5 * (hat + hat.transpose()));
   LeftOut result;
   result.leverage = hat.trace() / 3.0;
   result.predicted_residual.setZero();
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d direction = eigen.eigenvectors().col(k);
-    const double check = 1.0 - eigen.eigenvalues()[k];
+    const Eigen::Vector3d direction = eigen.vectors.col(k);
+    const double check = 1.0 - eigen.values[k];
     if (check < kSmallestCheck) {
       result.sole_direction = direction;
     } else {

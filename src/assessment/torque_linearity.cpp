@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
@@ -107,10 +106,8 @@ class LinearityFit {
   std::optional<TorqueLinearity> result() {
     const double proportional = minimise(Law::kProportional);
     const double bent = minimise(Law::kBent);
-    using Square = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-    const Square information = A_.transpose() * A_;
-    const Square covariance = information.llt().solve(Square::Identity());
-    const Unknowns stddevs = covariance.diagonal().cwiseSqrt();
+    const Eigen::MatrixXd information = A_.transpose() * A_;
+    const Unknowns stddevs = Cholesky(information).inverse().diagonal().cwiseSqrt();
     if (!(stddevs[kDeviation] <= kMostUncertain)) {
       return std::nullopt;
     }
@@ -155,7 +152,7 @@ class LinearityFit {
       if (law == Law::kProportional) {
         A.topRows(rows()).middleCols<2>(kDeviation).setZero();
       }
-      const Unknowns step = A.colPivHouseholderQr().solve(b_);
+      const Unknowns step = pseudoInverse(A) * b_;
       x_ += step;
       if (step.norm() <= kEnough * (1.0 + x_.norm())) {
         break;
@@ -182,9 +179,9 @@ class LinearityFit {
       J.col(kAsymmetry) = share * share * g;
       J.rightCols<3>().setIdentity();
       const Eigen::Vector3d residual = sample.torque - x_.tail<3>() - share * bent * g;
-      const Eigen::LLT<Eigen::Matrix3d> noise(noiseOf(sample, g));
-      A_.middleRows<3>(3 * n) = noise.matrixL().solve(J);
-      b_.segment<3>(3 * n) = noise.matrixL().solve(residual);
+      const Cholesky3 noise(noiseOf(sample, g));
+      A_.middleRows<3>(3 * n) = noise.half(J);
+      b_.segment<3>(3 * n) = noise.half(residual);
     }
     for (Eigen::Index p = kDeviation; p < kUnknowns; ++p) {
       const double stddev = p < kTorqueAtZero ? kWidest : stddev_at_zero_;

@@ -5,10 +5,9 @@
 #include <iterator>
 #include <map>
 
-#include <Eigen/Cholesky>
-
 #include "estimated_part.hpp"
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
@@ -170,12 +169,12 @@ void Budget::add(const Dwell& dwell) {
     }
   }
   const Eigen::MatrixXd J = dwell.jacobian(Eigen::all, own);
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  const Eigen::MatrixXd whitened = factor.matrixL().solve(J);
+  const Cholesky factor(covariance);
+  const Eigen::MatrixXd whitened = factor.half(J);
   InformationSum observed(J.cols());
   observed.addDense(whitened, Eigen::VectorXd::Zero(whitened.rows()));
   observed_.addAt(places, observed);
-  const Eigen::MatrixXd weighed = factor.matrixU().solve(whitened);  // V⁻¹J
+  const Eigen::MatrixXd weighed = factor.solve(J);  // V⁻¹J
   others_(places, dwell.columns) += weighed.transpose() * dwell.jacobian;
   const auto add_to = [&](const std::string& source, const Eigen::MatrixXd& rows) {
     of(source)(places, places) += rows.transpose() * rows;

@@ -5,10 +5,9 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "covariance_record.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/nearest_rotation.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -190,7 +189,7 @@ FrameFit::Solution FrameFit::solve(const Frames& start,
     while (!has_improved && damping < kLargestDamping) {
       Eigen::MatrixXd damped = information;
       damped.diagonal() *= 1.0 + damping;
-      const Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+      const Eigen::VectorXd step = -solveSemidefinite(damped, gradient);
       step_size = step.norm();
       Solution next = solution;
       next.frames.R_stator_tracker = rotationExp(step.head<3>()) * next.frames.R_stator_tracker;
@@ -229,7 +228,7 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
   Eigen::MatrixXd information = measured;
   information.diagonal().tail(root_.cols()).array() += 1.0;
   const Eigen::MatrixXd covariance =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(unknowns(), unknowns()));
+      solveSemidefinite(information, Eigen::MatrixXd::Identity(unknowns(), unknowns()));
   Judgement judgement;
   judgement.covariance = covariance.topLeftCorner<kFrames, kFrames>();
   judgement.noise_covariance =
@@ -241,7 +240,8 @@ FrameFit::Judgement FrameFit::judge(const Solution& solution,
     const Eigen::Matrix3d spread =
         Eigen::Matrix3d::Identity() +
         sign * each.whitened.times(each.whitened.timesTransposed(covariance));
-    const double squared = each.whitened.residual.dot(spread.ldlt().solve(each.whitened.residual));
+    const Eigen::Vector3d weighed = solveSemidefinite3(spread, each.whitened.residual);
+    const double squared = each.whitened.residual.dot(weighed);
     judgement.poses.push_back(
         {poses_[n].id, each.residual, std::sqrt(std::max(0.0, squared) / 3.0), !used[n]});
     judgement.gain.push_back(used[n] ? squared : 0.0);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 #include "frame_fit.hpp"
@@ -17,6 +16,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
@@ -174,8 +174,7 @@ class Registrar {
       const Eigen::Vector3d turn = rotationLog(each * first.transpose());
       scatter += turn * turn.transpose();
     }
-    const Eigen::Matrix3d axes =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
+    const Eigen::Matrix3d axes = symmetricEigen(scatter).vectors;
     std::vector<FrameFit::Solution> solutions;
     solutions.reserve(3);
     for (Eigen::Index k = 0; k < 3; ++k) {

@@ -3,8 +3,7 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 
 namespace sac {
@@ -37,7 +36,7 @@ HeldOutGroup judgeTogether(const std::vector<HeldOutMeasurement>& measurements,
       }
     }
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(S);
+  const Cholesky factor(S);
   HeldOutGroup group;
   group.observations = members.size();
   group.chi_square = residual.dot(factor.solve(residual));

@@ -6,12 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "held_out_groups.hpp"
 #include "held_out_outliers.hpp"
 #include "linear_coils.hpp"
 #include "repeated_observations.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
@@ -30,7 +29,7 @@ SampleResidual residualOf(const Sample& sample,
   result.id = sample.id;
   result.quantity = quantity;
   result.residual = residual.norm();
-  result.standardized = std::sqrt(residual.dot(covariance.llt().solve(residual)) / 3.0);
+  result.standardized = std::sqrt(residual.dot(Cholesky3(covariance).solve(residual)) / 3.0);
   return result;
 }
 

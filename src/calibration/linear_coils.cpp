@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -20,20 +20,18 @@ std::vector<bool> linearCoils(const ParameterSpace& space,
   }
   Eigen::MatrixXd of_common = belief.covariance(common, common);
   of_common.diagonal() *= 1.0 + kRounding;
-  Eigen::LDLT<Eigen::MatrixXd> factor;
+  // Per coordinate: the part of its variance that is due to what it has in common.
+  Eigen::VectorXd due = Eigen::VectorXd::Zero(space.size());
   if (!common.empty()) {
-    factor.compute(of_common);
+    const Eigen::MatrixXd shared = belief.covariance(common, Eigen::all);
+    due = shared.cwiseProduct(solveSemidefinite(of_common, shared)).colwise().sum();
   }
   std::vector<bool> linear(space.coils());
   for (std::size_t j = 0; j < linear.size(); ++j) {
     const Eigen::Index coil = space.coil(j);
     const auto first = static_cast<std::size_t>(coil);
-    double variance = belief.covariance.block<2, 2>(coil, coil).trace();
-    if (!common.empty()) {
-      const Eigen::MatrixXd of_coil = belief.covariance.middleCols<2>(coil);
-      const Eigen::MatrixXd shared = of_coil(common, Eigen::all);
-      variance -= shared.cwiseProduct(factor.solve(shared)).sum();
-    }
+    const double variance =
+        belief.covariance.block<2, 2>(coil, coil).trace() - due.segment<2>(coil).sum();
     linear[j] = identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
   }
   return linear;

@@ -3,8 +3,7 @@
 #include <set>
 #include <string>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
@@ -22,7 +21,7 @@ WhitenedEvidence ownEvidence(const ParameterSpace& space, const MotionEvidence& 
   constexpr double kNothing = 1e-9;  // of the largest information
   const auto size = static_cast<Eigen::Index>(motion.told.size());
   const Eigen::MatrixXd covariance = motion.belief.covariance(motion.told, motion.told);
-  Eigen::MatrixXd information = covariance.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  Eigen::MatrixXd information = Cholesky(covariance).inverse();
   const Eigen::VectorXd vector = information * motion.belief.x(motion.told);
   for (Eigen::Index k = 0; k < size; ++k) {
     const Eigen::Index p = motion.told[static_cast<std::size_t>(k)];
@@ -93,7 +92,7 @@ CombinedBelief combined(const ParameterSpace& space,
   const Eigen::VectorXd apart = own.value - own.factor.transpose() * by_samples.x(motion.told);
   const Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(apart.size(), apart.size()) +
                                    own.factor.transpose() * spread(motion.told, Eigen::all);
-  const Eigen::LLT<Eigen::MatrixXd> factor(expected);
+  const Cholesky factor(expected);
   const Eigen::MatrixXd gain = factor.solve(spread.transpose()).transpose();
   result.belief.x += gain * apart;
   // Joseph's form: what was hardly known before loses many digits in a difference.
@@ -101,7 +100,7 @@ CombinedBelief combined(const ParameterSpace& space,
   kept(Eigen::all, motion.told) -= gain * own.factor.transpose();
   result.belief.covariance =
       kept * by_samples.covariance * kept.transpose() + gain * gain.transpose();
-  const double misfit = factor.matrixL().solve(apart).squaredNorm();
+  const double misfit = factor.half(apart).squaredNorm();
   result.probability = chiSquareProbability(static_cast<double>(apart.size()), misfit);
   return result;
 }

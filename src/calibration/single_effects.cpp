@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "coordinate_elimination.hpp"
 #include "effect_candidates.hpp"
 #include "score_sums.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -50,9 +49,9 @@ Score scoreOf(const Eigen::MatrixXd& information,
               double unobservable_stddev) {
   const double least = leastInformation(before, unobservable_stddev);
   Score score;
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  if (factor.info() == Eigen::Success) {
-    score.covariance = factor.solve(Eigen::MatrixXd::Identity(gradient.size(), gradient.size()));
+  const Cholesky factor(information);
+  if (factor.isPositive()) {
+    score.covariance = factor.inverse();
     if (score.covariance.trace() * least < 1.0) {  // no eigenvalue is less
       score.value = -score.covariance * gradient;
       score.square = -gradient.dot(score.value);

@@ -5,8 +5,7 @@
 #include <iterator>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
@@ -61,8 +60,8 @@ Differences differencesOf(const ParameterBelief& belief, const std::vector<Eigen
   }
   const Eigen::VectorXd values = belief.x(gains);
   const Eigen::MatrixXd covariance = belief.covariance(gains, gains);
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() != Eigen::Success) {
+  const Cholesky factor(covariance);
+  if (!factor.isPositive()) {
     return result;
   }
   result.probability =

@@ -1,8 +1,8 @@
 #include "spherical_actuator_calibration/control/computed_torque_control.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
@@ -43,7 +43,7 @@ Eigen::Matrix3d orientationForTorque(const RigidRotor& rotor,
                                      const ControlGains& gains) {
   // Beside the rotation's own part, velocity and acceleration depend on it weakly.
   constexpr int kRounds = 5;
-  const Eigen::LLT<Eigen::Matrix3d> inertia(rotor.inertia);
+  const Cholesky3 inertia(rotor.inertia);
   DesiredMotion motion = desired;
   motion.R_stator_rotor = state.R_stator_rotor;
   for (int round = 0; round < kRounds; ++round) {

@@ -5,10 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 
 namespace sac {
@@ -27,7 +28,7 @@ class LeastPower {
   LeastPower(const Eigen::Matrix3Xd& Q, double limit) : Q_(Q), limit_(limit) {}
 
   std::optional<Eigen::VectorXd> solve(const Eigen::Vector3d& torque) const {
-    Eigen::Vector3d lambda = (Q_ * Q_.transpose()).ldlt().solve(torque);
+    Eigen::Vector3d lambda = solveSemidefinite3(Q_ * Q_.transpose(), torque);
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       const Eigen::VectorXd currents = clamped(lambda);
       const Eigen::Vector3d misfit = torque - Q_ * currents;
@@ -63,8 +64,8 @@ class LeastPower {
     // A little of the whole keeps the step finite near the edge of what can be reached.
     constexpr double kRegularisation = 1e-9;
     curvature += kRegularisation * (Q_ * Q_.transpose());
-    const Eigen::LLT<Eigen::Matrix3d> factor(curvature);
-    if (factor.info() != Eigen::Success) {
+    const Cholesky3 factor(curvature);
+    if (!factor.isPositive()) {
       return std::nullopt;
     }
     return factor.solve(misfit);
@@ -148,12 +149,12 @@ AllocatedCurrents allocateCurrents(const Eigen::Matrix3Xd& torque_per_ampere,
     throw DataError("The torque to be made is not finite.");
   }
   const Eigen::Matrix3d gram = torque_per_ampere * torque_per_ampere.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram, Eigen::EigenvaluesOnly);
-  const double smallest = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
+  const double smallest = std::sqrt(std::max(0.0, symmetricEigenvalues(gram)[0]));
   AllocatedCurrents result;
   result.currents = Eigen::VectorXd::Zero(torque_per_ampere.cols());
   if (smallest >= options.least_singular_value) {
-    const Eigen::VectorXd minimum_norm = torque_per_ampere.transpose() * gram.ldlt().solve(torque);
+    const Eigen::VectorXd minimum_norm =
+        torque_per_ampere.transpose() * solveSemidefinite3(gram, torque);
     if (minimum_norm.cwiseAbs().maxCoeff() <= options.current_limit) {
       result.outcome = Allocation::kReached;
       result.share = 1.0;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -20,13 +20,12 @@ Eigen::VectorXd withoutTorque(const Eigen::Matrix3Xd& torque_per_ampere,
                               const Eigen::VectorXd& currents) {
   constexpr double kLeastRatio = 1e-9;  // of the eigenvalues of QQᵀ
   const Eigen::Matrix3d square = torque_per_ampere * torque_per_ampere.transpose();
-  const Eigen::Vector3d values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(square, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d values = symmetricEigenvalues(square);
   if (!(values[0] > kLeastRatio * values[2])) {
     return Eigen::VectorXd::Zero(currents.size());
   }
   const Eigen::Vector3d torque = torque_per_ampere * currents;
-  return currents - torque_per_ampere.transpose() * square.llt().solve(torque);
+  return currents - torque_per_ampere.transpose() * Cholesky3(square).solve(torque);
 }
 
 // The bounds hold on a convex set of currents, so that all shares below a good one are good.

@@ -5,8 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -73,9 +72,7 @@ class Fit {
 
   Eigen::MatrixXd covarianceAt(PosteriorFit fit) {
     linearize(std::nullopt, fit);
-    const Eigen::MatrixXd information = informationAt(fit).information();
-    return information.llt().solve(
-        Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+    return Cholesky(informationAt(fit).information()).inverse();
   }
 
  private:
@@ -234,7 +231,7 @@ class Fit {
     const InformationSum sum = informationAt(fit);
     Eigen::VectorXd gradient = sum.gradient();
     gradient.head(fit.x.size()) += precision_.cwiseProduct(fit.x);
-    return -sum.information().llt().solve(gradient);
+    return -Cholesky(sum.information()).solve(gradient);
   }
 
   /// Of the linearised observations, with what is known beforehand.

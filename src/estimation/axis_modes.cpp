@@ -182,7 +182,7 @@ ScannedTorque ScannedModel::torque(const Scanned& axis,
                                    std::size_t k,
                                    const Eigen::Matrix3d& to_rotor) const {
   const Eigen::Matrix3d W = observations_.whitening()[axis.torques[k]];
-  return {W.partialPivLu().solve(axis.residuals[k]), to_rotor, W, {}};
+  return {W.inverse() * axis.residuals[k], to_rotor, W, {}};
 }
 
 ScannedTorques ScannedModel::torquesOfPole(std::size_t pole) const {

@@ -5,10 +5,11 @@
 #include <cstddef>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
@@ -108,7 +109,7 @@ Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place, const Eigen::Matrix2d
     Eigen::Matrix2d damped = allowed * here.sum.information() * allowed;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-6;
-    Eigen::Vector2d step = -damped.ldlt().solve(allowed * here.sum.gradient());
+    Eigen::Vector2d step = damped.inverse() * (allowed * -here.sum.gradient());
     // Beyond one step of the scan is another place of it.
     step *= std::min(1.0, step_ / std::max(step.norm(), kNothing));
     const Normal there = linearized(place + step);
@@ -174,13 +175,13 @@ std::vector<Eigen::Vector2d> AxisScan::localMinima() const {
 std::vector<Eigen::Vector2d> AxisScan::alongValley(const Eigen::Vector2d& present,
                                                    const Eigen::Matrix2d& information) const {
   std::vector<Eigen::Vector2d> places;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spectrum(information);
-  const double weakest = spectrum.eigenvalues()[0];
+  const SymmetricEigen spectrum = symmetricEigen(information);
+  const double weakest = spectrum.values[0];
   if (weakest <= 0.0) {
     return places;
   }
-  const Eigen::Vector2d along = spectrum.eigenvectors().col(0);
-  const Eigen::Vector2d across = spectrum.eigenvectors().col(1);
+  const Eigen::Vector2d along = spectrum.vectors.col(0);
+  const Eigen::Vector2d across = spectrum.vectors.col(1);
   for (double far = std::sqrt(kWithin / weakest); far < range_; far *= 2.0) {
     places.push_back(descended(present + far * along, across * across.transpose()));
     places.push_back(descended(present - far * along, across * across.transpose()));

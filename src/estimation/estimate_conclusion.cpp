@@ -5,19 +5,16 @@
 #include <map>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "observability.hpp"
 #include "observed_information.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "weighted_observations.hpp"
 
 namespace sac {
 namespace {
-
-constexpr int kComponents = 3;  // of one observation
 
 /// What the active observations tell at the solution: with N the information of the estimated
 /// coordinates, that of the prior of held directions included, δx = −N⁻¹ Σ JᵀS⁻¹ (noise + J_held
@@ -81,7 +78,8 @@ void Conclusion::judgeMisfit() {
   const auto held_directions = static_cast<int>(solution_.prior.directions.cols());
   result_.stated_misfit = statedMisfit();
   result_.degrees_of_freedom =
-      kComponents * static_cast<int>(observations_.activeCount()) - (unknowns - held_directions);
+      kObservationComponents * static_cast<int>(observations_.activeCount()) -
+      (unknowns - held_directions);
   if (result_.degrees_of_freedom == 0) {
     return;
   }
@@ -97,7 +95,8 @@ double Conclusion::priorMisfit() const {
     return 0.0;
   }
   const Eigen::VectorXd apart = prior.directions.transpose() * solution_.x() - prior.mean;
-  return apart.dot(prior.covariance.ldlt().solve(apart));
+  const Eigen::VectorXd weighed = solveSemidefinite(prior.covariance, apart);
+  return apart.dot(weighed);
 }
 
 double Conclusion::statedMisfit() const {
@@ -135,14 +134,14 @@ Eigen::Matrix3d between(const Eigen::Matrix3Xd& J,
 /// F×F: what the prior of held directions tells of the estimated coordinates.
 Eigen::MatrixXd Conclusion::priorInformation() const {
   const Eigen::MatrixXd directions = solution_.prior.directions(solution_.estimated, Eigen::all);
-  return directions * solution_.prior.covariance.ldlt().solve(directions.transpose());
+  return directions * solveSemidefinite(solution_.prior.covariance, directions.transpose());
 }
 
 /// F×F: the part of their covariance that is due to that prior.
 Eigen::MatrixXd Conclusion::priorCovariance() const {
   const Eigen::MatrixXd spread =
       inverse_ * solution_.prior.directions(solution_.estimated, Eigen::all);
-  return spread * solution_.prior.covariance.ldlt().solve(spread.transpose());
+  return spread * solveSemidefinite(solution_.prior.covariance, spread.transpose());
 }
 
 void Conclusion::findCovariance() {
@@ -256,16 +255,17 @@ void Conclusion::listResiduals() {
     entry.observation = solution_.problem->observations[n];
     entry.residual = linear_.residual;
     entry.rejected = !observations_.active()[n];
-    const Eigen::LDLT<Eigen::Matrix3d> factor(residualCovariance(n, linear_));
-    entry.standardized = std::sqrt(
-        std::max(0.0, linear_.residual.dot(factor.solve(linear_.residual))) / kComponents);
+    const Eigen::Vector3d weighed =
+        solveSemidefinite3(residualCovariance(n, linear_), linear_.residual);
+    entry.standardized =
+        std::sqrt(std::max(0.0, linear_.residual.dot(weighed)) / kObservationComponents);
     result_.residuals.push_back(entry);
   }
 }
 
 double Conclusion::errorAt(const Eigen::VectorXd& x, ErrorMeasure measure) const {
   if (measure == ErrorMeasure::kStandardized) {
-    const auto values = static_cast<double>(kComponents * observations_.activeCount());
+    const auto values = static_cast<double>(kObservationComponents * observations_.activeCount());
     const double chi_square = x == solution_.x() ? chi_square_ : observations_.chiSquare(x);
     return std::sqrt(chi_square / values);
   }

@@ -20,7 +20,6 @@
 namespace sac {
 namespace {
 
-constexpr int kComponents = 3;  // of one observation
 /// Half width of the search for other modes of a pole or coil: six usual tolerances [rad].
 constexpr double kModeRange = 0.18;
 
@@ -189,7 +188,8 @@ bool Estimator::solveReweighted() {
 /// Squared whitened norm beyond which an observation is an outlier.
 double Estimator::outlierLimit() const {
   return chiSquareLimit(
-      kComponents, options_.false_alarm_probability / static_cast<double>(observations_.size()));
+      kObservationComponents,
+      options_.false_alarm_probability / static_cast<double>(observations_.size()));
 }
 
 /// Marks as inactive what does not fit the present solution, and as active again what does. Returns
@@ -210,7 +210,7 @@ bool Estimator::rejectOutliers() {
 bool Estimator::hasEnoughObservations() {
   const std::size_t stated = statedOf(problem_.model->space(), solution_.estimated).size();
   const std::size_t unknowns = solution_.estimated.size() - stated;
-  if (static_cast<std::size_t>(kComponents) * observations_.activeCount() >= unknowns) {
+  if (static_cast<std::size_t>(kObservationComponents) * observations_.activeCount() >= unknowns) {
     return true;
   }
   result_.termination = Termination::kTooFewObservations;
@@ -231,7 +231,7 @@ bool Estimator::solveRobustly(double transition) {
   solve(start_, Loss::kHuber, transition);
   updateWeights(solution_.x());
   const double median = medianOf(observations_.squares(solution_.x(), outlierLimit()));
-  const double scatter = std::max(1.0, std::sqrt(median / kComponents));
+  const double scatter = std::max(1.0, std::sqrt(median / kObservationComponents));
   solve(solution_.x(), Loss::kCauchy, transition * scatter);
   for (int round = 0; round < kMaxRounds && (rejectOutliers() || round == 0); ++round) {
     if (!hasEnoughObservations() || !solveReweighted()) {

@@ -48,18 +48,17 @@ bool InformationFactor::factorise(const Eigen::MatrixXd& information, const Eige
     const auto size = static_cast<Eigen::Index>(island.places.size());
     Eigen::MatrixXd block = information(island.places, island.places);
     block.diagonal() += more(island.places);
-    const Eigen::LLT<Eigen::MatrixXd> factor(block);
-    if (factor.info() != Eigen::Success) {
+    const Cholesky factor(block);
+    if (!factor.isPositive()) {
       return false;
     }
     const Eigen::MatrixXd crossed = information(island.places, border_);
-    island.half = factor.matrixL().solve(Eigen::MatrixXd::Identity(size, size));
-    island.inverse = factor.solve(Eigen::MatrixXd::Identity(size, size));
+    island.half = factor.half(Eigen::MatrixXd::Identity(size, size));
+    island.inverse = factor.inverse();
     island.to_border = factor.solve(crossed);
     rest.noalias() -= crossed.transpose() * island.to_border;
   }
-  rest_.compute(rest);
-  is_positive_ = rest_.info() == Eigen::Success;
+  rest_ = Cholesky(rest);
   return true;
 }
 
@@ -114,7 +113,7 @@ Eigen::VectorXd InformationFactor::solve(const Eigen::VectorXd& right) const {
   for (const Island& island : islands_) {
     of_border.noalias() -= island.to_border.transpose() * right(island.places);
   }
-  of_border = rest_.solve(of_border).eval();
+  of_border = rest_.solve(of_border);
   Eigen::VectorXd result(right.size());
   result(border_) = of_border;
   for (const Island& island : islands_) {
@@ -125,7 +124,7 @@ Eigen::VectorXd InformationFactor::solve(const Eigen::VectorXd& right) const {
 
 Eigen::MatrixXd InformationFactor::half(const Eigen::MatrixXd& columns) const {
   if (islands_.empty()) {
-    return rest_.matrixL().solve(columns);
+    return rest_.half(columns);
   }
   Eigen::MatrixXd of_border = columns(border_, Eigen::all);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
@@ -136,14 +135,13 @@ Eigen::MatrixXd InformationFactor::half(const Eigen::MatrixXd& columns) const {
       result(island.places, Eigen::all) = island.half * own;
     }
   }
-  rest_.matrixL().solveInPlace(of_border);
-  result(border_, Eigen::all) = of_border;
+  result(border_, Eigen::all) = rest_.half(of_border);
   return result;
 }
 
 Eigen::MatrixXd InformationFactor::inverse() const {
   const auto of_border = static_cast<Eigen::Index>(border_.size());
-  Eigen::MatrixXd rest = rest_.solve(Eigen::MatrixXd::Identity(of_border, of_border));
+  Eigen::MatrixXd rest = rest_.inverse();
   if (islands_.empty()) {
     return rest;
   }

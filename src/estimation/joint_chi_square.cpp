@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -18,14 +18,11 @@ double jointChiSquare(const Eigen::MatrixXd& information,
     }
   }
   // P = R Rᵀ, whatever its rank.
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance(used, used));
-  const Eigen::MatrixXd lower = factor.matrixL();
-  const Eigen::VectorXd scale = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd root = factor.transpositionsP().transpose() * (lower * scale.asDiagonal());
+  const Eigen::MatrixXd root = semidefiniteRoot(covariance(used, used));
   Eigen::MatrixXd inner = root.transpose() * information(used, used) * root;
   inner.diagonal().array() += 1.0;
   const Eigen::VectorXd projected = root.transpose() * gradient(used);
-  return squared_misfit - projected.dot(inner.llt().solve(projected));
+  return squared_misfit - projected.dot(Cholesky(inner).solve(projected));
 }
 
 }  // namespace sac

@@ -6,8 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
@@ -64,10 +63,9 @@ class Objective {
   explicit Objective(const LeastSquaresInput& input)
       : input_(input), free_(input.start.size(), input.free) {
     if (input.prior.directions.cols() > 0) {
-      const Eigen::MatrixXd lower = input.prior.covariance.llt().matrixL();
-      const auto whitening = lower.triangularView<Eigen::Lower>();
-      prior_ = whitening.solve(input.prior.directions.transpose());
-      prior_mean_ = whitening.solve(input.prior.mean);
+      const Cholesky factor(input.prior.covariance);
+      prior_ = factor.half(input.prior.directions.transpose());
+      prior_mean_ = factor.half(input.prior.mean);
     }
   }
 

@@ -5,6 +5,8 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
+
 namespace sac {
 namespace {
 
@@ -198,7 +200,7 @@ Eigen::Matrix3d ObservationEvaluator::rootOfPose(const Eigen::Vector3d& reading,
       linearizeRotorOrientation(joints_, reading).d_offset * stddevs.asDiagonal();
   Eigen::Matrix3d covariance = of_reading * of_reading.transpose();
   covariance.diagonal() += left_open;
-  return covariance.llt().matrixL();
+  return Cholesky3(covariance).lower();
 }
 
 Eigen::Matrix<double, 3, 6> ObservationEvaluator::sharedErrors(

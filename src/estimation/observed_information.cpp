@@ -3,9 +3,9 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -96,8 +96,8 @@ void Collector::addObservation(std::size_t observation, Sums& sums) {
   sums.by_more.add(whitened_);
   // S⁻¹RS⁻¹ = WᵀLLᵀW with W R Wᵀ = LLᵀ.
   const Eigen::Matrix3d share = W * evaluator.noise(observation, linear_) * W.transpose();
-  const Eigen::Matrix3d lower = share.llt().matrixL();
-  whiten(linear_, lower.transpose() * W, chosen_, whitened_);
+  const Eigen::Matrix3d upper = Cholesky3(share).lower().transpose();
+  whiten(linear_, upper * W, chosen_, whitened_);
   sums.noise_of_more.add(whitened_);
 }
 

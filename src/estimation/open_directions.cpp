@@ -34,7 +34,6 @@ Eigen::Matrix<double, 9, 3> jointRotations(const ParameterSpace& space, const Ei
   constexpr double kAngle = 0.7;  // [rad]
   constexpr Eigen::Index kCorners = 8;
   const JointGeometry joints = jointGeometry(space.actuatorAt(x));
-  // Not of fixed size: the compiler would unroll the decomposition for half a minute.
   Eigen::MatrixXd jacobian(3 * kCorners, 9);
   Eigen::MatrixXd rotation(3 * kCorners, 3);
   for (Eigen::Index corner = 0; corner < kCorners; ++corner) {
@@ -45,7 +44,7 @@ Eigen::Matrix<double, 9, 3> jointRotations(const ParameterSpace& space, const Ei
     jacobian.middleRows<3>(3 * corner) = rotationJacobian(space, joints, x, q);
     rotation.middleRows<3>(3 * corner).setIdentity();
   }
-  return jacobian.colPivHouseholderQr().solve(rotation);
+  return pseudoInverse(jacobian) * rotation;
 }
 
 std::string combinationName(const ParameterSpace& space, const Eigen::VectorXd& direction) {
@@ -83,7 +82,7 @@ Eigen::MatrixXd statorRotations(const ParameterSpace& space, const Eigen::Vector
     for (int k = 0; k < 3; ++k) {
       turned.col(k) = Eigen::Vector3d::Unit(k).cross(axis);
     }
-    change.middleRows<2>(at) = jacobian.colPivHouseholderQr().solve(turned);
+    change.middleRows<2>(at) = pseudoInverse(jacobian) * turned;
   }
   return change;
 }

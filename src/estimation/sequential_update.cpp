@@ -1,6 +1,6 @@
 #include "spherical_actuator_calibration/estimation/sequential_update.hpp"
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 namespace {
@@ -65,11 +65,11 @@ void SequentialUpdate::observe(const WhitenedObservation& observation,
   spread.noalias() -= gains() * seen;
   Eigen::Matrix3d S = observation.times(spread) - loading * spread.bottomRows<kSharedErrors>();
   S.diagonal().array() += 1.0;
-  const Eigen::LLT<Eigen::Matrix3d> factor(S);
+  const Cholesky3 factor(S);
   const Eigen::Vector3d surprise = factor.solve(residual);
   chi_square_ += residual.dot(surprise);
   mean_.noalias() -= spread * surprise;
-  gains_.middleCols<3>(gain_columns_) = factor.matrixL().solve(spread.transpose()).transpose();
+  gains_.middleCols<3>(gain_columns_) = factor.half(spread.transpose()).transpose();
   gain_columns_ += 3;
 }
 

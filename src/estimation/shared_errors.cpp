@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
 namespace sac {
@@ -85,11 +84,11 @@ void DwellElimination::remove(const SharedLoading& loading, const Eigen::Vector3
 }
 
 SharedErrors DwellElimination::errors() const {
-  return information_.llt().solve(gradient_);
+  return Cholesky(information_).solve(gradient_);
 }
 
 Eigen::Matrix<double, kSharedErrors, kSharedErrors> DwellElimination::covariance() const {
-  return information_.llt().solve(Eigen::Matrix<double, kSharedErrors, kSharedErrors>::Identity());
+  return Cholesky(information_).inverse();
 }
 
 double DwellElimination::squaredMisfit() const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
+
 namespace sac {
 
 WeightedObservations::WeightedObservations(const EstimationProblem& problem,
@@ -161,7 +163,7 @@ void WeightedObservations::squaresOfDwell(const std::vector<std::size_t>& dwell,
       const Eigen::Vector3d rest = residuals[k] - G * others.errors();
       const Eigen::Matrix3d covariance =
           Eigen::Matrix3d::Identity() + G * others.covariance() * G.transpose();
-      squares[dwell[k]] = rest.dot(covariance.llt().solve(rest));
+      squares[dwell[k]] = rest.dot(Cholesky3(covariance).solve(rest));
       if (kept[k] && (worst == dwell.size() || squares[dwell[k]] > squares[dwell[worst]])) {
         worst = k;
       }

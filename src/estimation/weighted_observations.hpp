@@ -15,6 +15,9 @@
 
 namespace sac {
 
+/// Of the misfit of one observation.
+inline constexpr int kObservationComponents = 3;
+
 /// The observations of one problem: how much each weighs, and which of them serve. What they are at
 /// the last point is kept: weights, information and tests ask for the same one, one after the
 /// other.

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -30,8 +30,7 @@ std::vector<bool> ChosenCoordinates::others() const {
 }
 
 Eigen::Matrix3d whiteningOf(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d lower = covariance.llt().matrixL();
-  return lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+  return Cholesky3(covariance).half(Eigen::Matrix3d::Identity());
 }
 
 Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedObservation::timesTransposed(

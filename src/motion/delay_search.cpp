@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -38,7 +38,7 @@ DelayedStep searchDelay(const MotionProblem& problem,
     Eigen::MatrixXd information = sum.information()(others, others);
     information.diagonal() += held;
     const Eigen::VectorXd gradient = sum.gradient()(others);
-    const Eigen::VectorXd back = information.ldlt().solve(gradient);
+    const Eigen::VectorXd back = solveSemidefinite(information, gradient);
     const double left = sum.squaredMisfit() - gradient.dot(back);
     if (left < least) {
       least = left;

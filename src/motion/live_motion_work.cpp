@@ -7,8 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
@@ -68,9 +67,7 @@ void LiveMotionWork::chooseFree() {
   free_.clear();
   std::set_difference(
       asked_.begin(), asked_.end(), untold.begin(), untold.end(), std::back_inserter(free_));
-  const auto count = static_cast<Eigen::Index>(free_.size());
-  const Eigen::MatrixXd known = prior_.covariance(free_, free_);
-  const Eigen::MatrixXd inverse = known.llt().solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd inverse = Cholesky(prior_.covariance(free_, free_)).inverse();
   prior_information_.setZero();
   prior_information_(free_, free_) = inverse;
   Eigen::VectorXd held = prior_.covariance.diagonal();
@@ -283,7 +280,7 @@ bool LiveMotionWork::contradicts(const LiveWindow& window) const {
     spread.noalias() -= by_steps_ * (delay * delay.transpose());
   }
   spread.diagonal().array() += 1.0;
-  return residual.dot(spread.llt().solve(residual)) > limit;
+  return residual.dot(Cholesky(spread).solve(residual)) > limit;
 }
 
 /// A window that just came.

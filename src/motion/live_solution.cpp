@@ -3,10 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "factor_inverse.hpp"
 #include "live_motion_work.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
 
 namespace sac {
@@ -22,15 +21,15 @@ void LiveMotionWork::solve() {
   const Eigen::MatrixXd all = told(free_, free_);
   Eigen::VectorXd slope = balance_.gradient() + prior_information_ * (anchor_ - prior_.x);
   slope(orienting_) += orientation_.gradient();
-  const Eigen::LLT<Eigen::MatrixXd> factor(all);
+  const Cholesky factor(all);
   const Eigen::VectorXd slope_of_free = slope(free_);
   const Eigen::VectorXd step = factor.solve(slope_of_free);
-  if (factor.info() != Eigen::Success || !step.allFinite()) {
+  if (!factor.isPositive() || !step.allFinite()) {
     return;
   }
   x_ = anchor_;
   x_(free_) -= step;
-  tell(inverseOfSquare(factor.matrixLLT()));
+  tell(inverseOfSquare(factor.lower()));
 }
 
 double LiveMotionWork::squares() const {

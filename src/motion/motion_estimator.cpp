@@ -5,13 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "current_steps.hpp"
 #include "motion_outliers.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
@@ -178,9 +177,8 @@ void Estimator::findCovariance() {
   const auto count = static_cast<Eigen::Index>(estimated.size());
   const Eigen::MatrixXd information = sums.information();
   const Eigen::MatrixXd all = information + prior;
-  const Eigen::MatrixXd inverse = Eigen::MatrixXd(all(estimated, estimated))
-                                      .ldlt()
-                                      .solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd inverse =
+      solveSemidefinite(all(estimated, estimated), Eigen::MatrixXd::Identity(count, count));
   const double windows = std::pow(result_.estimate.covariance_scale, 2);
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
   const Eigen::MatrixXd all_noise =

@@ -6,9 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "delay_search.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
@@ -76,7 +75,7 @@ Eigen::MatrixXd MotionDescent::priorInformation() const {
     if (is_fine_) {
       covariance += apart * apart.transpose();
     }
-    information += D * covariance.ldlt().solve(D.transpose());
+    information += D * solveSemidefinite(covariance, D.transpose());
   }
   return information;
 }
@@ -144,7 +143,7 @@ Eigen::VectorXd MotionDescent::step(double damping_of_all) {
       sums_.gradient() + pull() + damping.cwiseProduct(x_ - linearized_at_);
   const Eigen::VectorXd gradient = slope(estimated_);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(x_.size());
-  result(estimated_) = -information.ldlt().solve(gradient);
+  result(estimated_) = -solveSemidefinite(information, gradient);
   return result;
 }
 

@@ -7,8 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 
 namespace sac {
@@ -100,9 +99,7 @@ void addAll(const InformationSum& other, InformationSum& sum) {
 }  // namespace
 
 Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance) {
-  const Eigen::MatrixXd lower = covariance.llt().matrixL();
-  return lower.triangularView<Eigen::Lower>().solve(
-      Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  return Cholesky(covariance).half(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
 std::size_t noiseStride(std::size_t windows) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 namespace {
@@ -23,13 +23,12 @@ double unlikelihood(const std::vector<Evidence>& evidence,
                     double share) {
   double sum = 0.0;
   for (const Evidence& one : evidence) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(factors.joints * one.by_joints +
-                                             factors.currents * one.by_currents);
-    if (factor.info() != Eigen::Success) {
+    const Cholesky factor(factors.joints * one.by_joints + factors.currents * one.by_currents);
+    if (!factor.isPositive()) {
       return std::numeric_limits<double>::infinity();
     }
-    const double logarithm = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-    sum += logarithm + factor.matrixL().solve(one.residual).squaredNorm() / share;
+    const double logarithm = 2.0 * factor.lower().diagonal().array().log().sum();
+    sum += logarithm + factor.half(one.residual).squaredNorm() / share;
   }
   return sum;
 }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
 
 namespace sac {
@@ -29,8 +28,8 @@ std::vector<TorqueEvidence> sumsBefore(const MotionTerms& terms) {
 double explained(const TorqueEvidence& before, const TorqueEvidence& until) {
   const Eigen::Matrix3d information = until.information - before.information;
   const Eigen::Vector3d gradient = until.gradient - before.gradient;
-  const Eigen::LLT<Eigen::Matrix3d> factor(information);
-  return factor.info() == Eigen::Success ? gradient.dot(factor.solve(gradient)) : 0.0;
+  const Cholesky3 factor(information);
+  return factor.isPositive() ? gradient.dot(factor.solve(gradient)) : 0.0;
 }
 
 /// Mean square of the residuals of what serves, where it is above that of noise.

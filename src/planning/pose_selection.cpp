@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 
 namespace sac {
@@ -39,23 +38,21 @@ class Update {
 
   /// ln of the factor by which det N grows with this observation, in halves.
   double information(std::size_t observation) const {
-    const Eigen::LLT<Eigen::Matrix3d> factor(items_[observation].innovation);
-    return factor.matrixLLT().diagonal().array().log().sum();
+    return Cholesky3(items_[observation].innovation).lower().diagonal().array().log().sum();
   }
 
   /// How much this observation lowers the weighted sum of variances.
   double reduction(std::size_t observation, const Eigen::VectorXd& weights) const {
     const Item& item = items_[observation];
     const Eigen::Matrix3d weighted = item.effect.transpose() * (weights.asDiagonal() * item.effect);
-    return Eigen::LLT<Eigen::Matrix3d>(item.innovation).solve(weighted).trace();
+    return Cholesky3(item.innovation).solve(weighted).trace();
   }
 
   /// Takes this observation: the variances and what the others would add change.
   void take(std::size_t observation) {
     Item& taken = items_[observation];
-    const Eigen::LLT<Eigen::Matrix3d> factor(taken.innovation);
     const Eigen::Matrix3d inverse_root =
-        factor.matrixL().solve(Eigen::Matrix3d::Identity()).transpose();
+        Cholesky3(taken.innovation).half(Eigen::Matrix3d::Identity()).transpose();
     const Factor gain = taken.effect * inverse_root;
     variances_ -= gain.rowwise().squaredNorm();
     taken.is_taken = true;
@@ -106,7 +103,7 @@ Eigen::VectorXd steepWeights(const Eigen::VectorXd& variances) {
 /// factor on the volume of the uncertainty: more is better.
 double meritOf(const Eigen::MatrixXd& covariance, PlanCriterion criterion) {
   if (criterion == PlanCriterion::kInformation) {
-    return -covariance.llt().matrixLLT().diagonal().array().log().sum();
+    return -Cholesky(covariance).lower().diagonal().array().log().sum();
   }
   return -0.5 * std::log(steepNorm(covariance.diagonal()));
 }

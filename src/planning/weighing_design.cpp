@@ -6,11 +6,10 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "coil_visits.hpp"
 #include "pattern_bound.hpp"
 #include "pattern_search.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 namespace {
@@ -18,7 +17,7 @@ namespace {
 /// Exponents of the norm of variances, in turn: the first ones lead away from plans that are good
 /// for the worst parameter alone.
 constexpr double kExponents[] = {8.0, 24.0, 72.0};
-constexpr int kMostPasses = 6;
+constexpr int kMostPassesOfWeighing = 6;
 /// Exchanges that gain less, of the logarithm of a standard deviation, are rounding or not worth
 /// it.
 constexpr double kLeastImprovement = 1e-5;
@@ -29,8 +28,7 @@ constexpr std::size_t kPromising = 8;
 void observe(const WhitenedObservation& observation, double way, Eigen::MatrixXd& covariance) {
   const Eigen::Matrix<double, Eigen::Dynamic, 3> effect = observation.timesTransposed(covariance);
   const Eigen::Matrix3d innovation = Eigen::Matrix3d::Identity() + way * observation.times(effect);
-  const Eigen::Matrix3d root =
-      innovation.llt().matrixL().solve(Eigen::Matrix3d::Identity()).transpose();
+  const Eigen::Matrix3d root = Cholesky3(innovation).half(Eigen::Matrix3d::Identity()).transpose();
   const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = effect * root;
   covariance.noalias() -= way * gain * gain.transpose();
 }
@@ -71,9 +69,9 @@ void WeighingDesign::choosePatterns() {
 void WeighingDesign::exchange() {
   for (const double exponent : kExponents) {
     exponent_ = exponent;
-    for (int pass = 0; pass < kMostPasses && !isTimeUp(); ++pass) {
+    for (int pass = 0; pass < kMostPassesOfWeighing && !isTimeUp(); ++pass) {
       bool has_changed = false;
-      for (int inner = 0; inner < kMostPasses && exchangePatterns(); ++inner) {
+      for (int inner = 0; inner < kMostPassesOfWeighing && exchangePatterns(); ++inner) {
         has_changed = true;
       }
       has_changed = exchangePoses() || has_changed;
@@ -82,7 +80,7 @@ void WeighingDesign::exchange() {
       }
     }
   }
-  for (int pass = 0; pass < kMostPasses && exchangePatterns(); ++pass) {
+  for (int pass = 0; pass < kMostPassesOfWeighing && exchangePatterns(); ++pass) {
   }
   spreadCoils();
 }

@@ -5,10 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
@@ -215,7 +214,7 @@ void addTest(const std::vector<Moment>& moments,
     noise += kStep * (joint_variance * by_joints * by_joints.transpose() +
                       current_variance * value * value * moment.current_torque);
   }
-  information += weight * G.transpose() * noise.llt().solve(G);
+  information += weight * G.transpose() * Cholesky3(noise).solve(G);
 }
 
 }  // namespace
@@ -261,8 +260,7 @@ Eigen::VectorXd expectedStddevs(const CalibrationModel& model,
       addTest(moments, tests, test, sensors, every, information);
     }
   }
-  const Eigen::MatrixXd covariance =
-      information.llt().solve(Eigen::MatrixXd::Identity(size + kNuisances, size + kNuisances));
+  const Eigen::MatrixXd covariance = Cholesky(information).inverse();
   return covariance.diagonal().head(size).cwiseSqrt();
 }
 

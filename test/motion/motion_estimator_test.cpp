@@ -372,7 +372,7 @@ TEST(MotionEstimator, WithoutATrackerLeavesTheTurnOfTheStatorOpen) {
     options.unobservable_stddev = limit;
     const Estimate found = estimated(model, recording, {}, options).estimate;
     ASSERT_EQ(found.termination, Termination::kConverged) << limit;
-    EXPECT_LE(found.iterations, 20) << limit;
+    EXPECT_LE(found.iterations, 30) << limit;  // rounding decides between 12 and 24
     EXPECT_GT(found.open_directions.cols(), 0) << limit;
     // They may be left anywhere, and say so.
     for (Eigen::Index k = 0; k < found.open_directions.cols(); ++k) {

@@ -3,8 +3,9 @@
 #include <array>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -53,9 +54,9 @@ class OrientationMap {
   Eigen::VectorXd kernel(const Eigen::Vector3d& reading) const;
 
   OrientationMapDescription description_;
-  Eigen::Matrix3Xd readings_;                          ///< of the support points, as columns
-  Eigen::MatrixX3d weights_;                           ///< of the kernel, a column per component
-  std::array<Eigen::LLT<Eigen::MatrixXd>, 3> factor_;  ///< of K + (noise/amplitude)² I
+  Eigen::Matrix3Xd readings_;       ///< of the support points, as columns
+  Eigen::MatrixX3d weights_;        ///< of the kernel, a column per component
+  std::array<Cholesky, 3> factor_;  ///< of K + (noise/amplitude)² I
 };
 
 /// exp(−½ Σ (2 sin(Δq_k/2) / length_k)²) of two readings: periodic in each joint.

@@ -2,8 +2,9 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 
@@ -20,7 +21,7 @@ class InformationFactor {
   InformationFactor(const Eigen::MatrixXd& information, const Eigen::VectorXd& more);
 
   /// False: the matrix is not positive definite, and there is no factor.
-  bool isPositive() const { return is_positive_; }
+  bool isPositive() const { return rest_.isPositive(); }
   /// False: the matrix was factorised as a whole.
   bool hasIslands() const { return !islands_.empty(); }
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
@@ -45,8 +46,7 @@ class InformationFactor {
   std::vector<Eigen::Index> border_;
   std::vector<Island> islands_;
   std::vector<int> state_;  ///< per coordinate, while islands are found
-  Eigen::LLT<Eigen::MatrixXd> rest_;
-  bool is_positive_ = false;
+  Cholesky rest_;
 };
 
 }  // namespace sac
