@@ -34,12 +34,12 @@ function(use_precompiled_headers target)
   endif()
 endfunction()
 
-option(SOURCES_IN_BATCHES "Compile ten sources of a room together, in two thirds of the time" ON)
+option(SOURCES_IN_BATCHES "Compile twenty sources of a room together, in half the time" ON)
 
 # One shared library, whose rooms add their sources: sac_<part>, and sac::<part> for those who link it.
 # add_library_of_rooms(<name> [ROS] [EXPORTED] [USES libraries...])
 # ROS: with ROS headers and generated messages, as system headers: their warnings are not ours.
-# Ten sources of a room are compiled as one (SOURCES_IN_BATCHES), so that what each keeps to itself, in a namespace
+# Twenty sources of a room are compiled as one (SOURCES_IN_BATCHES), so that what each keeps to itself, in a namespace
 # without a name, has a name of its own among them.
 # EXPORTED: other packages may link it, so that the headers of its rooms are installed (see export.cmake).
 function(add_library_of_rooms name)
@@ -115,12 +115,12 @@ function(add_room room)
   endif()
 endfunction()
 
-# Batches of ten: group_sources(<room> <library> <sources>...)
+# Batches of twenty: group_sources(<room> <library> <sources>...)
 function(group_sources room library)
   string(REPLACE "/" "_" name ${room})
   set(number 0)
   foreach(source IN LISTS ARGN)
-    math(EXPR batch "${number} / 10")
+    math(EXPR batch "${number} / 20")
     set_source_files_properties(${source} TARGET_DIRECTORY ${library} PROPERTIES UNITY_GROUP ${name}_${batch})
     math(EXPR number "${number} + 1")
   endforeach()

@@ -27,7 +27,7 @@ namespace {
 /// Logarithm of the odds against one mistake, before any sample: one laboratory in a thousand.
 constexpr double kMistakeCost = 6.907755278982137;
 /// Odds below it do not tell two hypotheses apart: about 50 to 1 [nats].
-constexpr double kTie = 4.0;
+constexpr double kTieOfMistakes = 4.0;
 constexpr int kMostRounds = 6;
 /// So much is gained by a better optimum as well [nats].
 constexpr double kDoubtful = 100.0;
@@ -261,17 +261,17 @@ class Diagnostician {
       return best_of_family;
     }
     // Continuous values that others lack take up errors of the tolerance as well.
-    const double needed = best->score() - kTie;
+    const double needed = best->score() - kTieOfMistakes;
     const Eigen::Index values = best->fit.values.size();
-    best_of_family.erase(std::remove_if(best_of_family.begin(),
-                                        best_of_family.end(),
-                                        [needed, values](const Judged& candidate) {
-                                          const auto fewer =
-                                              static_cast<double>(std::max<Eigen::Index>(
-                                                  0, values - candidate.fit.values.size()));
-                                          return candidate.score() < needed - kTie * fewer;
-                                        }),
-                         best_of_family.end());
+    best_of_family.erase(
+        std::remove_if(best_of_family.begin(),
+                       best_of_family.end(),
+                       [needed, values](const Judged& candidate) {
+                         const auto fewer = static_cast<double>(
+                             std::max<Eigen::Index>(0, values - candidate.fit.values.size()));
+                         return candidate.score() < needed - kTieOfMistakes * fewer;
+                       }),
+        best_of_family.end());
     return best_of_family;
   }
 

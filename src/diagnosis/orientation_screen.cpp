@@ -17,7 +17,6 @@ namespace {
 /// More than so many orientations tell nothing more to a screening.
 constexpr std::size_t kMostScreened = 30;
 constexpr std::size_t kMostFitted = 10;
-constexpr std::size_t kMostShifts = 3;
 
 /// Evenly chosen orientations, without torques.
 WiringCase orientationsOf(const WiringCase& described) {

@@ -22,7 +22,7 @@ namespace {
 /// Of a squared misfit: single gross errors, which nothing here explains, have little weight.
 constexpr double kMostCounted = 30.0;
 /// Odds below it do not tell two causes apart [nats].
-constexpr double kTie = 5.0;
+constexpr double kTieOfCauses = 5.0;
 constexpr double kValuesOfObservation = 3.0;
 /// Strengths of so many poles and coils are tried one by one.
 constexpr std::size_t kMostStrengths = 3;
@@ -215,11 +215,11 @@ class Explainer {
     for (std::size_t n = 0; n < found.size(); ++n) {
       best = n == 0 ? found[n].score() : std::max(best, found[n].score());
     }
-    found.erase(
-        std::remove_if(found.begin(),
-                       found.end(),
-                       [best](const Explanation& one) { return one.score() < best - kTie; }),
-        found.end());
+    found.erase(std::remove_if(
+                    found.begin(),
+                    found.end(),
+                    [best](const Explanation& one) { return one.score() < best - kTieOfCauses; }),
+                found.end());
     std::stable_sort(found.begin(), found.end(), [](const Explanation& a, const Explanation& b) {
       return a.probability() > b.probability();
     });

@@ -18,7 +18,6 @@ namespace sac {
 namespace {
 
 constexpr std::size_t kMostTurnsFitted = 8;
-constexpr std::size_t kMostShifts = 3;
 /// Gains below it come by chance and are not worth a fit [nats].
 constexpr double kLeastGain = 3.0;
 /// A strength this near to none counts as none, and a factor this near to 1 as 1.

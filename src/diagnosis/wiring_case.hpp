@@ -63,6 +63,9 @@ WiringCase corrected(const WiringCase& described,
 /// Factor on measured torques of all its parts.
 double torqueFactor(const Candidate& candidate, const Eigen::VectorXd& values);
 
+/// Of screened candidates of one family, shifts of an index: so many are worth a fit.
+inline constexpr std::size_t kMostShifts = 3;
+
 /// A candidate as promising as its screening tells.
 struct ScreenedCandidate {
   Candidate parts;

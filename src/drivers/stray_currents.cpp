@@ -10,7 +10,7 @@ namespace {
 constexpr double kLongestFlow = 0.3;
 constexpr double kMostStrays = 0.2;        // [s]
 constexpr double kForgivenStrays = 0.005;  // [s] in a second
-constexpr double kLongestBeat = 0.05;      // [s] that one measurement stands for
+constexpr double kLongestCounted = 0.05;   // [s] that one measurement stands for
 /// By which an amplifier may go beyond what is set, on its way there.
 constexpr double kOvershoot = 1.2;
 
@@ -40,7 +40,7 @@ void StrayCurrents::setting(const Eigen::VectorXd& setpoints) {
 std::optional<std::size_t> StrayCurrents::observe(const Eigen::VectorXd& measured, double steady) {
   began_at_ = last_ ? began_at_ : steady;
   const bool is_beginning = steady - began_at_ <= kLongestFlow;
-  const double elapsed = std::min(steady - last_.value_or(steady), kLongestBeat);
+  const double elapsed = std::min(steady - last_.value_or(steady), kLongestCounted);
   const bool is_span_over = steady - span_since_ > kLongestFlow;
   std::optional<std::size_t> stray;
   for (std::size_t k = 0; k < coils_.size(); ++k) {

@@ -30,7 +30,7 @@ QRgb colorOf(const CoverageBar& bar) {
 }
 
 /// The number of "coil_7", or nothing.
-QString numberOf(const CoverageBar& bar) {
+QString labelOf(const CoverageBar& bar) {
   const std::size_t underline = bar.name.find_last_of('_');
   return underline == std::string::npos ? QString()
                                         : QString::fromStdString(bar.name.substr(underline + 1));
@@ -38,7 +38,7 @@ QString numberOf(const CoverageBar& bar) {
 
 int heightOf(const CoverageGroup& group) {
   const bool is_numbered = std::any_of(group.bars.begin(), group.bars.end(), [](const auto& bar) {
-    return !numberOf(bar).isEmpty();
+    return !labelOf(bar).isEmpty();
   });
   return kBarHeight + (is_numbered ? kNumberHeight : kSpacing);
 }
@@ -113,7 +113,7 @@ void CoverageBars::paintEvent(QPaintEvent* /*event*/) {
                             place.area.width() + 2.0 * kGap,
                             kNumberHeight - 2),
                      Qt::AlignTop | Qt::AlignHCenter,
-                     numberOf(*place.bar));
+                     labelOf(*place.bar));
   }
 }
 

@@ -6,7 +6,7 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kStreams = 4;
+constexpr std::size_t kStreamCount = 4;
 
 const char* colorOf(HealthLine::Level level) {
   switch (level) {
@@ -32,7 +32,7 @@ QString dotted(const HealthLine& line) {
 HealthView::HealthView() : trouble_(new QLabel) {
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
-  for (std::size_t n = 0; n < kStreams; ++n) {
+  for (std::size_t n = 0; n < kStreamCount; ++n) {
     streams_.push_back(new QLabel);
     grid->addWidget(streams_.back(), static_cast<int>(n / 2), static_cast<int>(n % 2));
   }

@@ -29,7 +29,7 @@
 namespace sac {
 namespace {
 
-constexpr char kNotRead[] = "the earlier session cannot be read";
+constexpr char kEarlierNotRead[] = "the earlier session cannot be read";
 
 /// No session has more; comparing each sample with each pose would take minutes.
 constexpr std::size_t kMostPoses = 10'000;
@@ -39,7 +39,7 @@ void copy(const std::string& path, SQLite::Database& memory) {
   constexpr int kBusyTimeoutMilliseconds = 2000;
   try {
     SQLite::Database file(path, SQLite::OPEN_READONLY, kBusyTimeoutMilliseconds);
-    requireFilesBeside(path, sqlite3_db_filename(file.getHandle(), "main"), kNotRead);
+    requireFilesBeside(path, sqlite3_db_filename(file.getHandle(), "main"), kEarlierNotRead);
     SQLite::Backup(memory, file).executeStep();
   } catch (const SQLite::Exception& error) {
     if (error.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK) {
@@ -47,7 +47,7 @@ void copy(const std::string& path, SQLite::Database& memory) {
                       ": its node was ended while it stored something; start it once, which puts "
                       "the file in order.");
     }
-    throwStorageError(path, kNotRead, error);
+    throwStorageError(path, kEarlierNotRead, error);
   }
 }
 
@@ -59,7 +59,7 @@ void requireSession(SQLite::Database& database, const std::string& path) {
     }
     upgradeSessionSchema(database);
   } catch (const SQLite::Exception& error) {
-    throwStorageError(path, kNotRead, error);
+    throwStorageError(path, kEarlierNotRead, error);
   }
 }
 
@@ -164,7 +164,7 @@ EarlierSession loadEarlierSession(const std::string& path,
     requireUnit(memory, actuator);
     return sessionOf(sample_table::inUse(memory), actuator, current_threshold);
   } catch (const SQLite::Exception& error) {
-    throwStorageError(path, kNotRead, error);
+    throwStorageError(path, kEarlierNotRead, error);
   } catch (const RowDefect& defect) {
     throwDamaged(path, defect.what());
   } catch (const DataError& error) {

@@ -4,7 +4,7 @@ namespace sac {
 namespace {
 
 /// The bytes that a length at `offset` says, after it. Advances the offset.
-std::string_view counted(std::string_view bytes, std::size_t& offset) {
+std::string_view lengthPrefixed(std::string_view bytes, std::size_t& offset) {
   if (offset > bytes.size() || bytes.size() - offset < kLengthSize) {
     throw BagDefect("a record is cut");
   }
@@ -23,7 +23,7 @@ std::string_view counted(std::string_view bytes, std::size_t& offset) {
 BagFields::BagFields(std::string_view bytes) {
   std::size_t offset = 0;
   while (offset < bytes.size()) {
-    const std::string_view field = counted(bytes, offset);
+    const std::string_view field = lengthPrefixed(bytes, offset);
     const std::size_t sign = field.find('=');
     if (sign == std::string_view::npos) {
       throw BagDefect("a field of a record has no name");
@@ -56,8 +56,8 @@ void BagFields::requireOp(BagOp op) const {
 }
 
 std::string_view MessageRecords::messageAt(std::string_view chunk, std::size_t offset) {
-  const std::string_view header = counted(chunk, offset);
-  const std::string_view message = counted(chunk, offset);
+  const std::string_view header = lengthPrefixed(chunk, offset);
+  const std::string_view message = lengthPrefixed(chunk, offset);
   if (!isAsBefore(header)) {
     verify(header);
   }
