@@ -48,7 +48,7 @@ void CoilLook::build() {
   coil_->setRange(1, 1);
   coil_->setPrefix("coil ");
   row->addWidget(coil_);
-  current_ = spinBox(-kLargestCurrent, kLargestCurrent, 2.0, "A");
+  current_ = spinBox(-kLargestCurrent, kLargestCurrent, kOfferedCurrent, "A");
   row->addWidget(current_);
   duration_ = spinBox(kShortestExcitation, msg::ExciteGoal::LONGEST_DURATION, kExcitation, "s");
   row->addWidget(duration_);

@@ -101,7 +101,7 @@ void HandGuide::build() {
   current_->setRange(-kLargestCurrent, kLargestCurrent);
   current_->setSingleStep(0.5);
   current_->setDecimals(1);
-  current_->setValue(2.0);
+  current_->setValue(kOfferedCurrent);
   current_->setSuffix(" A");
   row->addWidget(current_);
   layout->addLayout(row);

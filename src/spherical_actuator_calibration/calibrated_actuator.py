@@ -17,6 +17,7 @@ import typing
 from .programs import program as program_path
 
 PROGRAM = "actuator_model"
+COIL_CURRENT = 2.5  # [A] at most through one coil, where nobody states another
 PATIENCE = 2.0  # [s] for it to end by itself
 
 
@@ -117,7 +118,7 @@ class CalibratedActuator:
         values = [float(number) for number in self._ask("torque", joints, currents)]
         return Torque(values[:3], values[3])
 
-    def currents(self, torque, joints, limit=2.5):
+    def currents(self, torque, joints, limit=COIL_CURRENT):
         """Of least power for a torque [N m, rotor frame], none beyond `limit` [A]."""
         outcome, *numbers = self._ask("currents", torque, joints, [limit])
         values = [float(number) for number in numbers]

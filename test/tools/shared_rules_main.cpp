@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -208,6 +209,8 @@ void tellDefaults() {
   tell("default", static_cast<double>(defaults.max_poses), std::string("poses"));
   tell("default", defaults.current, std::string("current"));
   tell("default", defaults.total_current, std::string("total_current"));
+  tell("usual_current", kUsualCoilCurrent, std::string("coil"));
+  tell("usual_current", kUsualTotalCurrent, std::string("total"));
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ import unittest
 import numpy
 import yaml
 from spherical_actuator_calibration import rotor_readings
-from spherical_actuator_calibration.session_guide.options import Options
+from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
+from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
 from spherical_actuator_calibration.session_guide.progress import Pose, are_carried, excited_coils
 from spherical_actuator_calibration.session_tables import export
 from spherical_actuator_calibration.session_tables.history import ERROR_UNITS
@@ -91,6 +92,13 @@ class SharedRules(unittest.TestCase):
 
     def test_defaults(self):
         self.hold("default", lambda name: Options().excitation if name == "current" else getattr(Options(), name))
+
+    def test_usual_currents(self):
+        controller = yaml.safe_load((SOURCE / "config" / "orientation_controller.yaml").read_text())
+        for amplifier in ("coil_driver.yaml", "coil_driver_one_request.yaml"):
+            self.hold("usual_current", yaml.safe_load((SOURCE / "config" / amplifier).read_text())["limits"].get)
+        self.hold("usual_current", {"coil": controller["current_limit"], "total": controller["total_current_limit"]}.get)
+        self.hold("usual_current", {"coil": COIL_CURRENT, "total": TOTAL_CURRENT}.get)
 
 
 if __name__ == "__main__":

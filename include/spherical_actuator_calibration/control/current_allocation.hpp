@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
+
 namespace sac {
 
 /// How a torque is shared among coils.
 struct AllocationOptions {
-  double current_limit = 2.5;  ///< of each coil [A], > 0
+  double current_limit = kUsualCoilCurrent;  ///< of each coil [A], > 0
   /// Smallest singular value of Q at which a torque is still made [N·m/A]: below it currents would
   /// be large and their torque uncertain.
   double least_singular_value = 0.05;

@@ -2,13 +2,15 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
+
 namespace sac {
 
 /// What currents must never exceed.
 struct CurrentBounds {
-  double coil = 2.5;    ///< of each coil [A]
-  double total = 8.0;   ///< Σ|I| [A]
-  double square = 8.0;  ///< ΣI² [A²]
+  double coil = kUsualCoilCurrent;      ///< of each coil [A]
+  double total = kUsualTotalCurrent;    ///< Σ|I| [A]
+  double square = kUsualSquareCurrent;  ///< ΣI² [A²]
 };
 
 /// The part of `currents` that makes no torque by the model: I − Qᵀ(QQᵀ)⁻¹QI, with Q the torque per

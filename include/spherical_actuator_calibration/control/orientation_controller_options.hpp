@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 #include "spherical_actuator_calibration/control/computed_torque_control.hpp"
 #include "spherical_actuator_calibration/control/current_allocation.hpp"
 #include "spherical_actuator_calibration/control/disturbance_observer.hpp"
@@ -25,7 +26,8 @@ struct OrientationControllerOptions {
   /// Between reference and rotor [rad]; beyond it something holds or pushes the rotor, or a sensor
   /// stands still.
   double largest_tracking_error = 0.4;
-  double total_current_limit = 8.0;  ///< of the sum over all coils, as the driver's [A]
+  double total_current_limit =
+      kUsualTotalCurrent;  ///< of the sum over all coils, as the driver's [A]
   /// ΣI² [A²]: power of the coils per ohm of each.
   double square_current_limit = std::numeric_limits<double>::infinity();
 };

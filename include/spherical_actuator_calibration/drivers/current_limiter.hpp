@@ -5,12 +5,14 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
+
 namespace sac {
 
 /// What coils, wires and supply bear.
 struct CurrentLimits {
-  double coil = 2.5;    ///< largest |current| of one coil [A]
-  double total = 8.0;   ///< largest sum of all |currents| [A]
+  double coil = kUsualCoilCurrent;    ///< largest |current| of one coil [A]
+  double total = kUsualTotalCurrent;  ///< largest sum of all |currents| [A]
   double slew = 100.0;  ///< largest change of a coil's current [A/s]; a stop is not slowed by it
 };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 
 namespace sac {
 
@@ -36,9 +37,9 @@ struct MotionLimits {
   /// Angle between rotor and reference [rad]: a share of it fades the excitation, all of it stops
   /// the motion. Tilt and error together lie within the workspace.
   double error = 0.25;
-  double coil_current = 2.5;    ///< of each coil [A]
-  double total_current = 8.0;   ///< Σ|I| [A]
-  double square_current = 8.0;  ///< ΣI² [A²]: power of the coils per ohm of each
+  double coil_current = kUsualCoilCurrent;      ///< of each coil [A]
+  double total_current = kUsualTotalCurrent;    ///< Σ|I| [A]
+  double square_current = kUsualSquareCurrent;  ///< ΣI² [A²]: power of the coils per ohm of each
 };
 
 /// A motion that excites what calibration identifies: a smooth reference for the three joints, and

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 
 namespace sac {
 
@@ -24,15 +25,15 @@ struct SessionPlan {
 
 /// How a session after the paper's protocol is laid out.
 struct SessionPlanOptions {
-  std::size_t joint_poses = 10;      ///< orientation only, for level 1
-  std::size_t main_coil = 0;         ///< the coil of situation 1, counted from 0
-  std::size_t main_coil_poses = 30;  ///< with the main coil excited (situation 1)
-  std::size_t coil_poses = 4;        ///< with each other coil excited (situation 2)
-  std::size_t coils_per_dwell = 4;   ///< most coils excited in turn at one pose of situation 2
-  std::size_t validation_poses = 5;  ///< at the end, with several coils excited at once
-  double current = 2.0;              ///< of an excited coil [A]
-  double joint_tilt_share = 0.9;     ///< of the tilt limit, used by joint and validation poses
-  double torque_tilt_share = 0.5;    ///< of the tilt limit, used by torque poses
+  std::size_t joint_poses = 10;       ///< orientation only, for level 1
+  std::size_t main_coil = 0;          ///< the coil of situation 1, counted from 0
+  std::size_t main_coil_poses = 30;   ///< with the main coil excited (situation 1)
+  std::size_t coil_poses = 4;         ///< with each other coil excited (situation 2)
+  std::size_t coils_per_dwell = 4;    ///< most coils excited in turn at one pose of situation 2
+  std::size_t validation_poses = 5;   ///< at the end, with several coils excited at once
+  double current = kUsualExcitation;  ///< of an excited coil [A]
+  double joint_tilt_share = 0.9;      ///< of the tilt limit, used by joint and validation poses
+  double torque_tilt_share = 0.5;     ///< of the tilt limit, used by torque poses
 };
 
 /// Throws ConfigError that names the option, its value and the allowed range for this actuator.

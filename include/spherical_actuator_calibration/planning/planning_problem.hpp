@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_request.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
@@ -45,10 +46,10 @@ struct PosePlanOptions {
   double wanted_stddev = 0.0;
   std::size_t coils_per_pose = 6;  ///< torques measured at one pose, at most; kRefine only
   PlanPatterns patterns = PlanPatterns::kSingle;
-  double current = 2.0;  ///< of an excited coil [A]
+  double current = kUsualExcitation;  ///< of an excited coil [A]
   /// Sum of all |currents| of a pattern, at most [A]: as the shipped amplifier's limit. So many
   /// coils as it allows are excited at once; only for kWeighing.
-  double total_current = 8.0;
+  double total_current = kUsualTotalCurrent;
   /// The orientation is measured at every pose. For kRefine only: the joint cycle always measures
   /// it, poles and coils never use it.
   bool tracker_on = true;

@@ -8,6 +8,7 @@ from spherical_actuator_calibration.command_line import parser
 
 FIXTURE_SETTLING = 0.3  # [s] at rest before a capture
 CURRENT = 2.0  # [A] of an excited coil where nobody states one
+TOTAL_CURRENT = 8.0  # [A] of the sum of all |currents| of a pattern, likewise
 HAND_SETTLING = 3.0  # [s] a hand has to clamp the rotor
 
 
@@ -30,7 +31,7 @@ class Options:
     coils_per_validation_pose: int = 2
     current: typing.Optional[float] = None  # None: that of the plan, or CURRENT
     patterns: str = "single"  # several coils at once do not tell which of them is wired wrongly
-    total_current: float = 8.0
+    total_current: float = TOTAL_CURRENT
     dwell: float = 0.5
     settling: typing.Optional[float] = None  # None: as long as what turns the rotor needs
     current_timeout: float = 120.0
