@@ -78,6 +78,7 @@ UsualOutliers usualOutliers(const std::vector<CycleReport>& reports) {
 
 HeldOutValidation validationOf(const HeldOutMotion& motion) {
   HeldOutValidation result;
+  result.is_of_windows = true;
   result.samples = motion.windows;
   result.torques = motion.windows;
   result.torque_rms = motion.torque_rms;
@@ -107,7 +108,8 @@ std::string verdict(const HeldOutValidation& validation) {
   if (!validation.hasVerdict()) {
     return "No held-out sample can judge: capture some poses with validation set.";
   }
-  std::string text = format("%zu held-out samples:", validation.samples);
+  std::string text = format(
+      "%zu held-out %s:", validation.samples, validation.is_of_windows ? "windows" : "samples");
   if (validation.orientations > 0) {
     text += format(" orientation rms %.3g mrad,", 1e3 * validation.orientation_rms);
   }

@@ -184,6 +184,8 @@ TEST_F(MotionThenSamples, AreJudgedByTheWindowsHeldOut) {
   ASSERT_TRUE(both.run({Cycle::kMotion}).success);
   const std::optional<HeldOutValidation> of_motion = both.validation();
   ASSERT_TRUE(of_motion && of_motion->hasVerdict());
+  EXPECT_TRUE(of_motion->is_of_windows);
+  EXPECT_NE(verdict(*of_motion).find(" held-out windows:"), std::string::npos);
   ASSERT_TRUE(both.run({Cycle::kRefine}).success);
   const std::optional<HeldOutValidation> of_both = both.validation();
   ASSERT_TRUE(of_both && of_both->hasVerdict());
@@ -205,6 +207,7 @@ TEST_F(MotionThenSamples, AreJudgedByTheWorseOfWindowsAndSamples) {
   ASSERT_TRUE(of_motion && of_both);
   EXPECT_LT(of_both->probability, 1e-6);
   EXPECT_LT(of_both->probability, of_motion->probability);
+  EXPECT_FALSE(of_both->is_of_windows);
 }
 
 // Orientations alone: the poles stay those of the motion.

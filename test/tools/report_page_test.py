@@ -260,7 +260,7 @@ class ReportPage(unittest.TestCase):
         figures["verdict"] = {"grade": "failed", "sentence": "Nothing is calibrated."}
         page = self.render(figures, "failed")
         self.assertIn("Failed", page.text)
-        self.assertIn("No sample was held out", page.text)
+        self.assertIn("Nothing was held out", page.text)
         self.assertIn("failed", page.row("Joint")[0])
 
     def test_a_joint_alone_has_a_page(self):
@@ -322,6 +322,13 @@ class ReportPage(unittest.TestCase):
         pictures = [attrs["alt"] for attrs in page.of("img")]
         told = "Mean residual torque of each of 12 windows over time: at most 1 mN·m among those used, 2 left out."
         self.assertIn(told, pictures)
+
+    def test_tells_windows_that_were_held_out_from_samples(self):
+        self.assertIn("Samples held out", self.page.text)
+        validation = dict(self.figures["validation"], of="windows")
+        page = self.render(dict(self.figures, validation=validation), "windows")
+        self.assertIn("Windows held out", page.text)
+        self.assertNotIn("Samples held out", page.text)
 
     def test_refuses_what_is_no_report(self):
         page = os.path.join(self.folder.name, "none.html")

@@ -36,7 +36,8 @@ inline constexpr std::size_t kJudgedOfAGroup = 24;
 
 /// How samples that no estimate has used agree with the parameters.
 struct HeldOutValidation {
-  std::size_t samples = 0;  ///< held out; the rest is meaningless when there are none
+  bool is_of_windows = false;  ///< of a motion: validationOf()
+  std::size_t samples = 0;     ///< held out; the rest is meaningless when there are none
   std::size_t orientations = 0;
   double orientation_rms = 0.0;  ///< root mean square norm of the rotation error [rad]
   std::size_t torques = 0;

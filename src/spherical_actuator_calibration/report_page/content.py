@@ -280,11 +280,11 @@ class Report:
     # ---- validation ----------------------------------------------------------------------------------
 
     def validation(self):
-        """Numbers of the held-out samples; None where there are none."""
+        """Numbers of what is held out; None where nothing is."""
         validation = self._report.get("validation")
         if not validation or not validation["residuals"]:
             return None
-        rows = [("Samples held out", validation["samples"])]
+        rows = [(f"{validation.get('of', 'samples').capitalize()} held out", validation["samples"])]
         if validation["orientations"]:
             text = f"{with_unit(validation['orientation_rms'], 'rad')} rms of {validation['orientations']}"
             rows.append(("Orientation error", text))
@@ -295,15 +295,10 @@ class Report:
         probability = significant(validation["probability"], 2)
         rows.append(("Reduced χ²", f"{chi_square} (1 on average)"))
         rows.append(("Probability of a worse χ²", probability))
-        return {
-            "rows": rows,
-            "verdict": validation["verdict"],
-            "chi_square": chi_square,
-            "probability": probability,
-        }
+        return {"rows": rows, "verdict": validation["verdict"], "chi_square": chi_square, "probability": probability}
 
     def validation_figures(self):
-        return [figures.held_out(self._report["validation"]["residuals"])]
+        return [figures.held_out(self._report["validation"])]
 
     def _joints(self):
         """Names and ranges of the joints; of the turns about the stator's axes where there are none."""

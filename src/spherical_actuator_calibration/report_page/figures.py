@@ -189,9 +189,10 @@ def residuals_by_joint(quantity, residuals, positions, joints):
     return figure
 
 
-def held_out(residuals):
+def held_out(validation):
     """Standardised residuals of what no estimate has seen."""
-    with Figure("held_out", "Held-out samples, standardised") as figure:
+    residuals, what = validation["residuals"], validation.get("of", "samples")
+    with Figure("held_out", f"Held-out {what}, standardised") as figure:
         axes = figure.axes
         for quantity, marker in (("orientation", "o"), ("torque", "s")):
             chosen = [item for item in residuals if item["quantity"] == quantity]
@@ -207,7 +208,7 @@ def held_out(residuals):
         _usual_line(axes)
         _logarithmic_if_wide(axes, [item["standardized"] for item in residuals])
         _whole_numbers(axes.xaxis)
-        axes.set_xlabel("sample")
+        axes.set_xlabel(what.rstrip("s"))
         axes.set_ylabel("residual / uncertainty")
         axes.legend(loc="best", ncol=2)
         largest = max(item["standardized"] for item in residuals)
