@@ -34,7 +34,7 @@ function(use_precompiled_headers target)
   endif()
 endfunction()
 
-option(SOURCES_IN_BATCHES "Compile twenty sources of a room together, in half the time" ON)
+option(SOURCES_IN_BATCHES "Compile twenty sources of a room together, in less than two thirds of the time" ON)
 
 # One shared library, whose rooms add their sources: sac_<part>, and sac::<part> for those who link it.
 # add_library_of_rooms(<name> [ROS] [EXPORTED] [USES libraries...])
