@@ -12,7 +12,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/mending_cycle.hpp"
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
@@ -279,20 +279,22 @@ class CalibrationGrader::Examiner {
           return "Do not use this calibration: " + refused_->message;
         }
         return "Do not use this calibration yet: " + identified() + ", but the " +
-               (validation_->probability < kLeastProbability ? "" : "newest ") +
-               "held-out samples contradict them" + contradicting() + ".";
+               (validation_->probability < kLeastProbability ? "" : "newest ") + heldOut() +
+               " contradict them" + contradicting() + ".";
       case Grade::kNotValidated:
         return "The calibration is not validated: " + identified() + shortcoming_ + unjudged() +
                expected_errors_;
       case Grade::kUsable:
         return "The calibration can be used as far as it goes: " + identified() + undecided() +
-               shortcoming_ + "; held-out samples agree" + outliers() + "." + expected_errors_;
+               shortcoming_ + "; " + heldOut() + " agree" + outliers() + "." + expected_errors_;
       case Grade::kGood:
         break;
     }
-    return "The calibration is good to use: " + identified() + ", and held-out samples agree" +
+    return "The calibration is good to use: " + identified() + ", and " + heldOut() + " agree" +
            outliers() + "." + expected_errors_;
   }
+
+  std::string heldOut() const { return std::string("held-out ") + validation_->things(); }
 
   std::string contradicting() const {
     const std::vector<HeldOutGroup> groups = validation_->contradicting();

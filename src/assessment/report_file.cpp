@@ -166,7 +166,7 @@ void writeCycle(YamlWriter& writer, const CycleReport& report, bool has_joints) 
 
 void writeValidation(YamlWriter& writer, const HeldOutValidation& validation) {
   writer.map(1, "validation");
-  writer.entry(2, "of", validation.is_of_windows ? "windows" : "samples");
+  writer.entry(2, "of", validation.things());
   writer.entry(2, "samples", std::to_string(validation.samples));
   writer.entry(2, "orientations", std::to_string(validation.orientations));
   writer.entry(2, "orientation_rms", yamlNumber(validation.orientation_rms));

@@ -108,8 +108,7 @@ std::string verdict(const HeldOutValidation& validation) {
   if (!validation.hasVerdict()) {
     return "No held-out sample can judge: capture some poses with validation set.";
   }
-  std::string text = format(
-      "%zu held-out %s:", validation.samples, validation.is_of_windows ? "windows" : "samples");
+  std::string text = format("%zu held-out %s:", validation.samples, validation.things());
   if (validation.orientations > 0) {
     text += format(" orientation rms %.3g mrad,", 1e3 * validation.orientation_rms);
   }

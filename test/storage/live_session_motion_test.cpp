@@ -66,7 +66,7 @@ TEST_F(LiveSessionMotionTest, JudgesAMotionAfterARestartAsBefore) {
     ASSERT_TRUE(report.success) << report.message;
     before = session.grade();
     windows = report.residuals.size();
-    ASSERT_NE(before.reason.find("held-out samples agree"), std::string::npos) << before.reason;
+    ASSERT_NE(before.reason.find("held-out windows agree"), std::string::npos) << before.reason;
   }
   const LiveSession session = open();
   EXPECT_EQ(session.lastReport()->residuals.size(), windows);

@@ -66,6 +66,8 @@ struct HeldOutValidation {
   /// One per observation; `standardized` with its own covariance.
   std::vector<SampleResidual> residuals;
 
+  /// What was held out, in the plural: "samples", or "windows" of a motion.
+  const char* things() const { return is_of_windows ? "windows" : "samples"; }
   /// Whether any observation took part in the test.
   bool hasVerdict() const { return residuals.size() > unjudged_torques; }
   /// Largest probability at which one of the groups contradicts, so that all of them together
