@@ -187,7 +187,6 @@ class HeldOutJudge::Judgement {
 
   /// Lists a held-out observation with its own misfit.
   void look(const Observation& observation, bool is_repeated) {
-    constexpr double kNoNoise = 1e-3;  // standardised: of a simulation, which honestly repeats
     const Sample& sample = (*problem_.samples)[observation.sample];
     problem_.observations = {observation};
     const ObservationEvaluator evaluator(problem_, options_, tracker_);

@@ -216,7 +216,6 @@ std::vector<Observation> withoutRepeated(const std::vector<Observation>& observa
 bool areWithoutNoise(const std::vector<Observation>& observations,
                      const std::vector<RepeatedObservation>& repeated,
                      const Estimate& estimate) {
-  constexpr double kNoNoise = 1e-3;  // of the stated one
   return std::all_of(repeated.begin(), repeated.end(), [&](const RepeatedObservation& one) {
     const Quantity quantity = observations[one.place].quantity;
     return std::all_of(estimate.residuals.begin(),

@@ -47,6 +47,9 @@ class RepeatSearch {
 std::vector<Observation> withoutRepeated(const std::vector<Observation>& observations,
                                          const std::vector<RepeatedObservation>& repeated);
 
+/// Standardized residuals below this have no noise, as in a simulation, which honestly repeats.
+inline constexpr double kNoNoise = 1e-3;
+
 /// Whether the residuals of the streams that repeat have no noise, as in a simulation: there equal
 /// measurements are honest.
 bool areWithoutNoise(const std::vector<Observation>& observations,
