@@ -15,7 +15,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 #include <tinyxml2.h>
 

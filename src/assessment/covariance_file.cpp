@@ -2,11 +2,9 @@
 
 #include <vector>
 
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
-
 #include "spherical_actuator_calibration/assessment/reported_covariance.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "uncertainty_budget.hpp"
 
 namespace sac {
@@ -56,10 +54,9 @@ double coverageFactor(const CalibrationSession& session) {
   constexpr double kWidened = 1.0;
   const CycleReport* last = lastSuccess(session);
   if (last == nullptr || last->degrees_of_freedom <= 0 || last->reduced_chi_square <= kWidened) {
-    return boost::math::quantile(boost::math::normal_distribution<double>(), kUpper);
+    return normalQuantile(kUpper);
   }
-  const boost::math::students_t_distribution<double> student(last->degrees_of_freedom);
-  return boost::math::quantile(student, kUpper);
+  return studentQuantile(last->degrees_of_freedom, kUpper);
 }
 
 std::string renderCovariance(const CalibrationSession& session) {

@@ -9,7 +9,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 
 namespace sac {

@@ -5,15 +5,13 @@
 #include <cstddef>
 #include <functional>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "frequent_outliers.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 namespace {
@@ -124,9 +122,7 @@ bool isRejected(const Group& group, double rate, std::size_t groups, double most
       static_cast<double>(group.rejected) <= most * static_cast<double>(group.count)) {
     return false;
   }
-  const boost::math::binomial_distribution<double> accident(static_cast<double>(group.count), rate);
-  const double probability = boost::math::cdf(
-      boost::math::complement(accident, static_cast<double>(group.rejected) - 1.0));
+  const double probability = binomialTail(group.count, rate, group.rejected);
   const bool is_lost = group.is_stream && 2 * group.rejected > group.count;
   return probability < (is_lost ? kChanceOfLoss : kChance / static_cast<double>(groups));
 }

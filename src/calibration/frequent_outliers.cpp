@@ -4,11 +4,10 @@
 #include <array>
 #include <cstddef>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 namespace {
@@ -61,10 +60,7 @@ bool losesMoreThanByAccident(const Tally& coil, double rate, std::size_t coils) 
   if (coil.rejected == 0 || kept == 0 || (!is_half && !is_notable)) {
     return false;
   }
-  const boost::math::binomial_distribution<double> accident(static_cast<double>(coil.count),
-                                                            std::min(1.0, rate));
-  const double probability =
-      boost::math::cdf(boost::math::complement(accident, static_cast<double>(coil.rejected) - 1.0));
+  const double probability = binomialTail(coil.count, std::min(1.0, rate), coil.rejected);
   const double least = is_half ? kChanceOfOne : kChanceOfOne / static_cast<double>(coils);
   // Of two that contradict each other nobody can tell which is wrong, whatever the rate.
   return (is_half && kept == 1) || probability < least;

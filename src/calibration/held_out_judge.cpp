@@ -12,7 +12,7 @@
 #include "repeated_observations.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 #include "spherical_actuator_calibration/estimation/sequential_update.hpp"

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 namespace {
@@ -15,9 +14,7 @@ bool areUsual(std::size_t outliers, std::size_t count, double rate, double most)
   if (outliers == 0 || static_cast<double>(outliers) > most * static_cast<double>(count)) {
     return outliers == 0;
   }
-  const boost::math::binomial_distribution<double> usual(static_cast<double>(count), rate);
-  return boost::math::cdf(boost::math::complement(usual, static_cast<double>(outliers) - 1.0)) >=
-         kLeastProbability;
+  return binomialTail(count, rate, outliers) >= kLeastProbability;
 }
 
 /// Held-out torques of a coil that the test counts.

@@ -14,7 +14,7 @@
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 #include "untold_effect.hpp"
 

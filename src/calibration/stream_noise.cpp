@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"

@@ -10,7 +10,7 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 #include "spherical_actuator_calibration/motion/motion_estimator.hpp"
 #include "spherical_actuator_calibration/motion/silent_coils.hpp"

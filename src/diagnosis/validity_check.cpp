@@ -7,10 +7,8 @@
 #include <map>
 #include <set>
 
-#include <boost/math/distributions/non_central_chi_squared.hpp>
-
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 namespace {
@@ -20,8 +18,7 @@ double boundOf(const HeldOutGroup& group) {
   constexpr double kUnnoticed = 0.01;
   // Residuals that are smaller than expected by luck promise nothing.
   const double judged = std::max(group.chi_square, group.freedom());
-  const double excess = boost::math::non_central_chi_squared::find_non_centrality(
-      group.freedom(), judged, kUnnoticed);
+  const double excess = chiSquareNonCentrality(group.freedom(), judged, kUnnoticed);
   return std::sqrt(excess / group.sensitivity);
 }
 

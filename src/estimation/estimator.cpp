@@ -12,7 +12,7 @@
 #include "problem_check.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/normal_distribution.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "weighted_observations.hpp"

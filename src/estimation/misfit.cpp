@@ -1,6 +1,6 @@
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
 
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 

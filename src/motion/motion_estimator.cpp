@@ -12,7 +12,7 @@
 #include "noise_factors.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
 #include "steady_torque.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "spherical_actuator_calibration/base/cholesky.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 
 namespace sac {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/estimation/chi_square_limit.hpp"
+#include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "support/scenarios.hpp"
 
