@@ -162,22 +162,22 @@ void ceresRefine(benchmark::State& state, ceres::LinearSolverType type) {
   state.counters["iterations"] = iterations;
 }
 
-constexpr int kSamples = 132;
+constexpr int kSessionSamples = 132;
 
 BENCHMARK_CAPTURE(ceresRefine, DENSE_QR, ceres::DENSE_QR)
-    ->Arg(kSamples)
+    ->Arg(kSessionSamples)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ceresRefine, DENSE_NORMAL_CHOLESKY, ceres::DENSE_NORMAL_CHOLESKY)
-    ->Arg(kSamples)
+    ->Arg(kSessionSamples)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ceresRefine, DENSE_SCHUR, ceres::DENSE_SCHUR)
-    ->Arg(kSamples)
+    ->Arg(kSessionSamples)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ceresRefine, SPARSE_SCHUR, ceres::SPARSE_SCHUR)
-    ->Arg(kSamples)
+    ->Arg(kSessionSamples)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ceresRefine, SPARSE_NORMAL_CHOLESKY, ceres::SPARSE_NORMAL_CHOLESKY)
-    ->Arg(kSamples)
+    ->Arg(kSessionSamples)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace sac::benchmarks {
 namespace {
 
-constexpr std::size_t kSamples = 30;
+constexpr std::size_t kCostSamples = 30;
 constexpr int kPoles = 8;
 
 using Costs = std::vector<std::unique_ptr<ceres::CostFunction>>;
@@ -46,16 +46,16 @@ void evaluateModel(benchmark::State& state,
   ResidualJacobian jacobian;
   for (auto _ : state) {
     const ModelPoint point(scenario.model, scenario.state.belief.x);
-    for (std::size_t n = 0; n < kSamples; ++n) {
+    for (std::size_t n = 0; n < kCostSamples; ++n) {
       benchmark::DoNotOptimize(evaluate(point, n, jacobian));
       benchmark::DoNotOptimize(jacobian.data());
     }
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kSamples));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCostSamples));
 }
 
 void orientationAnalytic(benchmark::State& state) {
-  const CycleScenario scenario = cycleScenario(Cycle::kJoint, kSamples);
+  const CycleScenario scenario = cycleScenario(Cycle::kJoint, kCostSamples);
   evaluateModel(
       state, scenario, [&](const ModelPoint& point, std::size_t n, ResidualJacobian& jacobian) {
         return point.orientationResidual(scenario.samples[n], &jacobian);
@@ -63,7 +63,7 @@ void orientationAnalytic(benchmark::State& state) {
 }
 
 void orientationAutodiff(benchmark::State& state) {
-  const CycleScenario scenario = cycleScenario(Cycle::kJoint, kSamples);
+  const CycleScenario scenario = cycleScenario(Cycle::kJoint, kCostSamples);
   Costs costs;
   for (const Sample& sample : scenario.samples) {
     costs.push_back(std::make_unique<autodiff::OrientationCost>(
@@ -81,7 +81,7 @@ std::vector<std::vector<Excitation>> excitationsOf(const CycleScenario& scenario
 }
 
 void torqueAnalytic(benchmark::State& state) {
-  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
+  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kCostSamples);
   const std::vector<std::vector<Excitation>> excitations = excitationsOf(scenario);
   evaluateModel(
       state, scenario, [&](const ModelPoint& point, std::size_t n, ResidualJacobian& jacobian) {
@@ -90,7 +90,7 @@ void torqueAnalytic(benchmark::State& state) {
 }
 
 void torqueAutodiff(benchmark::State& state) {
-  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kSamples);
+  const CycleScenario scenario = cycleScenario(Cycle::kPoles, kCostSamples);
   const ParameterSpace& space = scenario.model.space();
   const std::vector<std::vector<Excitation>> excitations = excitationsOf(scenario);
   Costs costs;

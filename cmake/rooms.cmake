@@ -171,6 +171,9 @@ function(add_room_tests room)
   # A test runs for a moment, and takes longer to optimise: a quarter of the time of its compiler.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test)
+  if(SOURCES_IN_BATCHES)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
   target_include_directories(${name} PRIVATE
     ${PROJECT_SOURCE_DIR}/test ${PROJECT_BINARY_DIR}/test/include ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} sac_test_support GTest::gtest_main)

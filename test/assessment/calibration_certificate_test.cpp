@@ -11,7 +11,7 @@
 namespace sac {
 namespace {
 
-CalibrationSession refinedSession() {
+CalibrationSession sessionRefinedAtOnce() {
   scenarios::Generator generator(4);
   CalibrationSession session(
       {scenarios::paperNominal()},
@@ -43,7 +43,7 @@ bool holds(const std::string& text, const std::string& part) {
 
 TEST(CalibrationCertificate, NamesWhoIssuesIt) {
   const CertificateIssuer issuer = {"Lab <1>", "Berlin", "DE", "A. Person", "A Customer", "C-17"};
-  const std::string text = renderCertificate(refinedSession(), origin(), issuer);
+  const std::string text = renderCertificate(sessionRefinedAtOnce(), origin(), issuer);
   EXPECT_TRUE(holds(text, "<dcc:uniqueIdentifier>C-17</dcc:uniqueIdentifier>"));
   EXPECT_TRUE(holds(text, "Lab &lt;1&gt;"));
   EXPECT_TRUE(holds(text, "a&amp;b.bag"));
@@ -52,7 +52,7 @@ TEST(CalibrationCertificate, NamesWhoIssuesIt) {
 }
 
 TEST(CalibrationCertificate, WithoutItIsADraft) {
-  const std::string text = renderCertificate(refinedSession(), origin(), {});
+  const std::string text = renderCertificate(sessionRefinedAtOnce(), origin(), {});
   EXPECT_TRUE(holds(text, "Draft: "));
   EXPECT_TRUE(holds(text, "<dcc:countryCode>ZZ</dcc:countryCode>"));
 }

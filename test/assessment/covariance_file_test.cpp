@@ -12,7 +12,7 @@
 namespace sac {
 namespace {
 
-CalibrationSession refinedSession() {
+CalibrationSession sessionRefinedAfterJoint() {
   scenarios::Generator generator(4);
   CalibrationSession session(
       {scenarios::paperNominal()},
@@ -24,7 +24,7 @@ CalibrationSession refinedSession() {
 }
 
 TEST(CovarianceFile, HasTheStandardDeviationsOfTheParametersOnItsDiagonal) {
-  const CalibrationSession session = refinedSession();
+  const CalibrationSession session = sessionRefinedAfterJoint();
   const YAML::Node file = YAML::Load(renderCovariance(session))["covariance"];
   const std::vector<ParameterEstimate> parameters = session.parameters();
   ASSERT_EQ(file["names"].size(), parameters.size());
@@ -45,7 +45,7 @@ TEST(CovarianceFile, HasTheStandardDeviationsOfTheParametersOnItsDiagonal) {
 }
 
 TEST(CovarianceFile, KnowsThatPolesAndCoilsErrTogether) {
-  const CalibrationSession session = refinedSession();
+  const CalibrationSession session = sessionRefinedAfterJoint();
   const Eigen::MatrixXd covariance = reportedCovariance(session);
   const Eigen::VectorXd stddevs = covariance.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation =

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/reloaded_description.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
@@ -19,14 +20,6 @@ namespace {
 
 constexpr char kActuator[] = SOURCE_DIR "/config/examples/two_axis_positioner/actuator.yaml";
 constexpr char kSamples[] = SOURCE_DIR "/config/examples/two_axis_positioner/samples.yaml";
-
-CalibrationOrigin origin() {
-  return {"2024-05-31T12:00:00Z", {{"a.bag", "sha256:00"}}, "0.3.0"};
-}
-
-CalibratedDescription reloaded(const CalibrationSession& session) {
-  return parseDescription(renderDescription(session.description(origin()), "c.yaml"), "c.yaml");
-}
 
 CalibrationConfig modelling(const std::vector<std::string>& effects, MapUse map) {
   CalibrationConfig config;
@@ -207,7 +200,7 @@ TEST(EncoderHarmonics, OfEveryJointAreFoundAsFarAsItsTravelTells) {
     inside += static_cast<int>((error.array().abs() < 1.96 * pose.stddev).count());
   }
   EXPECT_GT(inside, 0.85 * 3 * kPoses);
-  const CalibratedDescription result = session.description(origin());
+  const CalibratedDescription result = session.description(savedOrigin());
   EXPECT_NEAR(result.actuator.joints[2].correction.harmonics[0], 1e-3, 1e-4);
   // Over ±0.6 rad they look like each other: their own values stay uncertain, and say so.
   EXPECT_GT((*result.stddevs.joints[1].harmonics)[2], 3e-4);
@@ -249,7 +242,7 @@ TEST(OrientationMapChoice, TakesNoneWhereOnlyNoiseIsLeft) {
     CalibrationSession session({scenarios::paperNominal()}, samples, {});
     ASSERT_TRUE(session.run({Cycle::kJoint}).success);
     EXPECT_FALSE(session.orientationMap().map) << seed << session.orientationMap().sentence;
-    EXPECT_FALSE(session.description(origin()).actuator.orientation_map);
+    EXPECT_FALSE(session.description(savedOrigin()).actuator.orientation_map);
   }
 }
 

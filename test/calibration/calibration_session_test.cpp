@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/sensor_noise.hpp"
 #include "spherical_actuator_calibration/assessment/model_choice.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -18,8 +19,6 @@
 namespace sac {
 namespace {
 
-constexpr double kOrientationNoise = 1e-3;
-constexpr double kTorqueNoise = 5e-4;
 CalibrationOrigin exampleOrigin() {
   return {"2024-05-31T12:00:00Z", {{"session.bag", "sha256:00ff"}}, "0.1.0"};
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "calibration/sensor_noise.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "support/calibration_trials.hpp"
 #include "support/scenarios.hpp"
@@ -7,7 +8,6 @@
 namespace sac {
 namespace {
 
-constexpr double kNoise = 5e-4;  // uniform, per component [N·m]
 constexpr CycleRequest kCoil2{Cycle::kCoil, 1};
 
 class CoilCalibration : public testing::Test {
@@ -24,7 +24,7 @@ class CoilCalibration : public testing::Test {
     scenarios::Generator generator(seed);
     const auto poses = scenarios::posesThatSeeEveryPole(truth_, 1, 4, 0.3, generator);
     return scenarios::torqueSamples(
-        truth_, poses, 1, 2.0, noise, scenarios::uniformStddev(kNoise), generator);
+        truth_, poses, 1, 2.0, noise, scenarios::uniformStddev(kTorqueNoise), generator);
   }
 
   CycleOutcome run(const std::vector<Sample>& samples) const {
@@ -55,7 +55,7 @@ TEST_F(CoilCalibration, ReachesTheBoundAndItsIntervalsAreTrue) {
   TrialStatistics statistics;
   const std::vector<Eigen::Index> free{space_.coil(1), space_.coil(1) + 1};
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    const std::vector<Sample> data = samples(kNoise, 6000 + seed);
+    const std::vector<Sample> data = samples(kTorqueNoise, 6000 + seed);
     const CycleOutcome outcome = run(data);
     ASSERT_TRUE(outcome.report.success) << outcome.report.message;
     statistics.add(
@@ -89,7 +89,7 @@ TEST_F(CoilCalibration, NamesACoilThatSeesNoPole) {
 }
 
 TEST_F(CoilCalibration, TouchesNoOtherParameter) {
-  const CycleOutcome outcome = run(samples(kNoise, 3));
+  const CycleOutcome outcome = run(samples(kTorqueNoise, 3));
   Eigen::VectorXd x = outcome.state.belief.x;
   x.segment<2>(space_.coil(1)).setZero();
   EXPECT_EQ(x, poles_known_.belief.x);

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/sensor_noise.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
@@ -23,8 +24,7 @@ namespace sac {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr double kTorqueNoise = 5e-4;  // half width [N·m]
-constexpr double kRate = 3e-3;         // of outliers elsewhere
+constexpr double kRateElsewhere = 3e-3;  // of outliers
 
 class HeldOutJudgeTest : public ::testing::Test {
  protected:
@@ -76,8 +76,10 @@ class HeldOutJudgeTest : public ::testing::Test {
   }
 
   HeldOutJudge judge() const {
-    return {
-        session_.model(), session_.state(), session_.config().estimation, UsualOutliers{kRate, {}}};
+    return {session_.model(),
+            session_.state(),
+            session_.config().estimation,
+            UsualOutliers{kRateElsewhere, {}}};
   }
 
   static void expectEqual(const HeldOutValidation& one,

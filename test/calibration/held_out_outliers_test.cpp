@@ -5,7 +5,7 @@
 namespace sac {
 namespace {
 
-constexpr double kRate = 0.01;  // of outliers among the samples in use
+constexpr double kRateInUse = 0.01;  // of outliers
 constexpr double kMost = 0.3;
 
 /// Twenty torques of the coils 0 to 4 in turn; n is that of coil n % 5, at the place 100 + n.
@@ -22,7 +22,7 @@ std::vector<HeldOutMeasurement> torques() {
 
 OutlierChoice choose(const std::vector<std::size_t>& standing_out,
                      const std::map<std::size_t, TorquesInUse>& in_use = {},
-                     double rate = kRate) {
+                     double rate = kRateInUse) {
   return chooseOutliers(torques(), standing_out, in_use, rate, kMost);
 }
 
@@ -70,7 +70,7 @@ TEST(HeldOutOutliers, LeaveACoilUndecidedOfWhichNothingElseTells) {
   for (const std::size_t n : {2U, 7U, 12U}) {
     measurements[n].counts = false;
   }
-  const OutlierChoice choice = chooseOutliers(measurements, {17}, {}, kRate, kMost);
+  const OutlierChoice choice = chooseOutliers(measurements, {17}, {}, kRateInUse, kMost);
   EXPECT_EQ(choice.undecided_coils, std::vector<std::size_t>{2});
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "calibration/sensor_noise.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -10,7 +11,6 @@
 namespace sac {
 namespace {
 
-constexpr double kNoise = 1e-3;  // uniform, per component [rad]
 constexpr CycleRequest kJointCycle{Cycle::kJoint};
 
 class JointCalibration : public testing::Test {
@@ -19,7 +19,7 @@ class JointCalibration : public testing::Test {
     scenarios::Generator generator(seed);
     std::vector<Eigen::Vector3d> q = scenarios::randomPoses(poses, tilt, generator);
     return scenarios::orientationSamples(
-        truth_, q, noise, scenarios::uniformStddev(kNoise), generator);
+        truth_, q, noise, scenarios::uniformStddev(kOrientationNoise), generator);
   }
 
   CycleOutcome run(const std::vector<Sample>& samples) const {
@@ -56,7 +56,7 @@ TEST_F(JointCalibration, ReachesTheBoundAndItsIntervalsAreTrue) {
   for (const std::size_t poses : {std::size_t{5}, std::size_t{10}, std::size_t{30}}) {
     TrialStatistics statistics;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
-      const std::vector<Sample> data = samples(poses, 0.6, kNoise, 1000 + seed);
+      const std::vector<Sample> data = samples(poses, 0.6, kOrientationNoise, 1000 + seed);
       const CycleOutcome outcome = run(data);
       ASSERT_TRUE(outcome.report.success) << outcome.report.message;
       EXPECT_EQ(outcome.report.samples_rejected, 0u);
@@ -80,7 +80,7 @@ TEST_F(JointCalibration, RemainingErrorLiesBelowTheAddedNoiseFromTenOrientations
   const JointGeometry joints = jointGeometry(truth_.joints);
   for (const std::size_t poses : {std::size_t{10}, std::size_t{20}, std::size_t{40}}) {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
-      const std::vector<Sample> data = samples(poses, 0.6, kNoise, 2000 + seed);
+      const std::vector<Sample> data = samples(poses, 0.6, kOrientationNoise, 2000 + seed);
       double added = 0.0;
       for (const Sample& sample : data) {
         added += rotationLog(sample.R_stator_rotor *
@@ -115,7 +115,7 @@ TEST_F(JointCalibration, ConvergesFromHalfARadianWhereThatIsWithinTolerances) {
 }
 
 TEST_F(JointCalibration, ReportsEveryParameterWithNominalInitialAndStddev) {
-  const CycleOutcome outcome = run(samples(10, 0.6, kNoise, 4));
+  const CycleOutcome outcome = run(samples(10, 0.6, kOrientationNoise, 4));
   ASSERT_EQ(outcome.report.estimates.size(), 9u);
   for (const ParameterEstimate& estimate : outcome.report.estimates) {
     EXPECT_TRUE(estimate.observable) << estimate.name;
@@ -132,7 +132,7 @@ TEST_F(JointCalibration, ReportsEveryParameterWithNominalInitialAndStddev) {
 }
 
 TEST_F(JointCalibration, JointSensorNoiseWidensTheIntervals) {
-  std::vector<Sample> data = samples(10, 0.6, kNoise, 5);
+  std::vector<Sample> data = samples(10, 0.6, kOrientationNoise, 5);
   const double without = run(data).report.estimates[0].stddev;
   for (Sample& sample : data) {
     sample.joint_stddev.setConstant(2e-3);
@@ -141,7 +141,7 @@ TEST_F(JointCalibration, JointSensorNoiseWidensTheIntervals) {
 }
 
 TEST_F(JointCalibration, LeavesTheAxisOfAJointThatDoesNotMove) {
-  std::vector<Sample> data = samples(20, 0.6, kNoise, 6);
+  std::vector<Sample> data = samples(20, 0.6, kOrientationNoise, 6);
   const JointGeometry joints = jointGeometry(truth_.joints);
   for (Sample& sample : data) {
     sample.joint_position[2] = 0.0;
@@ -162,7 +162,7 @@ TEST_F(JointCalibration, LeavesTheAxisOfAJointThatDoesNotMove) {
 }
 
 TEST_F(JointCalibration, RefusesTooFewSamplesAndChangesNothing) {
-  const CycleOutcome outcome = run(samples(2, 0.6, kNoise, 7));
+  const CycleOutcome outcome = run(samples(2, 0.6, kOrientationNoise, 7));
   EXPECT_FALSE(outcome.report.success);
   EXPECT_NE(outcome.report.message.find("at least 3 poses"), std::string::npos);
   EXPECT_TRUE(outcome.report.estimates.empty());
@@ -189,7 +189,7 @@ TEST_F(JointCalibration, RefusesSamplesThatDoNotBelongToTheirAngles) {
 }
 
 TEST_F(JointCalibration, NeverUsesHeldOutSamples) {
-  std::vector<Sample> data = samples(12, 0.6, kNoise, 10);
+  std::vector<Sample> data = samples(12, 0.6, kOrientationNoise, 10);
   const std::vector<Sample> ten(data.begin(), data.begin() + 10);
   for (std::size_t n = 10; n < data.size(); ++n) {
     data[n].validation = true;
@@ -199,13 +199,13 @@ TEST_F(JointCalibration, NeverUsesHeldOutSamples) {
 }
 
 TEST_F(JointCalibration, ThrowsOnASampleThatIsNotFinite) {
-  std::vector<Sample> data = samples(10, 0.6, kNoise, 11);
+  std::vector<Sample> data = samples(10, 0.6, kOrientationNoise, 11);
   data[3].joint_position[1] = std::nan("");
   EXPECT_THROW(run(data), DataError);
 }
 
 TEST_F(JointCalibration, UnderstatedNoiseWidensTheIntervals) {
-  std::vector<Sample> data = samples(30, 0.6, kNoise, 12);
+  std::vector<Sample> data = samples(30, 0.6, kOrientationNoise, 12);
   const CycleOutcome honest = run(data);
   for (Sample& sample : data) {
     sample.orientation_stddev /= 2.5;

@@ -13,7 +13,7 @@
 namespace sac {
 namespace {
 
-constexpr double kNoise = 2e-4;  // [rad], uniform within ±
+constexpr double kTrackerNoise = 2e-4;  // [rad], uniform within ±
 
 Eigen::Vector3d bend(const Eigen::Vector3d& q, double size) {
   return size * Eigen::Vector3d(std::sin(2.5 * q[0] + q[2]),
@@ -38,8 +38,8 @@ class LargeBend : public ::testing::Test {
       sample.joint_position = q;
       sample.has_orientation = true;
       sample.R_stator_rotor =
-          rotationExp(scenarios::uniformNoise(kNoise, generator)) * orientation(q);
-      sample.orientation_stddev = scenarios::uniformStddev(kNoise);
+          rotationExp(scenarios::uniformNoise(kTrackerNoise, generator)) * orientation(q);
+      sample.orientation_stddev = scenarios::uniformStddev(kTrackerNoise);
       samples.push_back(sample);
     }
     CalibrationSession session({scenarios::paperNominal()}, samples, {});

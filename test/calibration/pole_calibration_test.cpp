@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/sensor_noise.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
@@ -14,7 +15,6 @@
 namespace sac {
 namespace {
 
-constexpr double kNoise = 5e-4;  // uniform, per component [N·m]
 constexpr CycleRequest kPolesCycle{Cycle::kPoles, 0};
 
 class PoleCalibration : public testing::Test {
@@ -24,7 +24,7 @@ class PoleCalibration : public testing::Test {
                               std::uint64_t seed) const {
     scenarios::Generator generator(seed);
     return scenarios::torqueSamples(
-        truth_, poses, 0, 2.0, noise, scenarios::uniformStddev(kNoise), generator);
+        truth_, poses, 0, 2.0, noise, scenarios::uniformStddev(kTorqueNoise), generator);
   }
 
   CycleOutcome run(const std::vector<Sample>& samples) const {
@@ -79,7 +79,7 @@ TEST_F(PoleCalibration, ReachesTheBoundAndItsIntervalsAreTrue) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     scenarios::Generator generator(seed);
     const auto poses = scenarios::posesThatSeeEveryPole(truth_, 0, 30, 0.3, generator);
-    const std::vector<Sample> data = samples(poses, kNoise, 3000 + seed);
+    const std::vector<Sample> data = samples(poses, kTorqueNoise, 3000 + seed);
     const CycleOutcome outcome = run(data);
     ASSERT_TRUE(outcome.report.success) << outcome.report.message;
     statistics.add(outcome.state.belief,
@@ -114,7 +114,7 @@ TEST_F(PoleCalibration, NamesThePolesThatNoSampleSees) {
       continue;
     }
     ++degenerate;
-    const CycleOutcome outcome = run(samples(poses, kNoise, seed));
+    const CycleOutcome outcome = run(samples(poses, kTorqueNoise, seed));
     ASSERT_TRUE(outcome.report.success) << outcome.report.message;
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const std::string pole = "Pole " + std::to_string(i + 1);
@@ -142,7 +142,7 @@ TEST_F(PoleCalibration, ItsAdviceMakesTheMissedPoleObservable) {
       poses.push_back(q);
     }
   }
-  const CycleOutcome outcome = run(samples(poses, kNoise, 1));
+  const CycleOutcome outcome = run(samples(poses, kTorqueNoise, 1));
   const std::string advice = "Pole 5 is seen by no sample: excite coil 1 with joint_3 near ";
   const std::size_t at = outcome.report.message.find(advice);
   ASSERT_NE(at, std::string::npos) << outcome.report.message;
@@ -151,7 +151,7 @@ TEST_F(PoleCalibration, ItsAdviceMakesTheMissedPoleObservable) {
   for (const double step : {-0.1, 0.0, 0.1}) {
     poses.emplace_back(0.0, step, spin + step);
   }
-  const CycleOutcome better = run(samples(poses, kNoise, 2));
+  const CycleOutcome better = run(samples(poses, kTorqueNoise, 2));
   ASSERT_TRUE(better.report.success) << better.report.message;
   EXPECT_EQ(better.report.message.find("Pole 5"), std::string::npos) << better.report.message;
   EXPECT_TRUE(better.state.identified[static_cast<std::size_t>(space_.pole(4))]);
@@ -165,7 +165,7 @@ TEST_F(PoleCalibration, CurrentsBelowTheThresholdShowNoPole) {
       poses.push_back(q);
     }
   }
-  std::vector<Sample> data = samples(poses, kNoise, 1);
+  std::vector<Sample> data = samples(poses, kTorqueNoise, 1);
   int sign = 1;
   for (Sample& sample : data) {
     for (Eigen::Index j = 1; j < sample.current.size(); ++j) {
@@ -181,10 +181,10 @@ TEST_F(PoleCalibration, CurrentsBelowTheThresholdShowNoPole) {
 TEST_F(PoleCalibration, UsesOnlySamplesWithItsCoilAlone) {
   scenarios::Generator generator(18);
   const auto poses = scenarios::posesThatSeeEveryPole(truth_, 0, 30, 0.3, generator);
-  std::vector<Sample> data = samples(poses, kNoise, 3);
+  std::vector<Sample> data = samples(poses, kTorqueNoise, 3);
   const CycleOutcome expected = run(data);
   std::vector<Sample> other =
-      scenarios::torqueSamples(truth_, poses, 4, 2.0, kNoise, 1e-3, generator);
+      scenarios::torqueSamples(truth_, poses, 4, 2.0, kTorqueNoise, 1e-3, generator);
   data.insert(data.end(), other.begin(), other.end());
   for (Sample& sample : other) {
     sample.current[0] = 1.0;  // two coils at once
@@ -213,7 +213,7 @@ TEST_F(PoleCalibration, RefusesWhatItCannotDo) {
 TEST_F(PoleCalibration, RefusesTorquesOfTheWrongSign) {
   scenarios::Generator generator(19);
   const auto poses = scenarios::posesThatSeeEveryPole(truth_, 0, 30, 0.3, generator);
-  std::vector<Sample> data = samples(poses, kNoise, 4);
+  std::vector<Sample> data = samples(poses, kTorqueNoise, 4);
   for (Sample& sample : data) {
     sample.torque = -sample.torque;
   }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/reloaded_description.hpp"
 #include "covariance_record.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
@@ -65,11 +66,6 @@ CalibrationSession refined(const std::string& effect) {
   session.run({Cycle::kPoles, 0});
   session.run({Cycle::kRefine});
   return session;
-}
-
-CalibratedDescription reloaded(const CalibrationSession& session) {
-  const CalibrationOrigin origin{"2024-05-31T12:00:00Z", {{"a.bag", "sha256:00"}}, "0.3.0"};
-  return parseDescription(renderDescription(session.description(origin), "c.yaml"), "c.yaml");
 }
 
 std::vector<Sample> heldOut(const Actuator& unit) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/reloaded_description.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
@@ -162,11 +163,6 @@ CalibrationSession refined(const Effects& effects) {
   session.run({Cycle::kPoles, 0});
   session.run({Cycle::kRefine});
   return session;
-}
-
-CalibratedDescription reloaded(const CalibrationSession& session) {
-  const CalibrationOrigin origin{"2024-05-31T12:00:00Z", {{"a.bag", "sha256:00"}}, "0.3.0"};
-  return parseDescription(renderDescription(session.description(origin), "c.yaml"), "c.yaml");
 }
 
 class SavedEffects : public testing::TestWithParam<Effects> {};

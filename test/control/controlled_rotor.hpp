@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "control/control_cycle.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/emulation/free_rotor.hpp"
@@ -14,7 +15,6 @@
 
 namespace sac {
 
-inline constexpr Stamp kCycle = 1000000;  // 1 ms
 inline constexpr double kStopTilt = 1.0;
 
 /// A load whose holding needs some tenths of an ampere.

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "control/control_cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;     // [s]
 constexpr double kCutoff = 150.0;  // [rad/s]
 Eigen::Vector3d exampleLoad() {
   return {0.004, -0.003, 0.002};

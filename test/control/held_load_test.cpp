@@ -4,21 +4,20 @@
 
 #include <gtest/gtest.h>
 
+#include "control/control_cycle.hpp"
+#include "control/wrong_actuator.hpp"
 #include "spherical_actuator_calibration/base/noise_source.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/emulation/free_rotor.hpp"
-#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
 
-constexpr Stamp kCycle = 1000000;  // 1 ms
-constexpr double kError = 0.03;    // of every parameter [rad]
-constexpr double kWanted = 2e-4;   // [rad]
+constexpr double kWanted = 2e-4;  // [rad]
 /// Weight beside the centre of which the controller is not told [N·m].
-Eigen::Vector3d exampleLoad() {
+Eigen::Vector3d untoldLoad() {
   return {0.0, 0.0088, 0.0};
 }
 
@@ -39,7 +38,7 @@ class HeldLoadTest : public ::testing::Test {
              const BearingFriction& friction = {}) {
     loop_ = loop;
     RigidRotor body;
-    body.unbalance = exampleLoad();
+    body.unbalance = untoldLoad();
     rotor_.emplace(truth, body, 1.0, friction);
     rotor_->release({0.1, -0.05, 0.3});
     currents_ = Eigen::VectorXd::Zero(24);
@@ -95,10 +94,6 @@ class HeldLoadTest : public ::testing::Test {
   Stamp now_ = 1000 * kCycle;
   double largest_rate_ = 0.0;
 };
-
-Actuator wrongBy30mrad(std::uint64_t seed) {
-  return manufacturedActuator(scenarios::paperNominal(), {kError, kError, kError, kError}, seed);
-}
 
 TEST_F(HeldLoadTest, ALoadThatNobodyToldOfLeavesNoError) {
   start(scenarios::paperNominal(), scenarios::paperNominal());

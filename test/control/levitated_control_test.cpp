@@ -18,8 +18,8 @@
 namespace sac {
 namespace {
 
-constexpr Stamp kCycle = 4166667;  // of a tracker at 240 Hz [ns]
-constexpr double kNoise = 1e-3;    // of the tracker, uniform within ± this [rad]
+constexpr Stamp kTrackerPeriod = 4166667;  // at 240 Hz [ns]
+constexpr double kNoise = 1e-3;            // of the tracker, uniform within ± this [rad]
 
 /// The shipped rotor without joints in the hands of its coils, seen by a tracker.
 class LevitatedControl : public ::testing::Test {
@@ -51,11 +51,11 @@ class LevitatedControl : public ::testing::Test {
   void run(double seconds) {
     constexpr int kSteps = 5;  // of the rotor in a cycle
     for (Stamp end = now_ + static_cast<Stamp>(1e9 * seconds); now_ < end;) {
-      now_ += kCycle;
+      now_ += kTrackerPeriod;
       controller_->receive(seen());
       const Eigen::VectorXd currents = controller_->update(now_);
       for (int n = 0; n < kSteps; ++n) {
-        rotor_.advance(1e-9 * kCycle / kSteps, currents);
+        rotor_.advance(1e-9 * kTrackerPeriod / kSteps, currents);
       }
     }
   }
@@ -90,14 +90,14 @@ TEST_F(LevitatedControl, TurnsOnOverTheHalfTurn) {
 }
 
 TEST_F(LevitatedControl, StopsOnOldOrientations) {
-  now_ += 48 * kCycle;
+  now_ += 48 * kTrackerPeriod;
   EXPECT_TRUE(controller_->update(now_).isZero(0.0));
   EXPECT_EQ(controller_->state(), ControlState::kStopped);
   EXPECT_EQ(controller_->stopReason(), "the orientations are 0.2 s old");
 }
 
 TEST_F(LevitatedControl, StopsOutsideTheWorkspace) {
-  now_ += kCycle;
+  now_ += kTrackerPeriod;
   controller_->receive({now_, Eigen::Quaterniond(rotationExp({0.0, 0.8, 0.0}))});
   EXPECT_TRUE(controller_->update(now_).isZero(0.0));
   EXPECT_NE(controller_->stopReason().find("outside of the workspace"), std::string::npos);
@@ -107,7 +107,7 @@ TEST_F(LevitatedControl, RefusesWhatIsNoOrientation) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Eigen::Quaterniond& q :
        {Eigen::Quaterniond(1.1, 0.0, 0.0, 0.0), Eigen::Quaterniond(nan, 0.0, 0.0, 0.0)}) {
-    EXPECT_THROW(controller_->receive(OrientationMeasurement{now_ + kCycle, q}), DataError);
+    EXPECT_THROW(controller_->receive(OrientationMeasurement{now_ + kTrackerPeriod, q}), DataError);
   }
   EXPECT_FALSE(controller_->receive(seen()));  // no newer than the last
 }

@@ -4,21 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "control/control_cycle.hpp"
+#include "control/wrong_actuator.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 #include "spherical_actuator_calibration/emulation/free_rotor.hpp"
-#include "spherical_actuator_calibration/emulation/manufacturing_errors.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
 namespace {
-
-constexpr Stamp kCycle = 1000000;  // 1 ms
-constexpr double kError = 0.03;    // of every parameter [rad]
-
-Actuator wrongBy30mrad(std::uint64_t seed) {
-  return manufacturedActuator(scenarios::paperNominal(), {kError, kError, kError, kError}, seed);
-}
 
 /// Some tilt, the spin beyond ±π, and currents in all coils.
 MotionPlan examplePlan(double excitation) {
@@ -38,12 +32,12 @@ MotionPlan examplePlan(double excitation) {
 
 /// Seconds of an approach to the begin by a rotor of such a rate [rad/s], until it is left.
 double approachTime(double rotor_rate) {
-  constexpr double kStep = 0.01;
+  constexpr double kTenCycles = 10.0 * kStep;
   MotionRun run(examplePlan(0.0));
   double time = 0.0;
   while (run.phase() == MotionPhase::kApproach &&
-         run.approach(kStep, 0.0, 0.0, rotor_rate).empty()) {
-    time += kStep;
+         run.approach(kTenCycles, 0.0, 0.0, rotor_rate).empty()) {
+    time += kTenCycles;
   }
   return time;
 }

@@ -6,13 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "control/control_cycle.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kStep = 1e-3;
 
 Stamp stampOf(double seconds) {
   return static_cast<Stamp>(std::llround(seconds / kSecondsPerTick));

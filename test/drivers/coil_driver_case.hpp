@@ -6,19 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/shipped_coil_driver.hpp"
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "support/scripted_transport.hpp"
-#include "support/source_dir.hpp"
 
 namespace sac {
-
-inline constexpr char kShippedFile[] = SOURCE_DIR "/config/coil_driver.yaml";
-inline constexpr std::size_t kCoils = 24;
-inline constexpr int kUnit = 2;
-
-inline CurrentAmplifierOptions shippedOptions() {
-  return readCurrentAmplifierOptions(YamlMap::load(kShippedFile));
-}
 
 /// The shipped driver at an amplifier whose answers are scripted.
 class CoilDriverTest : public ::testing::Test {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/shipped_coil_driver.hpp"
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "support/scripted_transport.hpp"
 #include "support/source_dir.hpp"
@@ -11,11 +12,8 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kCoils = 24;
-constexpr int kUnit = 2;
 constexpr int kTripped = 100;
 constexpr int kHeartbeat = 101;
-constexpr double kBeat = 0.005;  // [s]
 
 // It has tripped, and its first coil carries 2 A whatever is set, until its watchdog acts: while it
 // is tripped it gets no heartbeat. Later it goes on as it should, but for that coil.

@@ -3,16 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/shipped_coil_driver.hpp"
 #include "spherical_actuator_calibration/drivers/coil_driver.hpp"
 #include "support/scripted_transport.hpp"
-#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
-
-constexpr std::size_t kCoils = 24;
-constexpr int kUnit = 2;
-constexpr double kBeat = 0.005;  // [s]
 
 /// An amplifier whose registers allow fewer requests than the shipped ones.
 struct Registers {
@@ -26,8 +22,7 @@ struct Registers {
 class CoilDriverRequests : public ::testing::TestWithParam<Registers> {
  protected:
   static CurrentAmplifierOptions options() {
-    CurrentAmplifierOptions options =
-        readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml"));
+    CurrentAmplifierOptions options = shippedOptions();
     options.heartbeat_address = static_cast<int>(kCoils);
     options.currents.table = options.tripped->table = GetParam().table;
     options.currents.address = GetParam().currents;

@@ -11,14 +11,8 @@
 namespace sac {
 namespace {
 
-/// What is set in the first coil and measured in the second one [A].
-struct Flow {
-  double set = 0.0;
-  double measured = 0.0;
-  int beats = 1;
-};
-
-/// What is set and measured for some beats, of so many seconds each, and whether it confirms zero.
+/// What is set in the first coil and measured in the second one for some beats, of so many seconds
+/// each, and whether it confirms zero.
 struct Ending {
   const char* what;
   std::vector<Flow> flows;

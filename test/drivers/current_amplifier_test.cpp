@@ -7,20 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/shipped_coil_driver.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
 #include "support/scripted_transport.hpp"
-#include "support/source_dir.hpp"
 
 namespace sac {
 namespace {
-
-constexpr char kShippedFile[] = SOURCE_DIR "/config/coil_driver.yaml";
-constexpr int kUnit = 2;
-
-CurrentAmplifierOptions shippedOptions() {
-  return readCurrentAmplifierOptions(YamlMap::load(kShippedFile));
-}
 
 TEST(CurrentAmplifier, SplitsBlocksThatNoRequestHolds) {
   CurrentAmplifierOptions options = shippedOptions();

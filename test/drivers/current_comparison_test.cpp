@@ -12,19 +12,16 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/current_course.hpp"
+#include "drivers/shipped_coil_driver.hpp"
+
 namespace sac {
 namespace {
 
-constexpr double kBeat = 0.005;       // [s] of the shipped configuration, like what follows
-constexpr double kSlew = 100.0;       // [A/s]
-constexpr double kTolerance = 0.15;   // [A]
-constexpr int kBeats = 40;            // that must deviate
+constexpr double kSlew = 100.0;       // [A/s] of the shipped configuration
 constexpr double kCommandRate = 100;  // [Hz]
 constexpr double kPi = 3.141592653589793;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// A current [A] over the time [s].
-using Course = std::function<double(double)>;
 
 /// An amplifier's current [A] by what is set, at a time [s].
 using Plant = std::function<double(double setpoint, double time)>;
@@ -83,7 +80,7 @@ Plant deaf(Course current) {
 }
 
 /// When the second of two coils is told to deviate [s]. The loop is late at times by `jitter` [s].
-double toldAt(const Course& commanded, Plant plant, double end, double jitter = 0.0) {
+double deviationToldAt(const Course& commanded, Plant plant, double end, double jitter = 0.0) {
   CurrentComparison comparison(2, kTolerance, kBeats, kBeat);
   std::minstd_rand random(1);
   std::exponential_distribution<double> late(1.0);
@@ -128,7 +125,7 @@ TEST(CurrentComparison, AnHonestAmplifierNeverDeviatesHoweverItLags) {
   for (const double delay : {0.0, 0.004, 0.013, 0.05, 0.1, 0.15}) {
     for (const double time_constant : {0.0, 0.005, 0.01, 0.02, 0.025, 0.03}) {
       for (const auto& [name, course] : commands()) {
-        EXPECT_EQ(toldAt(course, lagging(delay, time_constant), 2.0), kNever)
+        EXPECT_EQ(deviationToldAt(course, lagging(delay, time_constant), 2.0), kNever)
             << name << ", delay " << delay << ", time constant " << time_constant;
       }
     }
@@ -139,7 +136,7 @@ TEST(CurrentComparison, ALateLoopIsNoDeviation) {
   for (const double jitter : {0.003, 0.03}) {
     for (const double delay : {0.0, 0.1}) {
       for (const auto& [name, course] : commands()) {
-        EXPECT_EQ(toldAt(course, lagging(delay, 0.0), 10.0, jitter), kNever)
+        EXPECT_EQ(deviationToldAt(course, lagging(delay, 0.0), 10.0, jitter), kNever)
             << name << ", late by " << jitter << ", delay " << delay;
       }
     }
@@ -173,18 +170,18 @@ std::vector<Lie> lies() {
 
 TEST(CurrentComparison, WhatNoLagExplainsIsToldWithinHalfASecond) {
   for (const Lie& lie : lies()) {
-    const double told = toldAt(lie.commanded, lie.plant, 4.0);
+    const double told = deviationToldAt(lie.commanded, lie.plant, 4.0);
     EXPECT_LE(told, 0.5) << lie.what << ", commanded after 0.05 s: " << lie.commanded(0.05);
   }
   // The faster, the more of them are alike.
-  EXPECT_LE(toldAt(sine(2.0, 8.0), deaf(zero()), 4.0), 0.6);
+  EXPECT_LE(deviationToldAt(sine(2.0, 8.0), deaf(zero()), 4.0), 0.6);
 }
 
 TEST(CurrentComparison, ShortCurrentsAddUp) {
-  EXPECT_LE(toldAt(zero(), deaf(blinking(2.0, 0.05, 0.1)), 4.0), 1.0);
-  EXPECT_LE(toldAt(zero(), deaf(blinking(2.0, 0.02, 0.08)), 9.0), 4.0);
+  EXPECT_LE(deviationToldAt(zero(), deaf(blinking(2.0, 0.05, 0.1)), 4.0), 1.0);
+  EXPECT_LE(deviationToldAt(zero(), deaf(blinking(2.0, 0.02, 0.08)), 9.0), 4.0);
   // A spike now and then is noise.
-  EXPECT_EQ(toldAt(zero(), deaf(blinking(2.0, 0.005, 0.145)), 60.0), kNever);
+  EXPECT_EQ(deviationToldAt(zero(), deaf(blinking(2.0, 0.005, 0.145)), 60.0), kNever);
 }
 
 TEST(CurrentComparison, CountsAnewWhenItIsForgiven) {
@@ -247,11 +244,11 @@ struct SlowLoop {
 
 /// When the coil is told to deviate [s]; what the amplifier measures is replaced by `lie`, if
 /// given.
-double toldAt(const Course& commanded,
-              SlowAmplifier amplifier,
-              const SlowLoop& loop,
-              double end,
-              const Course& lie = {}) {
+double deviationToldAt(const Course& commanded,
+                       SlowAmplifier amplifier,
+                       const SlowLoop& loop,
+                       double end,
+                       const Course& lie = {}) {
   CurrentComparison comparison(1, kTolerance, kBeats, kBeat);
   double setpoint = 0.0;
   for (double time = 0.0; time < end;) {
@@ -279,10 +276,10 @@ TEST(CurrentComparison, SlowAnswersOfAnHonestAmplifierAreNoDeviation) {
         for (const double applied : {0.0, 1.0}) {
           for (const double measured : {0.0, 1.0}) {
             for (const auto& [name, course] : commands()) {
-              EXPECT_EQ(toldAt(course,
-                               SlowAmplifier(delay, time_constant),
-                               {answer, applied, measured},
-                               4.0),
+              EXPECT_EQ(deviationToldAt(course,
+                                        SlowAmplifier(delay, time_constant),
+                                        {answer, applied, measured},
+                                        4.0),
                         kNever)
                   << name << ", answers of " << answer << " s, delay " << delay
                   << ", time constant " << time_constant << ", applied at " << applied
@@ -312,7 +309,7 @@ TEST(CurrentComparison, ASlowLoopTellsInHardlyMoreTime) {
       const Course commanded = [off](double time) { return time < off ? 2.0 : 0.0; };
       const Course stuck = [](double time) { return time < 0.1 ? 0.0 : 2.0; };
       const double told =
-          toldAt(commanded, SlowAmplifier(0.0, 0.0), {answer, 0.0, 0.0}, 4.0, stuck) - off;
+          deviationToldAt(commanded, SlowAmplifier(0.0, 0.0), {answer, 0.0, 0.0}, 4.0, stuck) - off;
       EXPECT_GT(told, 0.29) << answer;
       EXPECT_LT(told, longest) << answer;
     }

@@ -18,14 +18,14 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSimulated = 978307200.0;  // [s] 2001, as a simulator or a recording may say
 
 /// One command to a supervisor that follows /owner since 10 s.
-struct Case {
+struct OfferedCommand {
   const char* what;
   CoilCommand command;
   Instant now;
   const char* refusal;  ///< part of the sentence; nullptr: it is accepted
 };
 
-std::vector<Case> cases() {
+std::vector<OfferedCommand> offeredCommands() {
   const double inf = std::numeric_limits<double>::infinity();
   return {
       {"the next one", given("/owner", 10.05), at(10.05), nullptr},
@@ -54,7 +54,7 @@ std::vector<Case> cases() {
 }
 
 TEST(CurrentSupervisor, AcceptsWhatCountsAndRefusesTheRestByName) {
-  for (const Case& one : cases()) {
+  for (const OfferedCommand& one : offeredCommands()) {
     CurrentSupervisor supervisor(limits(), 2);
     ASSERT_EQ(supervisor.offer(given("/owner", 10.0, 0.5), at(10.0)), "");
     const std::string refusal = supervisor.offer(one.command, one.now);

@@ -18,10 +18,10 @@
 namespace sac {
 namespace {
 
-constexpr char kShippedFile[] = SOURCE_DIR "/config/joint_sensor.yaml";
+constexpr char kShippedSensorFile[] = SOURCE_DIR "/config/joint_sensor.yaml";
 
-JointSensorOptions shippedOptions() {
-  return readJointSensorOptions(YamlMap::load(kShippedFile));
+JointSensorOptions shippedSensorOptions() {
+  return readJointSensorOptions(YamlMap::load(kShippedSensorFile));
 }
 
 void put(const JointSensorOptions& options, const Eigen::Vector3d& q, ScriptedTransport& bus) {
@@ -39,7 +39,7 @@ std::string configError(const std::string& text) {
 }
 
 TEST(JointSensor, ReadsTheAnglesThatItsRegistersHold) {
-  JointSensorOptions options = shippedOptions();
+  JointSensorOptions options = shippedSensorOptions();
   options.tilt->matrix << 1.01, 0.02, -0.015, 0.98;
   options.tilt->x.zero = 1200.0;
   options.tilt->y.sign = -1;
@@ -70,22 +70,22 @@ TEST(JointSensor, TiltChannelsTellComponentsOfGravity) {
 TEST(JointSensor, ReadsNeighbouringRegistersInOneRequest) {
   ScriptedTransport bus;
   bus.open();
-  JointSensor sensor(shippedOptions(), bus);
+  JointSensor sensor(shippedSensorOptions(), bus);
   ASSERT_EQ(sensor.requests().size(), 1U);
   EXPECT_EQ(sensor.requests()[0].count, 6);
   sensor.read();
   EXPECT_EQ(bus.reads(), 1);
 
-  JointSensorOptions apart = shippedOptions();
+  JointSensorOptions apart = shippedSensorOptions();
   apart.encoders[0].field.unit = 3;
   EXPECT_EQ(JointSensor(apart, bus).requests().size(), 2U);
-  apart = shippedOptions();
+  apart = shippedSensorOptions();
   apart.encoders[0].field.address = 500;
   EXPECT_EQ(JointSensor(apart, bus).requests().size(), 2U);
 }
 
 TEST(JointSensor, EncoderGoesOnThroughTheEndOfItsRange) {
-  const JointSensorOptions options = shippedOptions();
+  const JointSensorOptions options = shippedSensorOptions();
   ScriptedTransport bus;
   bus.open();
   JointSensor sensor(options, bus);
@@ -100,7 +100,7 @@ TEST(JointSensor, EncoderGoesOnThroughTheEndOfItsRange) {
 }
 
 TEST(JointSensor, BeginsWithTheAngleNearestToZero) {
-  const JointSensorOptions options = shippedOptions();
+  const JointSensorOptions options = shippedSensorOptions();
   ScriptedTransport bus;
   bus.open();
   put(options, {0.0, 0.0, 6.0}, bus);
@@ -108,7 +108,7 @@ TEST(JointSensor, BeginsWithTheAngleNearestToZero) {
 }
 
 TEST(JointSensor, RefusesWhatNoPoseHas) {
-  JointSensorOptions options = shippedOptions();
+  JointSensorOptions options = shippedSensorOptions();
   ScriptedTransport bus;
   bus.open();
   JointSensor sensor(options, bus);

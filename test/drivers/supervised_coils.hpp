@@ -19,6 +19,13 @@ inline Eigen::VectorXd amperes(double first, double second = 0.0) {
   return Eigen::Vector2d(first, second);
 }
 
+/// What is set in a coil, and what is measured [A].
+struct Flow {
+  double set = 0.0;
+  double measured = 0.0;
+  int beats = 1;
+};
+
 /// A moment by two clocks that agree.
 inline Instant at(double steady) {
   return {steady, kWall + steady};

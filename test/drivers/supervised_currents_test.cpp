@@ -11,13 +11,6 @@
 namespace sac {
 namespace {
 
-/// What is set and measured in the first coil [A].
-struct Flow {
-  double set = 0.0;
-  double measured = 0.0;
-  int beats = 1;
-};
-
 std::string faultAfter(const std::vector<Flow>& flows, const SupervisorLimits& with = limits()) {
   CurrentSupervisor supervisor(with, 2);
   double now = 10.0;

@@ -14,7 +14,7 @@ constexpr std::uint16_t kTransaction = 0x1502;
 
 /// A request, its bytes, and the right answer (Modbus application protocol V1.1b3, the examples of
 /// functions 3, 4, 16 and 23).
-struct Case {
+struct StandardFrame {
   const char* what;
   TcpFrame frame;
   Bytes bytes;
@@ -22,7 +22,7 @@ struct Case {
   std::vector<std::uint16_t> words;
 };
 
-std::vector<Case> cases() {
+std::vector<StandardFrame> standardFrames() {
   return {
       {"read holding registers",
        TcpFrame::read(kTransaction, {17, RegisterTable::kHolding, 0x6b, 3}),
@@ -49,7 +49,7 @@ std::vector<Case> cases() {
 }
 
 TEST(TcpFrame, IsWhatTheStandardSays) {
-  for (const Case& one : cases()) {
+  for (const StandardFrame& one : standardFrames()) {
     EXPECT_EQ(one.frame.bytes(), one.bytes) << one.what;
     EXPECT_EQ(one.frame.defect(one.answer), "") << one.what;
     EXPECT_EQ(one.frame.exception(one.answer), std::nullopt) << one.what;
@@ -58,7 +58,7 @@ TEST(TcpFrame, IsWhatTheStandardSays) {
 }
 
 TEST(TcpFrame, TakesNoOtherAnswer) {
-  for (const Case& one : cases()) {
+  for (const StandardFrame& one : standardFrames()) {
     // All but what was read is known before.
     const std::size_t known = one.answer.size() - 2 * one.words.size();
     for (std::size_t place = 0; place < known; ++place) {
@@ -79,7 +79,7 @@ TEST(TcpFrame, TakesNoOtherAnswer) {
 }
 
 TEST(TcpFrame, TakesAnExceptionOfTheSameUnitAndFunction) {
-  for (const Case& one : cases()) {
+  for (const StandardFrame& one : standardFrames()) {
     Bytes answer(one.answer.begin(), one.answer.begin() + 8);
     answer[5] = 3;
     answer[7] |= 0x80;

@@ -1,20 +1,16 @@
 #include <cmath>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "drivers/shipped_coil_driver.hpp"
 #include "spherical_actuator_calibration/drivers/current_comparison.hpp"
 #include "spherical_actuator_calibration/drivers/stray_currents.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kBeat = 0.005;  // [s] of the shipped configuration, like what follows
-constexpr double kTolerance = 0.15;
-constexpr int kBeats = 40;
 
 /// Whatever was set before its driver began, it had that.
 class Amplifier {

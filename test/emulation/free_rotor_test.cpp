@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "emulation/time_step.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
@@ -11,7 +12,6 @@
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;
 constexpr double kStopTilt = 0.9;
 
 class FreeRotorTest : public ::testing::Test {
@@ -24,7 +24,7 @@ TEST_F(FreeRotorTest, RestsWhereNothingActsOnIt) {
   const Eigen::Vector3d q(0.2, -0.1, 1.0);
   rotor.release(q);
   for (int n = 0; n < 1000; ++n) {
-    rotor.advance(kStep, no_current_);
+    rotor.advance(kTimeStep, no_current_);
   }
   EXPECT_LT((rotor.position() - q).norm(), 1e-9);
 }
@@ -37,8 +37,8 @@ TEST_F(FreeRotorTest, SwingsAsAPendulum) {
   rotor.release({0.05, 0.0, 0.0});
   // Half a period of small swings.
   const double half = kPi * std::sqrt(1e-3 / 0.01);
-  for (int n = 0; n < std::lround(half / kStep); ++n) {
-    rotor.advance(kStep, no_current_);
+  for (int n = 0; n < std::lround(half / kTimeStep); ++n) {
+    rotor.advance(kTimeStep, no_current_);
   }
   EXPECT_NEAR(rotor.position().x(), -0.05, 1e-4);
 }
@@ -49,7 +49,7 @@ TEST_F(FreeRotorTest, ComesToRestAtTheStopAndLeavesItAgain) {
   FreeRotor rotor(scenarios::paperNominal(), body, kStopTilt);
   rotor.release({0.1, 0.0, 0.0});
   for (int n = 0; n < 3000; ++n) {
-    rotor.advance(kStep, no_current_);
+    rotor.advance(kTimeStep, no_current_);
   }
   EXPECT_TRUE(rotor.isAtStop());
   EXPECT_LE(rotor.position().x(), kStopTilt);
@@ -65,7 +65,7 @@ TEST_F(FreeRotorTest, ACoilMovesIt) {
   Eigen::VectorXd currents = no_current_;
   currents[0] = 1.0;
   for (int n = 0; n < 50; ++n) {
-    rotor.advance(kStep, currents);
+    rotor.advance(kTimeStep, currents);
   }
   EXPECT_GT(rotor.state().angular_velocity.norm(), 0.1);
 }

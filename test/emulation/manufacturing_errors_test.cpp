@@ -12,13 +12,13 @@
 namespace sac {
 namespace {
 
-constexpr std::uint64_t kSeed = 11;
+constexpr std::uint64_t kUnitSeed = 11;
 
 TEST(ManufacturingErrors, StayWithinTheirBoundsAndUseThem) {
   const Actuator nominal = scenarios::paperNominal();
   ManufacturingErrors errors;
   errors.strength = 0.02;
-  const Actuator made = manufacturedActuator(nominal, errors, kSeed);
+  const Actuator made = manufacturedActuator(nominal, errors, kUnitSeed);
   EXPECT_NO_THROW(validate(made));
   double largest_angle = 0.0;
   double largest_gain = 0.0;
@@ -45,7 +45,7 @@ TEST(ManufacturingErrors, StayWithinTheirBoundsAndUseThem) {
 
 TEST(ManufacturingErrors, OfZeroLeaveTheNominalActuator) {
   const Actuator nominal = scenarios::paperNominal();
-  const Actuator made = manufacturedActuator(nominal, {0.0, 0.0, 0.0, 0.0, 0.0}, kSeed);
+  const Actuator made = manufacturedActuator(nominal, {0.0, 0.0, 0.0, 0.0, 0.0}, kUnitSeed);
   for (std::size_t i = 0; i < nominal.poles.size(); ++i) {
     EXPECT_NEAR(made.poles[i].azimuth, nominal.poles[i].azimuth, 1e-15);
     EXPECT_EQ(made.poles[i].gain, 1.0);
@@ -65,9 +65,9 @@ TEST(ManufacturingErrors, LeadOverThePoleOfTheCoordinates) {
 
 TEST(ManufacturingErrors, DependOnTheSeed) {
   const Actuator nominal = scenarios::paperNominal();
-  const Actuator made = manufacturedActuator(nominal, {}, kSeed);
-  EXPECT_EQ(made.coils[7].polar, manufacturedActuator(nominal, {}, kSeed).coils[7].polar);
-  EXPECT_NE(made.coils[7].polar, manufacturedActuator(nominal, {}, kSeed + 1).coils[7].polar);
+  const Actuator made = manufacturedActuator(nominal, {}, kUnitSeed);
+  EXPECT_EQ(made.coils[7].polar, manufacturedActuator(nominal, {}, kUnitSeed).coils[7].polar);
+  EXPECT_NE(made.coils[7].polar, manufacturedActuator(nominal, {}, kUnitSeed + 1).coils[7].polar);
 }
 
 TEST(ManufacturingErrors, RefuseBoundsThatCannotBe) {

@@ -4,19 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include "emulation/time_step.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;  // [s]
-
 /// Time until the fixture rests at its target [s].
 double travelTime(PositioningFixture& fixture) {
   double time = 0.0;
   while (!fixture.isAtRest() && time < 60.0) {
-    fixture.advance(kStep);
-    time += kStep;
+    fixture.advance(kTimeStep);
+    time += kTimeStep;
   }
   return time;
 }
@@ -39,11 +38,12 @@ TEST(PositioningFixture, NeverExceedsItsLimits) {
   Eigen::Vector3d position = fixture.position();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   for (int n = 0; n < 6000; ++n) {
-    fixture.advance(kStep);
-    const Eigen::Vector3d new_velocity = (fixture.position() - position) / kStep;
+    fixture.advance(kTimeStep);
+    const Eigen::Vector3d new_velocity = (fixture.position() - position) / kTimeStep;
     EXPECT_LE(new_velocity.cwiseAbs().maxCoeff(), options.speed * (1.0 + 1e-9));
     // The last step takes what is left of the way.
-    EXPECT_LE((new_velocity - velocity).cwiseAbs().maxCoeff(), 2.5 * options.acceleration * kStep);
+    EXPECT_LE((new_velocity - velocity).cwiseAbs().maxCoeff(),
+              2.5 * options.acceleration * kTimeStep);
     position = fixture.position();
     velocity = new_velocity;
   }

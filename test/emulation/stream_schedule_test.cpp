@@ -13,11 +13,11 @@ namespace sac {
 namespace {
 
 constexpr double kDuration = 50.0;
-constexpr std::uint64_t kSeed = 5;
+constexpr std::uint64_t kScheduleSeed = 5;
 
 std::vector<ScheduledMeasurement> scheduleOf(const StreamOptions& options) {
   std::vector<ScheduledMeasurement> measurements;
-  for (StreamSchedule schedule(options, kDuration, kSeed, RandomPurpose::kJointStream);
+  for (StreamSchedule schedule(options, kDuration, kScheduleSeed, RandomPurpose::kJointStream);
        !schedule.done();
        schedule.advance()) {
     measurements.push_back(schedule.next());

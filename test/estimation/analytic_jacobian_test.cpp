@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/example_whitening.hpp"
 #include "support/autodiff_costs.hpp"
 #include "support/ceres_costs.hpp"
 #include "support/scenarios.hpp"
@@ -9,32 +10,28 @@
 namespace sac {
 namespace {
 
-using RowMajor = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+using ThreeRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Residual and Jacobians of a cost function side by side, at blocks of coordinates.
-RowMajor evaluated(const ceres::CostFunction& cost, const std::vector<const double*>& blocks) {
-  std::vector<RowMajor> jacobians;
+ThreeRows evaluated(const ceres::CostFunction& cost, const std::vector<const double*>& blocks) {
+  std::vector<ThreeRows> jacobians;
   for (const int size : cost.parameter_block_sizes()) {
     jacobians.emplace_back(3, size);
   }
   std::vector<double*> pointers;
   pointers.reserve(jacobians.size());
-  for (RowMajor& jacobian : jacobians) {
+  for (ThreeRows& jacobian : jacobians) {
     pointers.push_back(jacobian.data());
   }
   Eigen::Vector3d residual;
   EXPECT_TRUE(cost.Evaluate(blocks.data(), residual.data(), pointers.data()));
-  RowMajor all = residual;
-  for (const RowMajor& jacobian : jacobians) {
-    RowMajor wider(3, all.cols() + jacobian.cols());
+  ThreeRows all = residual;
+  for (const ThreeRows& jacobian : jacobians) {
+    ThreeRows wider(3, all.cols() + jacobian.cols());
     wider << all, jacobian;
     all = wider;
   }
   return all;
-}
-
-Eigen::Matrix3d someWhitening() {
-  return (Eigen::Matrix3d() << 1.0, 0.0, 0.0, 0.3, 2.0, 0.0, -0.2, 0.1, 0.7).finished();
 }
 
 TEST(AnalyticJacobian, OfTheOrientationAgreesWithAutomaticDifferentiation) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/example_whitening.hpp"
 #include "support/ceres_costs.hpp"
 #include "support/numeric_jacobian.hpp"
 #include "support/scenarios.hpp"
@@ -45,10 +46,6 @@ double jacobianError(const ceres::CostFunction& cost, const std::vector<Eigen::V
     worst = std::max(worst, error.cwiseAbs().maxCoeff());
   }
   return worst;
-}
-
-Eigen::Matrix3d someWhitening() {
-  return (Eigen::Matrix3d() << 1.0, 0.0, 0.0, 0.3, 2.0, 0.0, -0.2, 0.1, 0.7).finished();
 }
 
 TEST(OrientationCost, JacobianIsTheDerivativeAlsoFarFromTheSolution) {

@@ -6,29 +6,26 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/random_matrix.hpp"
+
 namespace sac {
 namespace {
 
 constexpr Eigen::Index kCoordinates = 9;
-constexpr Eigen::Index kResiduals = 12;
-
-Eigen::MatrixXd random(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& generator) {
-  std::normal_distribution<double> normal;
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
-}
+constexpr Eigen::Index kJointResiduals = 12;
 
 /// By the definition, with residuals that do not depend on all coordinates and a covariance of any
 /// rank.
 void expectByDefinition(Eigen::Index rank) {
   std::mt19937_64 generator(3);
-  Eigen::MatrixXd J = random(kResiduals, kCoordinates, generator);
+  Eigen::MatrixXd J = randomMatrix(kJointResiduals, kCoordinates, generator);
   J.col(0).setZero();
   J.col(4).setZero();
-  const Eigen::MatrixXd root = random(kCoordinates, rank, generator);
+  const Eigen::MatrixXd root = randomMatrix(kCoordinates, rank, generator);
   const Eigen::MatrixXd P = root * root.transpose();
-  const Eigen::VectorXd r = random(kResiduals, 1, generator);
+  const Eigen::VectorXd r = randomMatrix(kJointResiduals, 1, generator);
   const Eigen::MatrixXd S =
-      Eigen::MatrixXd::Identity(kResiduals, kResiduals) + J * P * J.transpose();
+      Eigen::MatrixXd::Identity(kJointResiduals, kJointResiduals) + J * P * J.transpose();
   EXPECT_NEAR(jointChiSquare(J.transpose() * J, J.transpose() * r, r.squaredNorm(), P),
               r.dot(S.llt().solve(r)),
               1e-9)

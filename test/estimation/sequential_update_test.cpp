@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/random_matrix.hpp"
+
 namespace sac {
 namespace {
 
@@ -16,11 +18,6 @@ constexpr Eigen::Index kMany = 300;  // of which the covariance waits
 constexpr Eigen::Index kObservations = 23;
 constexpr Eigen::Index kOfDwell = 3;  // observations of each dwell; the last one has fewer
 
-Eigen::MatrixXd random(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& generator) {
-  std::normal_distribution<double> normal;
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(generator); });
-}
-
 /// Residuals that depend on some of the coordinates each, and on errors of their dwells, with a
 /// prior of any rank.
 class SequentialUpdateTest : public testing::TestWithParam<std::pair<Eigen::Index, Eigen::Index>> {
@@ -28,9 +25,9 @@ class SequentialUpdateTest : public testing::TestWithParam<std::pair<Eigen::Inde
   void SetUp() override {
     std::mt19937_64 generator(3);
     const auto [coordinates, rank] = GetParam();
-    const Eigen::MatrixXd root = random(coordinates, rank, generator);
+    const Eigen::MatrixXd root = randomMatrix(coordinates, rank, generator);
     P_ = root * root.transpose() / static_cast<double>(coordinates);
-    r_ = random(3 * kObservations, 1, generator);
+    r_ = randomMatrix(3 * kObservations, 1, generator);
     J_ = Eigen::MatrixXd::Zero(3 * kObservations, coordinates);
     S_ = Eigen::MatrixXd::Identity(3 * kObservations, 3 * kObservations);
     SequentialUpdate update(P_);
@@ -53,13 +50,13 @@ class SequentialUpdateTest : public testing::TestWithParam<std::pair<Eigen::Inde
   void observe(Eigen::Index n, std::mt19937_64& generator, SequentialUpdate& update) {
     WhitenedObservation observation;
     observation.columns = {n % 3, 4, 5 + n % 4};
-    observation.jacobian = random(3, 3, generator);
+    observation.jacobian = randomMatrix(3, 3, generator);
     observation.residual = r_.segment<3>(3 * n);
     for (std::size_t k = 0; k < 3; ++k) {
       J_.block<3, 1>(3 * n, observation.columns[k]) =
           observation.jacobian.col(static_cast<Eigen::Index>(k));
     }
-    const SharedLoading loading = random(3, kSharedErrors, generator);
+    const SharedLoading loading = randomMatrix(3, kSharedErrors, generator);
     // Covariance with those of the same dwell so far, and of its own.
     S_.middleRows<3>(3 * n) += loading * dwell_.transpose();
     S_.middleCols<3>(3 * n) += dwell_ * loading.transpose();

@@ -11,14 +11,14 @@
 namespace sac {
 namespace {
 
-constexpr Eigen::Index kObservations = 5;
-constexpr Eigen::Index kUnknowns = 4;
+constexpr Eigen::Index kDwellObservations = 5;
+constexpr Eigen::Index kDwellUnknowns = 4;
 
 /// A dwell with everything stacked, for comparison with what never is.
 struct Stacked {
-  Eigen::MatrixXd J = Eigen::MatrixXd(3 * kObservations, kUnknowns);
-  Eigen::MatrixXd G = Eigen::MatrixXd(3 * kObservations, kSharedErrors);
-  Eigen::VectorXd r = Eigen::VectorXd(3 * kObservations);
+  Eigen::MatrixXd J = Eigen::MatrixXd(3 * kDwellObservations, kDwellUnknowns);
+  Eigen::MatrixXd G = Eigen::MatrixXd(3 * kDwellObservations, kSharedErrors);
+  Eigen::VectorXd r = Eigen::VectorXd(3 * kDwellObservations);
 
   explicit Stacked(std::uint64_t seed) {
     scenarios::Generator generator(seed);
@@ -45,12 +45,12 @@ struct Stacked {
 
 TEST(SharedErrors, EliminatedTheyLeaveWhatTheStackedCovarianceLeaves) {
   const Stacked stacked(1);
-  DwellSum dwell(kUnknowns);
+  DwellSum dwell(kDwellUnknowns);
   dwell.begin();
-  for (Eigen::Index n = 0; n < kObservations; ++n) {
+  for (Eigen::Index n = 0; n < kDwellObservations; ++n) {
     dwell.add(stacked.observation(n), stacked.loading(n));
   }
-  InformationSum sum(kUnknowns);
+  InformationSum sum(kDwellUnknowns);
   dwell.addTo(sum);
   const Eigen::MatrixXd weight = stacked.weight();
   const Eigen::MatrixXd information = stacked.J.transpose() * weight * stacked.J;
@@ -64,7 +64,7 @@ TEST(SharedErrors, TakenOutAnObservationLeavesTheOthers) {
   const Stacked stacked(2);
   DwellElimination all;
   DwellElimination others;
-  for (Eigen::Index n = 0; n < kObservations; ++n) {
+  for (Eigen::Index n = 0; n < kDwellObservations; ++n) {
     all.add(stacked.loading(n), stacked.observation(n).residual);
     if (n != 2) {
       others.add(stacked.loading(n), stacked.observation(n).residual);

@@ -7,24 +7,23 @@
 #include <gtest/gtest.h>
 
 #include "current_steps.hpp"
+#include "motion/stepping_currents.hpp"
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kLag = 2e-3;     // [s] of currents behind their setpoints
-constexpr double kHold = 5e-3;    // [s] from one setpoint to the next
-constexpr double kLate = 1.5e-3;  // [s] of a setpoint behind its command
-constexpr double kDuration = 20.0;
-constexpr double kRate = 11.0;  // [rad/s] of the first coil
+constexpr double kLate = 1.5e-3;          // [s] of a setpoint behind its command
+constexpr double kFirstFrequency = 11.0;  // [rad/s] of the first coil
 
 Stamp stampOf(double time) {
   return static_cast<Stamp>(std::llround((time + 100.0) * 1e9));
 }
 
 Eigen::Vector3d wish(double time) {
-  return {
-      0.3 * std::sin(kRate * time), 0.2 * std::sin(14.0 * time + 1.0), 0.2 * std::cos(6.0 * time)};
+  return {0.3 * std::sin(kFirstFrequency * time),
+          0.2 * std::sin(14.0 * time + 1.0),
+          0.2 * std::cos(6.0 * time)};
 }
 
 /// Tells a visitor the currents of three coils that follow sums of sines in steps, with a lag.
@@ -75,7 +74,7 @@ MotionStreams sampled(double interval, double phase) {
 
 /// Ends at zero as test functions do; its phase is that which tells a delay best.
 double weight(double time) {
-  return std::pow(std::sin(M_PI * time / kDuration), 2) * std::cos(kRate * time);
+  return std::pow(std::sin(M_PI * time / kDuration), 2) * std::cos(kFirstFrequency * time);
 }
 
 /// By how much the first coil is late where its sum over samples stands for its integral [s].

@@ -7,16 +7,15 @@
 
 #include <gtest/gtest.h>
 
+#include "motion/stepping_currents.hpp"
+
 namespace sac {
 namespace {
 
-constexpr double kLag = 2e-3;   // [s] of currents behind their setpoints
-constexpr double kHold = 5e-3;  // [s] from one setpoint to the next
 constexpr double kStep = 0.05;  // [A]
 
 /// Currents of two coils that step up or down and lag, sampled.
 MotionStreams stepping(double interval, double phase, double noise) {
-  constexpr double kDuration = 20.0;
   std::mt19937 generator(1);
   std::normal_distribution<double> normal(0.0, 1.0);
   MotionStreams streams;

@@ -7,19 +7,20 @@
 
 #include <gtest/gtest.h>
 
+#include "motion/streamed_coils.hpp"
+
 namespace sac {
 namespace {
 
-constexpr std::size_t kCoils = 2;
-constexpr double kRate = 100.0;  // [Hz]
+constexpr double kRememberedRate = 100.0;  // [Hz]
 
 class MotionMemoryTest : public ::testing::Test {
  protected:
   /// So many seconds with a turning rotor or a resting one, with or without currents.
   void pass(double seconds, bool moves, bool is_driven) {
-    for (int n = 0; n < static_cast<int>(seconds * kRate); ++n) {
-      now_ += 1.0 / kRate;
-      spin_ += moves ? 0.5 / kRate : 0.0;
+    for (int n = 0; n < static_cast<int>(seconds * kRememberedRate); ++n) {
+      now_ += 1.0 / kRememberedRate;
+      spin_ += moves ? 0.5 / kRememberedRate : 0.0;
       const auto stamp = static_cast<Stamp>(std::llround(now_ * 1e9));
       memory_.add(JointMeasurement{stamp, Eigen::Vector3d(0.1, 0.0, spin_)});
       memory_.add(CurrentMeasurement{stamp, Eigen::Vector2d::Constant(is_driven ? 0.5 : 0.0)});
@@ -29,7 +30,7 @@ class MotionMemoryTest : public ::testing::Test {
   static double secondsOf(const MotionRecording& recording) {
     double seconds = 0.0;
     for (const MotionStreams& streams : recording.spans) {
-      seconds += static_cast<double>(streams.joints.size()) / kRate;
+      seconds += static_cast<double>(streams.joints.size()) / kRememberedRate;
     }
     return seconds;
   }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "motion/streamed_coils.hpp"
 #include "motion_span.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "support/error_message.hpp"
@@ -13,16 +14,15 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kCoils = 2;
-constexpr double kRate = 200.0;  // [Hz]
+constexpr double kSlicedRate = 200.0;  // [Hz]
 
 class MotionSlicerTest : public ::testing::Test {
  protected:
   /// So many seconds of a turning rotor, or of a resting one.
   void pass(double seconds, double speed = 0.5, bool has_currents = true, double current = 0.5) {
-    for (int n = 0; n < static_cast<int>(seconds * kRate); ++n) {
-      now_ += 1.0 / kRate;
-      spin_ += speed / kRate;
+    for (int n = 0; n < static_cast<int>(seconds * kSlicedRate); ++n) {
+      now_ += 1.0 / kSlicedRate;
+      spin_ += speed / kSlicedRate;
       const auto stamp = static_cast<Stamp>(std::llround(now_ * 1e9));
       slicer_.add(JointMeasurement{stamp, Eigen::Vector3d(0.1, 0.0, spin_)});
       if (has_currents) {
@@ -134,8 +134,8 @@ TEST_F(MotionSlicerTest, LeavesOutRestsHolesAndHands) {
 TEST_F(MotionSlicerTest, TakesNoJumpOfASensorThatWrapsAround) {
   spin_ = 3.0;
   for (int n = 0; n < 400; ++n) {
-    now_ += 1.0 / kRate;
-    spin_ += 0.5 / kRate;
+    now_ += 1.0 / kSlicedRate;
+    spin_ += 0.5 / kSlicedRate;
     const auto stamp = static_cast<Stamp>(std::llround(now_ * 1e9));
     const double read = std::remainder(spin_, 2.0 * std::acos(-1.0));
     slicer_.add(JointMeasurement{stamp, Eigen::Vector3d(0.1, 0.0, read)});

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/current_threshold.hpp"
 #include "planning/plan_step.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
@@ -13,8 +14,6 @@
 
 namespace sac {
 namespace {
-
-constexpr double kThreshold = 0.05;  // [A]
 
 Sample sampleAt(const Eigen::Vector3d& joints, const std::vector<double>& currents) {
   Sample sample;

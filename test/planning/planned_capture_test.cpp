@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/current_threshold.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kThreshold = 0.05;
 constexpr Stamp kRest = 7;
 
 class PlannedCaptureTest : public ::testing::Test {

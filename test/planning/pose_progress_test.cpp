@@ -5,14 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/current_threshold.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 
 namespace sac {
 namespace {
-
-constexpr double kThreshold = 0.05;  // [A]
 
 Eigen::Vector3d place() {
   return {0.1, -0.2, 1.5};

@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/actuator/urdf_generator.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
+#include "storage/database_examples.hpp"
 #include "support/error_message.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
@@ -19,7 +20,7 @@
 namespace sac {
 namespace {
 
-constexpr char kDate[] = "2024-05-31T12:00:00Z";
+using database_examples::kDate;
 
 class CalibrationFilesTest : public ::testing::Test {
  protected:

@@ -17,8 +17,11 @@ inline constexpr char kDate[] = "2024-05-31T12:00:00Z";
 
 /// The paper's actuator as drawn, serial SA-001.
 SessionIdentity identity();
-/// The same without poles and coils, and so with 9 parameters.
+inline constexpr Eigen::Index kCoils = 24;       ///< of it
+inline constexpr Eigen::Index kParameters = 73;  ///< of it
+/// The same without poles and coils.
 SessionIdentity jointIdentity();
+inline constexpr Eigen::Index kJointParameters = 9;  ///< of it
 
 /// A sample with orientation, torque and as many currents.
 Sample sample(std::uint32_t id, Eigen::Index coils);

@@ -19,9 +19,9 @@
 namespace sac {
 namespace {
 
+using database_examples::kCoils;
 using database_examples::kDate;
 
-constexpr Eigen::Index kCoils = 24;
 constexpr double kThreshold = 0.05;  // [A]
 const Eigen::Vector3d here(0.1, 0.2, 0.3);
 const Eigen::Vector3d there(0.4, 0.0, 0.0);

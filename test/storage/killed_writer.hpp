@@ -19,9 +19,8 @@ namespace sac::killed_writer {
 
 using database_examples::isSame;
 using database_examples::jointIdentity;
-
-constexpr Eigen::Index kParameters = 9;
-constexpr Eigen::Index kCoils = 24;
+using database_examples::kCoils;
+using database_examples::kJointParameters;
 
 /// What the writer says: that it has stored something, or is about to remove a sample.
 enum class Event : std::uint32_t { kOpened, kSample, kRemoving, kRemoved, kRevision };
@@ -79,7 +78,7 @@ inline void expectNothingLost(const std::string& path, const Acknowledged& ackno
   const Revision current = database.current();
   EXPECT_GE(current.number, acknowledged.revision);
   if (current.number > 0) {
-    EXPECT_TRUE(isSame(current.state, database_examples::state(current.number, kParameters)));
+    EXPECT_TRUE(isSame(current.state, database_examples::state(current.number, kJointParameters)));
   }
 }
 

@@ -19,7 +19,7 @@
 namespace sac {
 namespace {
 
-constexpr char kDate[] = "2024-05-31T12:00:00Z";
+using database_examples::kDate;
 
 class LiveSessionTest : public ::testing::Test {
  protected:

@@ -32,13 +32,13 @@ namespace sac {
 namespace {
 
 using database_examples::jointIdentity;
+using database_examples::kCoils;
 using database_examples::kDate;
+using database_examples::kJointParameters;
 using killed_writer::Acknowledged;
 using killed_writer::Event;
 using killed_writer::expectNothingLost;
 using killed_writer::expectNothingTorn;
-using killed_writer::kCoils;
-using killed_writer::kParameters;
 using killed_writer::Message;
 
 /// Stores a sample as an operator does who repeats what was refused. Returns whether it had been
@@ -62,8 +62,8 @@ bool storeRevision(SessionDatabase& database, std::uint32_t number) {
   for (;;) {
     try {
       return database
-                 .addCycle(database_examples::report(number, 1, kParameters),
-                           database_examples::state(number, kParameters),
+                 .addCycle(database_examples::report(number, 1, kJointParameters),
+                           database_examples::state(number, kJointParameters),
                            false,
                            kDate)
                  .number != number;

@@ -21,10 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using database_examples::identity;
+using database_examples::kCoils;
 using database_examples::kDate;
-
-constexpr Eigen::Index kCoils = 24;
-constexpr Eigen::Index kParameters = 73;
+using database_examples::kParameters;
 
 /// A disk that can be filled. Where this process may mount, it is a small file system of its own;
 /// elsewhere a limit on the size of files takes the place of the full disk.

@@ -19,13 +19,13 @@ namespace sac {
 namespace {
 
 using database_examples::jointIdentity;
+using database_examples::kCoils;
 using database_examples::kDate;
+using database_examples::kJointParameters;
 using killed_writer::Acknowledged;
 using killed_writer::Event;
 using killed_writer::expectNothingLost;
 using killed_writer::expectNothingTorn;
-using killed_writer::kCoils;
-using killed_writer::kParameters;
 using killed_writer::Message;
 
 /// Stores samples, removals, cycles and revisions, each acknowledged through the pipe, until it is
@@ -46,12 +46,12 @@ using killed_writer::Message;
     database.removeSample(id, kDate);
     tell(Event::kRemoved, id);
 
-    CycleReport failed = database_examples::report(id, 1, kParameters);
+    CycleReport failed = database_examples::report(id, 1, kJointParameters);
     failed.success = false;
     database.addCycle(failed, kDate);
     const std::uint32_t number = database.current().number + 1;
-    database.addCycle(database_examples::report(number, 1, kParameters),
-                      database_examples::state(number, kParameters),
+    database.addCycle(database_examples::report(number, 1, kJointParameters),
+                      database_examples::state(number, kJointParameters),
                       false,
                       kDate);
     tell(Event::kRevision, number);

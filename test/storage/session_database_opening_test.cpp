@@ -17,10 +17,9 @@ namespace sac {
 namespace {
 
 using database_examples::identity;
+using database_examples::kCoils;
 using database_examples::kDate;
-
-constexpr Eigen::Index kCoils = 24;
-constexpr Eigen::Index kParameters = 73;
+using database_examples::kParameters;
 
 class OpeningTest : public ::testing::Test {
  protected:

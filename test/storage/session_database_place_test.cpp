@@ -21,9 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 using database_examples::identity;
 using database_examples::jointIdentity;
+using database_examples::kCoils;
 using database_examples::kDate;
-
-constexpr Eigen::Index kCoils = 24;
+using database_examples::kParameters;
 
 /// A session in a folder that can be taken away.
 class PlaceTest : public ::testing::Test {
@@ -168,7 +168,6 @@ TEST_F(PlaceTest, TheLockHoldsByAnotherName) {
 }
 
 TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
-  constexpr Eigen::Index kParameters = 73;
   constexpr unsigned kTimes = 100;
   CalibrationState state = database_examples::state(1, kParameters);
   state.belief.covariance = (state.belief.covariance + state.belief.covariance.transpose()).eval();
@@ -224,7 +223,6 @@ constexpr char kWithoutSharedErrors[] =
     "ALTER TABLE samples DROP COLUMN torque_shared_stddev";
 
 TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
-  constexpr Eigen::Index kParameters = 73;
   const CalibrationState state = database_examples::state(1, kParameters);
   {
     SessionDatabase database(path(), identity());
@@ -271,7 +269,6 @@ TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
 }
 
 TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
-  constexpr Eigen::Index kParameters = 73;
   CycleReport report = database_examples::report(1, 0, kParameters);
   const CalibrationState state = database_examples::state(1, kParameters);
   {
@@ -300,7 +297,6 @@ TEST_F(PlaceTest, ADatabaseOfTheThirdFormatTakesMotions) {
 }
 
 TEST_F(PlaceTest, ADatabaseOfTheFourthFormatKeepsMotions) {
-  constexpr Eigen::Index kParameters = 73;
   CycleReport report = database_examples::report(1, 0, kParameters);
   SessionDatabase(path(), identity()).addCycle(report, kDate);
   database_examples::change(path(), kWithoutDoubts);

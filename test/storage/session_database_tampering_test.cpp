@@ -20,9 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using database_examples::jointIdentity;
+using database_examples::kCoils;
 using database_examples::kDate;
-
-constexpr Eigen::Index kCoils = 24;
 
 /// Files of a session that are changed under their names while it is open.
 class TamperingTest : public ::testing::Test {

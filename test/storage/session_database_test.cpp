@@ -21,10 +21,9 @@ namespace {
 
 using database_examples::identity;
 using database_examples::isSame;
+using database_examples::kCoils;
 using database_examples::kDate;
-
-constexpr Eigen::Index kCoils = 24;
-constexpr Eigen::Index kParameters = 73;
+using database_examples::kParameters;
 
 class SessionDatabaseTest : public ::testing::Test {
  protected:

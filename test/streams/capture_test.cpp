@@ -5,14 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
+#include "streams/coils_in_turn.hpp"
 #include "support/synthetic_streams.hpp"
 
 namespace sac {
 namespace {
 
 using State = CaptureProgress::State;
-
-constexpr std::size_t kCoils = 3;
 
 /// Measurements with begin < time ≤ end [s since the begin of the script].
 synthetic::Streams between(const synthetic::Streams& all, double begin, double end) {
@@ -34,7 +33,7 @@ synthetic::Streams between(const synthetic::Streams& all, double begin, double e
 
 /// A move until 1 s, rest without current until 3 s, then coil 2 with 1.5 A until 6 s, then a move.
 synthetic::Script restThenExcited() {
-  return synthetic::Script(kCoils)
+  return synthetic::Script(kCoilsInTurn)
       .moveTo({0.2, -0.1, 0.7}, 1.0)
       .rest(2.0)
       .excite(1, 1.5, 3.0)
@@ -55,7 +54,7 @@ class Capture : public ::testing::Test {
     return sensors;
   }();
   synthetic::Streams streams_ = synthetic::record(restThenExcited(), sensors_, 1);
-  SampleBuilder builder_{{}, kCoils};
+  SampleBuilder builder_{{}, kCoilsInTurn};
   double fed_ = -1.0;
 };
 
@@ -90,7 +89,7 @@ TEST_F(Capture, ChangesNothing) {
   ASSERT_EQ(builder_.capture(synthetic::stampAt(3.5), 1.0).state, State::kDone);
   feedUntil(9.0);
   builder_.finish();
-  SampleBuilder untouched({}, kCoils);
+  SampleBuilder untouched({}, kCoilsInTurn);
   const std::vector<Sample> expected = synthetic::samplesOf(untouched, streams_);
   const std::vector<Sample> samples = builder_.takeSamples();
   ASSERT_EQ(samples.size(), expected.size());
@@ -106,8 +105,8 @@ TEST_F(Capture, WaitsForRestButNotForEver) {
   EXPECT_EQ(moving.message, "The rotor moves: let it rest.");
 
   const synthetic::Streams restless =
-      synthetic::record(synthetic::Script(kCoils).driftBy({1.0, 0.0, 0.0}, 6.0), {}, 1);
-  SampleBuilder builder({}, kCoils);
+      synthetic::record(synthetic::Script(kCoilsInTurn).driftBy({1.0, 0.0, 0.0}, 6.0), {}, 1);
+  SampleBuilder builder({}, kCoilsInTurn);
   synthetic::feed(builder, restless);
   const CaptureProgress refused = builder.capture(synthetic::stampAt(0.5), 0.5);
   EXPECT_EQ(refused.state, State::kRefused);
@@ -134,7 +133,7 @@ TEST_F(Capture, NamesAStreamThatFellSilent) {
 TEST_F(Capture, TakesAnAbsentStreamForAbsent) {
   synthetic::Sensors sensors;
   sensors.orientation_rate = 0.0;
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kCoilsInTurn);
   synthetic::feed(builder, between(synthetic::record(restThenExcited(), sensors, 1), -1.0, 4.8));
   const CaptureProgress progress = builder.capture(synthetic::stampAt(3.5), 1.0);
   ASSERT_EQ(progress.state, State::kDone) << progress.message;
@@ -144,8 +143,8 @@ TEST_F(Capture, TakesAnAbsentStreamForAbsent) {
 
 TEST_F(Capture, TellsThatTheBiasStays) {
   const synthetic::Streams streams =
-      synthetic::record(synthetic::Script(kCoils).excite(1, 1.5, 4.0), sensors_, 1);
-  SampleBuilder builder({}, kCoils);
+      synthetic::record(synthetic::Script(kCoilsInTurn).excite(1, 1.5, 4.0), sensors_, 1);
+  SampleBuilder builder({}, kCoilsInTurn);
   synthetic::feed(builder, streams);
   const CaptureProgress progress = builder.capture(synthetic::stampAt(1.0), 1.0);
   ASSERT_EQ(progress.state, State::kDone) << progress.message;
@@ -190,7 +189,7 @@ TEST_F(Capture, BeginsAfterWhatCameTooLate) {
 }
 
 TEST(CaptureWithoutStreams, NamesWhatIsMissing) {
-  const SampleBuilder builder({}, kCoils);
+  const SampleBuilder builder({}, kCoilsInTurn);
   const CaptureProgress progress = builder.capture(0, 1.0);
   EXPECT_EQ(progress.state, State::kRefused);
   EXPECT_NE(progress.message.find("joint_states"), std::string::npos);

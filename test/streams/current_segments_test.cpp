@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "streams/coils_in_turn.hpp"
 #include "support/synthetic_streams.hpp"
 
 namespace sac {
@@ -14,10 +15,8 @@ using synthetic::Script;
 using synthetic::stampAt;
 using synthetic::timeOf;
 
-constexpr std::size_t kCoils = 3;
-
 StreamBuffer currentsOf(const Script& script) {
-  StreamBuffer buffer(kCoils);
+  StreamBuffer buffer(kCoilsInTurn);
   for (const CurrentMeasurement& measurement : synthetic::record(script, {}, 2).currents) {
     buffer.push(measurement.stamp, measurement.current.data());
   }
@@ -38,7 +37,8 @@ std::vector<CurrentSegment> longSegments(const StreamBuffer& buffer) {
 }
 
 TEST(CurrentSegments, CutsWhereThePatternChanges) {
-  const Script script = Script(kCoils).rest(0.5).excite(0, 2.0, 0.5).excite(2, -1.0, 0.5).rest(0.5);
+  const Script script =
+      Script(kCoilsInTurn).rest(0.5).excite(0, 2.0, 0.5).excite(2, -1.0, 0.5).rest(0.5);
   const std::vector<CurrentSegment> segments = longSegments(currentsOf(script));
   ASSERT_EQ(segments.size(), 4U);
   EXPECT_FALSE(segments[0].excited);
@@ -54,7 +54,7 @@ TEST(CurrentSegments, CutsWhereThePatternChanges) {
 }
 
 TEST(CurrentSegments, LeavesRampsOut) {
-  const Script script = Script(kCoils).rest(0.5).rampTo(1, 2.0, 1.0).excite(1, 2.0, 0.5);
+  const Script script = Script(kCoilsInTurn).rest(0.5).rampTo(1, 2.0, 1.0).excite(1, 2.0, 0.5);
   const std::vector<CurrentSegment> segments = longSegments(currentsOf(script));
   ASSERT_EQ(segments.size(), 2U);
   EXPECT_NEAR(timeOf(segments[0].span.end), 0.5, 0.03);
@@ -63,9 +63,9 @@ TEST(CurrentSegments, LeavesRampsOut) {
 
 TEST(CurrentSegments, PassesOverOneDeviatingMeasurement) {
   std::vector<CurrentMeasurement> stream =
-      synthetic::record(Script(kCoils).excite(0, 2.0, 1.0), {}, 2).currents;
+      synthetic::record(Script(kCoilsInTurn).excite(0, 2.0, 1.0), {}, 2).currents;
   stream[100].current[1] = 5.0;
-  StreamBuffer buffer(kCoils);
+  StreamBuffer buffer(kCoilsInTurn);
   for (const CurrentMeasurement& measurement : stream) {
     buffer.push(measurement.stamp, measurement.current.data());
   }
@@ -79,9 +79,9 @@ TEST(CurrentSegments, PassesOverOneDeviatingMeasurement) {
 
 TEST(CurrentSegments, AHoleEndsASegment) {
   std::vector<CurrentMeasurement> stream =
-      synthetic::record(Script(kCoils).excite(0, 2.0, 2.0), {}, 2).currents;
+      synthetic::record(Script(kCoilsInTurn).excite(0, 2.0, 2.0), {}, 2).currents;
   stream.erase(stream.begin() + 150, stream.begin() + 210);
-  StreamBuffer buffer(kCoils);
+  StreamBuffer buffer(kCoilsInTurn);
   for (const CurrentMeasurement& measurement : stream) {
     buffer.push(measurement.stamp, measurement.current.data());
   }
@@ -89,7 +89,7 @@ TEST(CurrentSegments, AHoleEndsASegment) {
 }
 
 TEST(CurrentSegments, AnEmptyDwellHasNone) {
-  EXPECT_TRUE(longSegments(StreamBuffer(kCoils)).empty());
+  EXPECT_TRUE(longSegments(StreamBuffer(kCoilsInTurn)).empty());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "streams/scripted_dwell.hpp"
 #include "support/synthetic_streams.hpp"
 
 namespace sac {
@@ -18,8 +19,6 @@ using synthetic::Sensors;
 using synthetic::stampAt;
 using synthetic::Streams;
 using synthetic::timeOf;
-
-const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
 
 std::vector<StampInterval> dwellsOf(const std::vector<JointMeasurement>& joints,
                                     const SampleBuilderOptions& options = {}) {

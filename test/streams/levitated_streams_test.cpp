@@ -6,6 +6,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
+#include "streams/scripted_dwell.hpp"
 #include "support/synthetic_streams.hpp"
 
 namespace sac {
@@ -13,19 +14,6 @@ namespace {
 
 using synthetic::Script;
 using synthetic::Sensors;
-
-constexpr std::size_t kCoils = 4;
-
-/// Two coils in turn at one place.
-Script twoPatterns(const Eigen::Vector3d& place) {
-  return Script(kCoils)
-      .moveTo(place)
-      .rest(0.8)
-      .excite(0, 2.0, 0.8)
-      .excite(2, -1.5, 0.8)
-      .rest(0.5)
-      .moveTo(-place);
-}
 
 /// The streams of a rotor without joints.
 synthetic::Streams streamsOf(const Script& script, const Sensors& sensors = {}) {

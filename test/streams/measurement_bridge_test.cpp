@@ -9,21 +9,18 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/emulation/session_simulator.hpp"
+#include "streams/example_stamps.hpp"
 #include "support/error_message.hpp"
+#include "support/not_a_number.hpp"
 
 namespace sac {
 namespace {
 
-constexpr Stamp kSecond = 1'000'000'000;
-constexpr Stamp kNow = 1'600'000'000 * kSecond;
-constexpr Stamp kPeriod = kSecond / 100;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// The rotor turns about z by this much in a period.
-constexpr double kStep = 0.01;
+constexpr double kTurn = 0.01;
 
 Eigen::Matrix3d orientationAt(double periods) {
-  return rotationExp({0.0, 0.0, kStep * periods});
+  return rotationExp({0.0, 0.0, kTurn * periods});
 }
 
 MarkerPoseMeasurement poseAt(int period) {

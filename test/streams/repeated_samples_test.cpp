@@ -6,16 +6,15 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
+#include "streams/coils_in_turn.hpp"
 #include "support/synthetic_streams.hpp"
 
 namespace sac {
 namespace {
 
-constexpr std::size_t kCoils = 3;
-
 /// Two poses, each with rest, coil 2 and coil 3; at the second one with rest at the end, too.
 synthetic::Script twoPoses() {
-  return synthetic::Script(kCoils)
+  return synthetic::Script(kCoilsInTurn)
       .rest(1.0)
       .moveTo({0.2, -0.1, 0.7}, 1.0)
       .rest(2.0)
@@ -60,7 +59,7 @@ std::vector<Sample> captured(const synthetic::Streams& streams,
                              double duration,
                              const Silence& silence = {}) {
   std::vector<Sample> samples;
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kCoilsInTurn);
   std::size_t torque = 0;
   std::size_t current = 0;
   std::size_t orientation = 0;
@@ -93,7 +92,7 @@ std::vector<Sample> captured(const synthetic::Streams& streams,
 std::vector<Sample> repeated(const std::vector<Sample>& taken,
                              const synthetic::Streams& streams,
                              const SampleBuilderOptions& options = {}) {
-  SampleBuilder builder(options, kCoils);
+  SampleBuilder builder(options, kCoilsInTurn);
   builder.repeat(taken);
   return synthetic::samplesOf(builder, streams);
 }
@@ -153,7 +152,7 @@ TEST(RepeatedSamples, AreTheSameWhereWhatWasMeasuredBeforeCameTooLate) {
 
 TEST(RepeatedSamples, AreThoseOfWholeDwellsWhereTheseWereTaken) {
   const synthetic::Streams streams = recorded();
-  SampleBuilder live({}, kCoils);
+  SampleBuilder live({}, kCoilsInTurn);
   std::vector<Sample> taken = synthetic::samplesOf(live, streams);
   ASSERT_GE(taken.size(), 6U);
   expectEqual(repeated(taken, streams), taken);
@@ -172,7 +171,7 @@ TEST(RepeatedSamples, FollowOtherOptions) {
   EXPECT_GE(samples[1].torque_stddev, 0.01);
 
   options.largest_joint_spread = 1e-6;
-  SampleBuilder builder(options, kCoils);
+  SampleBuilder builder(options, kCoilsInTurn);
   builder.repeat(taken);
   EXPECT_TRUE(synthetic::samplesOf(builder, streams).empty());
   EXPECT_EQ(builder.report().discarded, taken.size());
@@ -181,7 +180,7 @@ TEST(RepeatedSamples, FollowOtherOptions) {
 TEST(RepeatedSamples, TellWhatTheStreamsDoNotHold) {
   const synthetic::Streams streams = recorded();
   const std::vector<Sample> taken = session(streams);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kCoilsInTurn);
   builder.repeat(taken);
   // It begins in the first rest, after its part without current.
   const std::vector<Sample> samples = synthetic::samplesOf(builder, after(streams, 4.9));
@@ -213,7 +212,7 @@ TEST(RepeatedSamples, OfNonsenseAreRefusedAndHoldNothingBack) {
 
 TEST(RepeatedSamples, EndWithTheirRecording) {
   const synthetic::Streams streams = recorded();
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kCoilsInTurn);
   builder.repeat(session(streams));
   EXPECT_EQ(synthetic::samplesOf(builder, streams).size(), 5U);
   EXPECT_GE(synthetic::samplesOf(builder, streams).size(), 6U);

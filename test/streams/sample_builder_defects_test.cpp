@@ -8,6 +8,8 @@
 
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder.hpp"
+#include "streams/scripted_dwell.hpp"
+#include "support/not_a_number.hpp"
 #include "support/synthetic_streams.hpp"
 
 #include <malloc.h>
@@ -22,22 +24,24 @@ using synthetic::stampAt;
 using synthetic::Streams;
 using synthetic::timeOf;
 
-constexpr std::size_t kCoils = 2;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kDefectCoils = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
 
 /// At rest from 0.8 s to 4.8 s, excited from 2.8 s on.
 Streams oneDwell() {
-  const Script script =
-      Script(kCoils).moveTo(rest_pose).rest(2.0).excite(0, 2.0, 2.0).moveTo(-rest_pose).rest(0.1);
+  const Script script = Script(kDefectCoils)
+                            .moveTo(rest_pose)
+                            .rest(2.0)
+                            .excite(0, 2.0, 2.0)
+                            .moveTo(-rest_pose)
+                            .rest(0.1);
   return synthetic::record(script, {}, 21);
 }
 
 /// The two samples of oneDwell(), as good as ever.
 void expectUnharmed(const std::vector<Sample>& samples) {
   ASSERT_EQ(samples.size(), 2U);
-  const Eigen::Vector3d torque = Script::torque(2.0 * Eigen::VectorXd::Unit(kCoils, 0));
+  const Eigen::Vector3d torque = Script::torque(2.0 * Eigen::VectorXd::Unit(kDefectCoils, 0));
   EXPECT_LT((samples[1].torque - torque).norm(), 6e-4);
   for (const Sample& sample : samples) {
     EXPECT_LT((sample.joint_position - rest_pose).norm(), 3e-5);
@@ -55,7 +59,7 @@ TEST(StreamDefects, NotFiniteNumbersAreDropped) {
   streams.orientations[300].q_stator_rotor.w() = kNaN;
   streams.torques[1000].torque.z() = -kInfinity;
   streams.currents[400].current[1] = kNaN;
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   expectUnharmed(samplesOf(builder, streams));
   EXPECT_EQ(builder.report().joints.droppedFor(DropReason::kNotFinite), 2U);
   EXPECT_EQ(builder.report().orientations.droppedFor(DropReason::kNotFinite), 1U);
@@ -73,18 +77,18 @@ TEST(StreamDefects, QuaternionsThatAreNotUnitAreDroppedOrNormalised) {
   for (std::size_t i = 303; i < streams.orientations.size(); ++i) {
     streams.orientations[i].q_stator_rotor.coeffs() *= 1.0009;
   }
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   const std::vector<Sample> samples = samplesOf(builder, streams);
   expectUnharmed(samples);
   EXPECT_EQ(builder.report().orientations.droppedFor(DropReason::kNotUnit), 3U);
-  EXPECT_NO_THROW(validate(samples.at(1), kCoils));
+  EXPECT_NO_THROW(validate(samples.at(1), kDefectCoils));
 }
 
 TEST(StreamDefects, CurrentsOfWrongSizeAreDropped) {
   Streams streams = oneDwell();
-  streams.currents[400].current = Eigen::VectorXd::Constant(kCoils + 1, 9.0);
+  streams.currents[400].current = Eigen::VectorXd::Constant(kDefectCoils + 1, 9.0);
   streams.currents[401].current.resize(0);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   expectUnharmed(samplesOf(builder, streams));
   EXPECT_EQ(builder.report().currents.droppedFor(DropReason::kWrongSize), 2U);
 }
@@ -96,7 +100,7 @@ TEST(StreamDefects, RepeatedAndLateStampsAreDropped) {
   streams.orientations[300].stamp = 0;
   streams.torques[1000].stamp = streams.torques[999].stamp;
   streams.torques[1001].stamp -= ticksFromSeconds(0.9);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   expectUnharmed(samplesOf(builder, streams));
   EXPECT_EQ(builder.report().joints.droppedFor(DropReason::kRepeated), 1U);
   EXPECT_EQ(builder.report().joints.droppedFor(DropReason::kLate), 1U);
@@ -110,7 +114,7 @@ TEST(StreamDefects, OneWildStampCostsOneMeasurement) {
     Streams streams = oneDwell();
     streams.joints[500].stamp += ticksFromSeconds(error);
     streams.torques[1000].stamp += ticksFromSeconds(error);
-    SampleBuilder builder({}, kCoils);
+    SampleBuilder builder({}, kDefectCoils);
     expectUnharmed(samplesOf(builder, streams));
     EXPECT_EQ(builder.report().joints.droppedFor(DropReason::kJump), 1U);
     EXPECT_EQ(builder.report().torques.droppedFor(DropReason::kJump), 1U);
@@ -124,7 +128,7 @@ TEST(StreamDefects, GlitchesStayOutOfTheMeans) {
   streams.orientations[300].q_stator_rotor = Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
   streams.torques[2000].torque.y() = 30.0;
   streams.currents[800].current[1] = 3.0;
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   const std::vector<Sample> samples = samplesOf(builder, streams);
   expectUnharmed(samples);
   EXPECT_NEAR(samples.at(1).current[1], 0.0, 1e-3);
@@ -138,7 +142,7 @@ TEST(StreamDefects, ADropoutOfTheTrackerIsToldAndTheRestUsed) {
   // 1.5 s to 3.5 s.
   streams.orientations.erase(streams.orientations.begin() + 180,
                              streams.orientations.begin() + 420);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   expectUnharmed(samplesOf(builder, streams));
   EXPECT_EQ(builder.report().orientations.gaps, 1U);
   ASSERT_EQ(builder.report().events.size(), 2U);
@@ -151,7 +155,7 @@ TEST(StreamDefects, ADropoutOfTheTrackerIsToldAndTheRestUsed) {
 TEST(StreamDefects, ADropoutOfTheTrackerLeavesTorqueSamples) {
   Streams streams = oneDwell();
   streams.orientations.erase(streams.orientations.begin() + 300, streams.orientations.end() - 5);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   const std::vector<Sample> samples = samplesOf(builder, streams);
   ASSERT_EQ(samples.size(), 2U);
   EXPECT_TRUE(samples[0].has_orientation);
@@ -163,7 +167,7 @@ TEST(StreamDefects, ADropoutOfTheJointSensorsEndsTheDwell) {
   Streams streams = oneDwell();
   // 2.0 s to 2.5 s.
   streams.joints.erase(streams.joints.begin() + 400, streams.joints.begin() + 500);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   const std::vector<Sample> samples = samplesOf(builder, streams);
   EXPECT_EQ(builder.report().dwells, 2U);
   ASSERT_EQ(samples.size(), 2U);
@@ -177,7 +181,7 @@ TEST(StreamDefects, ATrackerThatMovesAloneIsRefused) {
     orientation.q_stator_rotor =
         Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()) * orientation.q_stator_rotor;
   }
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   EXPECT_TRUE(samplesOf(builder, streams).empty());
   EXPECT_EQ(builder.report().discarded, 2U);
   for (const DwellEvent& event : builder.report().events) {
@@ -189,11 +193,11 @@ TEST(StreamDefects, ATrackerThatMovesAloneIsRefused) {
 TEST(StreamDefects, AResetOfAllClocksSeparatesWhatWasBefore) {
   // The same times twice, the second time in another pose: old data would fit the new stamps.
   const Eigen::Vector3d other_pose(-0.1, 0.4, -0.7);
-  const Script before = Script(kCoils).moveTo(rest_pose).rest(6.0);
-  const Script after = Script(kCoils).moveTo(other_pose).rest(3.0).moveTo(rest_pose);
+  const Script before = Script(kDefectCoils).moveTo(rest_pose).rest(6.0);
+  const Script after = Script(kDefectCoils).moveTo(other_pose).rest(3.0).moveTo(rest_pose);
   const Streams old_streams = synthetic::record(before, {}, 1);
   const Streams new_streams = synthetic::record(after, {}, 2);
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   synthetic::feed(builder, old_streams);
   synthetic::feed(builder, new_streams);
   builder.finish();
@@ -213,7 +217,8 @@ TEST(StreamDefects, AStreamWhoseClockIsBehindDoesNotMixIn) {
   // The joint sensors' clock jumps back by 3 s in another pose: what the others measured in the
   // first pose has the stamps that the joint sensors give now.
   const Eigen::Vector3d other_pose(-0.1, 0.4, -0.7);
-  const Script script = Script(kCoils).moveTo(rest_pose).rest(4.0).moveTo(other_pose).rest(6.0);
+  const Script script =
+      Script(kDefectCoils).moveTo(rest_pose).rest(4.0).moveTo(other_pose).rest(6.0);
   Streams streams = synthetic::record(script, {}, 3);
   for (JointMeasurement& joint : streams.joints) {
     if (timeOf(joint.stamp) > 5.0) {
@@ -221,7 +226,7 @@ TEST(StreamDefects, AStreamWhoseClockIsBehindDoesNotMixIn) {
     }
   }
   // Fed in the order of the true times: streams of different clocks arrive together.
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   std::size_t k = 0;
   for (std::size_t i = 0; i < streams.joints.size(); ++i) {
     builder.add(streams.joints[i]);
@@ -248,7 +253,7 @@ TEST(StreamDefects, NoiseOfEveryKindCrashesNothing) {
                           stampAt(0.0),
                           stampAt(1.0),
                           std::numeric_limits<Stamp>::max()};
-  SampleBuilder builder({}, kCoils);
+  SampleBuilder builder({}, kDefectCoils);
   std::uint64_t added = 0;
   for (int round = 0; round < 50; ++round) {
     for (const double value : bad) {
@@ -296,7 +301,7 @@ std::pair<std::size_t, std::size_t> heapAfterHalves(SampleBuilder& builder, Tick
 }
 
 TEST(SampleBuilderMemory, IsBoundedWhateverTheStreamsDo) {
-  const CurrentMeasurement current{0, Eigen::VectorXd::Zero(kCoils)};
+  const CurrentMeasurement current{0, Eigen::VectorXd::Zero(kDefectCoils)};
   const auto add_others = [&current](SampleBuilder& builder, Stamp stamp) {
     builder.add(OrientationMeasurement{stamp, Eigen::Quaterniond::Identity()});
     builder.add(TorqueMeasurement{stamp, Eigen::Vector3d::Zero()});
@@ -312,7 +317,7 @@ TEST(SampleBuilderMemory, IsBoundedWhateverTheStreamsDo) {
                               Joints::kAlone}) {
     SampleBuilderOptions options;
     options.largest_dwell = 20.0;
-    SampleBuilder builder(options, kCoils);
+    SampleBuilder builder(options, kDefectCoils);
     const auto [half, whole] = heapAfterHalves(builder, [&](int i, Stamp stamp) {
       const bool joints_speak =
           joints != Joints::kNever && !(joints == Joints::kSilentAfterAWhile && i > 2000);

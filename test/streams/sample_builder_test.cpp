@@ -9,6 +9,7 @@
 
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "streams/scripted_dwell.hpp"
 #include "support/error_message.hpp"
 #include "support/synthetic_streams.hpp"
 
@@ -21,20 +22,6 @@ using synthetic::Sensors;
 using synthetic::stampAt;
 using synthetic::Streams;
 using synthetic::timeOf;
-
-constexpr std::size_t kCoils = 4;
-const Eigen::Vector3d rest_pose(0.3, -0.2, 1.0);
-
-/// Arrives, two patterns after a part without current, leaves.
-Script twoPatterns() {
-  return Script(kCoils)
-      .moveTo(rest_pose)
-      .rest(0.8)
-      .excite(0, 2.0, 0.8)
-      .excite(2, -1.5, 0.8)
-      .rest(0.5)
-      .moveTo(-rest_pose);
-}
 
 Eigen::VectorXd pattern(Eigen::Index coil, double current) {
   return current * Eigen::VectorXd::Unit(kCoils, coil);

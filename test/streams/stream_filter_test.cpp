@@ -2,13 +2,10 @@
 
 #include "spherical_actuator_calibration/streams/stamp_filter.hpp"
 #include "spherical_actuator_calibration/streams/stream_statistics.hpp"
+#include "streams/example_stamps.hpp"
 
 namespace sac {
 namespace {
-
-constexpr Stamp kSecond = 1'000'000'000;
-constexpr Stamp kNow = 1'600'000'000 * kSecond;
-constexpr Stamp kPeriod = kSecond / 100;
 
 TEST(StampFilter, AcceptsWhatFollows) {
   StampFilter filter{StampFilterOptions()};

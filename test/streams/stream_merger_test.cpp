@@ -5,12 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "streams/example_stamps.hpp"
+
 namespace sac {
 namespace {
 
-constexpr Stamp kMillisecond = 1'000'000;
-constexpr Stamp kSecond = 1'000 * kMillisecond;
-constexpr Stamp kBegin = 1'600'000'000 * kSecond;
+constexpr Stamp kMillisecond = kSecond / 1000;
+constexpr Stamp kBegin = kNow;
 
 JointMeasurement joint(Stamp stamp) {
   JointMeasurement measurement;

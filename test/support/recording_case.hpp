@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,12 +9,12 @@
 #include "spherical_actuator_calibration/ros/recording/recording_reader.hpp"
 #include "support/bag_editing.hpp"
 #include "support/error_message.hpp"
+#include "support/not_a_number.hpp"
 #include "support/scenarios.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sac {
 
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr char kJoints3[] = "/actuator/joint_states";
 inline constexpr char kOrientation[] = "/actuator/measured_orientation";
 inline constexpr char kTorque[] = "/actuator/measured_torque";

@@ -8,7 +8,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/urdf_file.hpp"
@@ -19,6 +18,7 @@
 #include "support/bag_editing.hpp"
 #include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
+#include "tools/program_outcome.hpp"
 
 namespace sac {
 namespace {
@@ -26,13 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kPositioner[] = SOURCE_DIR "/config/examples/two_axis_positioner/actuator.yaml";
-
-/// What a run of the program left.
-struct Outcome {
-  int status = -1;
-  std::string output;
-  std::string errors;
-};
 
 /// The paper's actuator with three of its coils, so that a session is short.
 Actuator nominalUnit() {
@@ -76,12 +69,7 @@ class CalibrateBag : public testing::Test {
   std::string output() const { return path("calibrated.yaml"); }
 
   Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(CALIBRATE_BAG) + " " + arguments + " >" +
-                                path("stdout") + " 2>" + path("stderr");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            contentOf(path("stdout")),
-            contentOf(path("stderr"))};
+    return outcomeOf(std::string(CALIBRATE_BAG) + " " + arguments, folder_);
   }
 
   /// Calibrates the emulated session into output().

@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -17,7 +16,6 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
-#include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
@@ -28,6 +26,7 @@
 #include "spherical_actuator_calibration/ros/emulation_node/session_bag_writer.hpp"
 #include "support/source_dir.hpp"
 #include "support/temporary_folder.hpp"
+#include "tools/program_outcome.hpp"
 
 namespace sac {
 namespace {
@@ -39,22 +38,10 @@ constexpr const char* kDescription = SOURCE_DIR "/config/pm_spherical_8x24.yaml"
 constexpr const char* kShort =
     " --joint-poses 2 --main-coil-poses 2 --coil-poses 0 --validation-poses 1";
 
-/// What a run of the program left.
-struct Outcome {
-  int status = -1;
-  std::string output;
-  std::string errors;
-};
-
 class SimulateRecording : public testing::Test {
  protected:
   Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(SIMULATE_RECORDING) + " " + arguments + " >" +
-                                path("output") + " 2>" + path("errors");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            contentOf(path("output")),
-            contentOf(path("errors"))};
+    return outcomeOf(std::string(SIMULATE_RECORDING) + " " + arguments, folder_);
   }
 
   /// Records a short session and expects success.

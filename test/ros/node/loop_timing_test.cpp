@@ -8,23 +8,23 @@
 namespace sac {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // [s]
-constexpr double kWork = 2e-5;    // [s]
+constexpr double kLoopPeriod = 1e-3;  // [s]
+constexpr double kWork = 2e-5;        // [s]
 
-LoopTurn turnAt(double begin, double age, double interval = kPeriod) {
+LoopTurn turnAt(double begin, double age, double interval = kLoopPeriod) {
   return {begin, begin + kWork, age, interval};
 }
 
 TEST(LoopTiming, TellsRateAgeAndDuration) {
   LoopTiming timing;
   for (int n = 0; n <= 100; ++n) {
-    timing.add(turnAt(5.0 + n * kPeriod, n == 50 ? 8e-4 : 2e-4));
+    timing.add(turnAt(5.0 + n * kLoopPeriod, n == 50 ? 8e-4 : 2e-4));
   }
   const TimingReport report = timing.take();
   EXPECT_EQ(report.turns, 101U);
   EXPECT_NEAR(report.rate, 1000.0, 1e-6);
   EXPECT_LT(report.jitter, 1e-7);
-  EXPECT_NEAR(report.longest_period, kPeriod, 1e-9);
+  EXPECT_NEAR(report.longest_period, kLoopPeriod, 1e-9);
   EXPECT_NEAR(report.mean_age, 2e-4 + 6e-4 / 101, 1e-12);
   EXPECT_DOUBLE_EQ(report.largest_age, 8e-4);
   EXPECT_NEAR(report.mean_duration, kWork, 1e-12);
@@ -36,7 +36,7 @@ TEST(LoopTiming, JitterIsTheStandardDeviationOfThePeriod) {
   double begin = 0.0;
   for (int n = 0; n <= 1000; ++n) {
     timing.add(turnAt(begin, 1e-4));
-    begin += kPeriod + (n % 2 == 0 ? 1e-4 : -1e-4);
+    begin += kLoopPeriod + (n % 2 == 0 ? 1e-4 : -1e-4);
   }
   const TimingReport report = timing.take();
   EXPECT_NEAR(report.jitter, 1e-4, 1e-9);
@@ -56,14 +56,14 @@ TEST(LoopTiming, AReadingIsOldWhenTheNextOneIsDue) {
 TEST(LoopTiming, AnIntervalThatWasShortOnceMakesNoReadingOld) {
   LoopTiming timing;
   for (int n = 0; n < 100; ++n) {
-    timing.add(turnAt(n * kPeriod, 5e-4, n == 50 ? 2e-4 : kPeriod));
+    timing.add(turnAt(n * kLoopPeriod, 5e-4, n == 50 ? 2e-4 : kLoopPeriod));
   }
   EXPECT_EQ(timing.oldTurns(), 0U);
   // A sensor that has become five times as slow for good.
   for (int n = 0; n < 300; ++n) {
-    timing.add(turnAt(1.0 + 5.0 * n * kPeriod, 5e-4, 5.0 * kPeriod));
+    timing.add(turnAt(1.0 + 5.0 * n * kLoopPeriod, 5e-4, 5.0 * kLoopPeriod));
   }
-  timing.add(turnAt(3.0, 4e-3, 5.0 * kPeriod));
+  timing.add(turnAt(3.0, 4e-3, 5.0 * kLoopPeriod));
   EXPECT_EQ(timing.oldTurns(), 0U);
 }
 
@@ -86,18 +86,18 @@ TEST(LoopTiming, BeginsAnewAfterAReportAndAfterAnInterruption) {
 TEST(LoopTiming, WhatIsMadeOfNothingNewHasNoAge) {
   LoopTiming timing;
   timing.add(turnAt(0.0, 2e-4));
-  timing.add({kPeriod, kPeriod + 3.0 * kWork, std::nullopt});
+  timing.add({kLoopPeriod, kLoopPeriod + 3.0 * kWork, std::nullopt});
   const TimingReport report = timing.take();
   EXPECT_EQ(report.turns, 2U);
   EXPECT_DOUBLE_EQ(report.mean_age, 2e-4);
   EXPECT_NEAR(report.mean_duration, 2.0 * kWork, 1e-12);
-  EXPECT_NEAR(report.rate, 1.0 / kPeriod, 1e-9);
+  EXPECT_NEAR(report.rate, 1.0 / kLoopPeriod, 1e-9);
 }
 
 TEST(TimingDiagnostics, TellsOfTheTurnsSinceItWasAskedLast) {
   TimingDiagnostics diagnostics("beats", "command", "exchange");
   diagnostics.add(turnAt(1.0, 2e-4));
-  diagnostics.add(turnAt(1.0 + kPeriod, 4e-4));
+  diagnostics.add(turnAt(1.0 + kLoopPeriod, 4e-4));
   const auto told = [&] {
     diagnostic_updater::DiagnosticStatusWrapper status;
     diagnostics.run(status);

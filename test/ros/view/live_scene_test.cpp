@@ -11,7 +11,7 @@
 namespace sac {
 namespace {
 
-LiveScene paperScene() {
+LiveScene livePaperScene() {
   CalibrationScene start;
   start.nominal = scenarios::paperNominal();
   return LiveScene(start);
@@ -48,7 +48,7 @@ msg::CalibrationSample sampleOf(std::uint32_t id) {
 }
 
 TEST(LiveScene, TakesTheParametersInForce) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   const Actuator truth = scenarios::paperTruth();
   scene.receive(parametersOf(truth, "identified"));
   EXPECT_EQ(scene.identified().joints[1].offset, truth.joints[1].offset);
@@ -57,7 +57,7 @@ TEST(LiveScene, TakesTheParametersInForce) {
 }
 
 TEST(LiveScene, AnotherDesignChangesNothing) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   Actuator other = scenarios::paperTruth();
   other.coils.pop_back();
   scene.receive(parametersOf(other, "identified"));
@@ -69,7 +69,7 @@ TEST(LiveScene, AnotherDesignChangesNothing) {
 }
 
 TEST(LiveScene, OnlyIdentifiedAxesHaveAnUncertainty) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(parametersWith(1, 6));
   const CalibrationScene shown = scene.scene();
   EXPECT_NEAR(shown.pole_stddevs.at(1).value_or(0.0), 2e-3, 1e-6);
@@ -79,7 +79,7 @@ TEST(LiveScene, OnlyIdentifiedAxesHaveAnUncertainty) {
 }
 
 TEST(LiveScene, AnAxisWithOneAngleIsNotIdentified) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   ParameterStddevs stddevs;
   stddevs.poles.resize(8);
   stddevs.coils.resize(24);
@@ -89,21 +89,21 @@ TEST(LiveScene, AnAxisWithOneAngleIsNotIdentified) {
 }
 
 TEST(LiveScene, ReportsLeaveTheUncertainty) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(parametersWith(1, 6));
   scene.receive(reportOf(1, 1.0, false));
   EXPECT_NEAR(scene.scene().coil_stddevs.at(6).value_or(0.0), 4e-3, 1e-6);
 }
 
 TEST(LiveScene, NominalParametersHaveNoUncertainty) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(parametersWith(1, 6));
   scene.receive(parametersOf(scenarios::paperNominal(), "nominal"));
   EXPECT_FALSE(scene.scene().pole_stddevs.at(1));
 }
 
 TEST(LiveScene, ResidualsOfTheLastReportGoToTheirSamples) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(sampleOf(3));
   scene.receive(sampleOf(4));
   scene.receive(reportOf(4, 3.5, true));
@@ -120,7 +120,7 @@ TEST(LiveScene, ResidualsOfTheLastReportGoToTheirSamples) {
 }
 
 TEST(LiveScene, WindowsOfAMotionAreNoSamples) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(sampleOf(1));
   scene.receive(reportOf(1, 0.9, false));
   CycleReport report;
@@ -133,7 +133,7 @@ TEST(LiveScene, WindowsOfAMotionAreNoSamples) {
 }
 
 TEST(LiveScene, TheWorseResidualOfASampleIsShown) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.receive(sampleOf(3));
   CycleReport report;
   report.residuals = {{3, Quantity::kOrientation, 1e-3, 7.0, true, "misfit"},
@@ -145,7 +145,7 @@ TEST(LiveScene, TheWorseResidualOfASampleIsShown) {
 }
 
 TEST(LiveScene, SamplesWithoutOrientationStandWhereTheirJointsWere) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   msg::CalibrationSample sample = sampleOf(1);
   sample.has_orientation = 0;
   sample.joint_position = {0.3, 0.0, 1.0};
@@ -156,7 +156,7 @@ TEST(LiveScene, SamplesWithoutOrientationStandWhereTheirJointsWere) {
 }
 
 TEST(LiveScene, ChangesAreToldOnceAndSmallCurrentsNot) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   EXPECT_TRUE(scene.takeChange());
   EXPECT_FALSE(scene.takeChange());
   msg::CoilCurrents currents;
@@ -172,7 +172,7 @@ TEST(LiveScene, ChangesAreToldOnceAndSmallCurrentsNot) {
 }
 
 TEST(LiveScene, TheWantedPoseComesAndGoes) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   scene.takeChange();
   sensor_msgs::JointState message;
   message.position = {0.1, 0.2, 0.3};
@@ -191,7 +191,7 @@ TEST(LiveScene, TheWantedPoseComesAndGoes) {
 }
 
 TEST(LiveScene, OfPosesThatPanelAndEngineToldTheLastCounts) {
-  LiveScene scene = paperScene();
+  LiveScene scene = livePaperScene();
   sensor_msgs::JointState next;
   next.header.stamp = ros::Time(20.0);
   next.position = {0.1, 0.2, 0.3};
