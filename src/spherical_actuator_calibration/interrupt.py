@@ -3,6 +3,8 @@
 import signal
 import time
 
+import rospy
+
 PATIENCE = 10.0  # [s] in which a program that was told to end is left to do so
 
 _told = [None]  # when, the first time
@@ -20,6 +22,18 @@ def _raise(_number, _frame):
 def end_by_exception():
     """Makes SIGINT, SIGTERM and SIGHUP raise KeyboardInterrupt in the main thread, also where a shell in the
     background has them ignored. Once: what an impatient hand sends next does not keep the program from taking the
-    currents to zero; after ten seconds it raises again. For programs that call rospy.init_node(disable_signals=True)."""
+    currents to zero; after ten seconds it raises again."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _raise)
+
+
+def registered(name, **options):
+    """Registers a program that ends by exception with the master, and waits for one. False, and a sentence, where it is
+    told to end before there is one. Options: of rospy.init_node."""
+    end_by_exception()
+    try:
+        rospy.init_node(name, disable_signals=True, **options)
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted; there was no master to register with.", flush=True)
+        return False
+    return True

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What a program does that is told to end more than once: it takes the currents to zero first."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -20,6 +21,15 @@ except KeyboardInterrupt:
     time.sleep({ending})
     print("ended")
 """
+
+WAITS = """
+import sys
+from spherical_actuator_calibration.interrupt import registered
+
+print("waits", flush=True)
+sys.exit(0 if registered("a_program", anonymous=True) else 7)
+"""
+NOWHERE = "http://127.0.0.1:1"  # where no master listens
 
 
 class InterruptTest(unittest.TestCase):
@@ -44,6 +54,23 @@ class InterruptTest(unittest.TestCase):
         self.assertNotEqual(status, 0)
         self.assertEqual(rest, "")
         self.assertIn("KeyboardInterrupt", errors)
+
+    def test_one_that_waits_for_a_master_ends_with_a_sentence(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen(
+                [sys.executable, "-c", WAITS],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                env={**os.environ, "ROS_MASTER_URI": NOWHERE},
+            ) as program:
+                self.assertEqual(program.stdout.readline(), "waits\n")
+                self.assertIn("master", program.stdout.readline())  # of rospy, that it waits
+                program.send_signal(number)
+                said, _ = program.communicate(timeout=60.0)
+                self.assertEqual(program.returncode, 7, said)
+                self.assertTrue(said.endswith("a_program: interrupted; there was no master to register with.\n"), said)
+                self.assertNotIn("Traceback", said)
 
 
 if __name__ == "__main__":
