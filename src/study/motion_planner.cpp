@@ -90,8 +90,7 @@ class MotionSource {
 
   std::vector<Sine> tones(double excitation) {
     std::vector<Sine> sines;
-    const double amplitude =
-        std::min(excitation * std::sqrt(2.0 / kTones), options_.limits.coil_current / kTones);
+    const double amplitude = excitation * std::sqrt(2.0 / kTones);
     sines.reserve(kTones);
     for (int n = 0; n < kTones; ++n) {
       sines.push_back({between(kLowestTone, kHighestTone), amplitude, phase()});
@@ -109,13 +108,19 @@ double excitationFor(double mean_total, std::size_t coils) {
   return mean_total / static_cast<double>(coils) * std::sqrt(kPi / 2.0);
 }
 
+/// Root mean square of a coil whose tones together reach its limit [A].
+double largestExcitation(const MotionPlannerOptions& options) {
+  return options.limits.coil_current * std::sqrt(0.5 / kTones);
+}
+
 double startExcitation(const Actuator& actuator, const MotionPlannerOptions& options) {
   if (options.excitation > 0.0) {
-    return options.excitation;
+    return std::min(options.excitation, largestExcitation(options));
   }
   const auto coils = static_cast<double>(actuator.coils.size());
-  return std::min(excitationFor(kTotalShare * options.limits.total_current, actuator.coils.size()),
-                  std::sqrt(kTotalShare * options.limits.square_current / coils));
+  return std::min({excitationFor(kTotalShare * options.limits.total_current, actuator.coils.size()),
+                   std::sqrt(kTotalShare * options.limits.square_current / coils),
+                   largestExcitation(options)});
 }
 
 void scaleExcitation(MotionPlan& plan, double factor) {

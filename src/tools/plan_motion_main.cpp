@@ -129,10 +129,11 @@ void writePlan(PlanMotionOptions& options) {
         rehearsed.largest_total_current,
         100.0 * rehearsed.mean_excitation_share);
   }
-  std::printf("Excitation %.3f A of each coil; worst expected standard deviation %.4f mrad (%s).\n",
-              result.excitation,
-              1e3 * result.worst_stddev,
-              result.worst_parameter.c_str());
+  std::printf(
+      "Excitation %.3f A rms of each coil; worst expected standard deviation %.4f mrad (%s).\n",
+      result.excitation,
+      1e3 * result.worst_stddev,
+      result.worst_parameter.c_str());
   constexpr double kCoarse = 1e-3;  // [rad] ten poses in a fixture tell four times as much
   if (result.worst_stddev > kCoarse) {
     std::printf(
