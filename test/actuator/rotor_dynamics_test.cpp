@@ -12,7 +12,7 @@
 namespace sac {
 namespace {
 
-constexpr double kStep = 1e-3;  // [s]
+constexpr double kTimeStep = 1e-3;  // [s]
 
 Eigen::Vector3d noTorque(const Eigen::Matrix3d& /*R_stator_rotor*/) {
   return Eigen::Vector3d::Zero();
@@ -54,7 +54,7 @@ TEST(RotorDynamics, ConservesEnergyForTenSeconds) {
   RotorState state = tumbling();
   const double energy = energyOf(rotor, state);
   for (int second = 0; second < 10; ++second) {
-    state = after(rotor, state, 1.0, kStep);
+    state = after(rotor, state, 1.0, kTimeStep);
     EXPECT_NEAR(energyOf(rotor, state) / energy, 1.0, 1e-6) << second;
     EXPECT_LT(
         (state.R_stator_rotor * state.R_stator_rotor.transpose() - Eigen::Matrix3d::Identity())
@@ -69,21 +69,21 @@ TEST(RotorDynamics, ConservesAngularMomentumWithoutGravity) {
   const auto momentum = [&rotor](const RotorState& state) {
     return (state.R_stator_rotor * rotor.inertia * state.angular_velocity).eval();
   };
-  const RotorState end = after(rotor, tumbling(), 10.0, kStep);
+  const RotorState end = after(rotor, tumbling(), 10.0, kTimeStep);
   EXPECT_LT((momentum(end) - momentum(tumbling())).norm() / momentum(tumbling()).norm(), 1e-6);
 }
 
 TEST(RotorDynamics, HalfTheStepMakesNoDifference) {
-  const RotorState coarse = after(heavyRotor(), tumbling(), 10.0, kStep);
-  const RotorState fine = after(heavyRotor(), tumbling(), 10.0, 0.5 * kStep);
+  const RotorState coarse = after(heavyRotor(), tumbling(), 10.0, kTimeStep);
+  const RotorState fine = after(heavyRotor(), tumbling(), 10.0, 0.5 * kTimeStep);
   EXPECT_LT(angleBetween(coarse.R_stator_rotor, fine.R_stator_rotor), 1e-5);
-  const RotorState rough = after(heavyRotor(), tumbling(), 10.0, 20.0 * kStep);
+  const RotorState rough = after(heavyRotor(), tumbling(), 10.0, 20.0 * kTimeStep);
   EXPECT_GT(angleBetween(rough.R_stator_rotor, fine.R_stator_rotor), 1e-5);
 }
 
 TEST(RotorDynamics, SpinsSteadilyAboutAPrincipalAxis) {
   const RotorState end =
-      after({}, {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 2.0)}, 1.0, kStep);
+      after({}, {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 2.0)}, 1.0, kTimeStep);
   EXPECT_LT(angleBetween(end.R_stator_rotor, rotationExp({0.0, 0.0, 2.0})), 1e-9);
 }
 

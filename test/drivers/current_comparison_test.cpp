@@ -14,13 +14,13 @@
 
 #include "drivers/current_course.hpp"
 #include "drivers/shipped_coil_driver.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 
 namespace sac {
 namespace {
 
 constexpr double kSlew = 100.0;       // [A/s] of the shipped configuration
 constexpr double kCommandRate = 100;  // [Hz]
-constexpr double kPi = 3.141592653589793;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// An amplifier's current [A] by what is set, at a time [s].
