@@ -87,17 +87,29 @@ double largestSpeed(const JointTrack& track, const MotionWindow& window) {
   return fastest;
 }
 
-/// Of any coil, by stamps as they are [A].
-float largestCurrent(const MotionSpan& span, const MotionWindow& window) {
+/// Of any coil within a window, by stamps as they are [A].
+struct WindowCurrents {
+  float usual = 0.0F;    ///< a tenth of the readings may exceed it: no spoilt ones decide it
+  float largest = 0.0F;  ///< but for one reading, or two, that a bus may have spoilt
+};
+
+WindowCurrents currentsWithin(const MotionSpan& span, const MotionWindow& window) {
+  constexpr std::size_t kOneOf = 10;
+  constexpr std::size_t kSpoilt = 2;
   const std::size_t begin = span.current_times.firstFrom(span.track.time(window.first));
   const std::size_t end = span.current_times.firstFrom(span.track.time(window.last));
-  if (begin >= end) {
-    return 0.0F;
+  if (begin + kSpoilt >= end) {
+    return {};
   }
-  return span.streams->currents
-      .middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin))
-      .cwiseAbs()
-      .maxCoeff();
+  std::vector<float> largest;
+  largest.reserve(end - begin);
+  for (std::size_t n = begin; n < end; ++n) {
+    largest.push_back(
+        span.streams->currents.row(static_cast<Eigen::Index>(n)).cwiseAbs().maxCoeff());
+  }
+  std::sort(largest.begin(), largest.end());
+  const std::size_t last = largest.size() - 1;
+  return {largest[last - std::min(last, 1 + largest.size() / kOneOf)], largest[last - kSpoilt]};
 }
 
 }  // namespace
@@ -191,16 +203,16 @@ std::vector<MotionWindow> drivenWindows(const std::vector<MotionSpan>& spans,
                                         const std::vector<MotionWindow>& windows,
                                         std::vector<WindowsLeftOut>& left_out) {
   constexpr float kLeast = 0.02F;  // of the largest current
-  std::vector<float> currents;
+  std::vector<WindowCurrents> currents;
   currents.reserve(windows.size());
+  float usual = 0.0F;
   for (const MotionWindow& window : windows) {
-    currents.push_back(largestCurrent(spans[window.span], window));
+    currents.push_back(currentsWithin(spans[window.span], window));
+    usual = std::max(usual, currents.back().usual);
   }
-  const float largest =
-      currents.empty() ? 0.0F : *std::max_element(currents.begin(), currents.end());
   std::vector<MotionWindow> driven;
   for (std::size_t n = 0; n < windows.size(); ++n) {
-    if (currents[n] >= kLeast * largest) {
+    if (currents[n].largest >= kLeast * usual) {
       driven.push_back(windows[n]);
     } else {
       countLeftOut("no coil carries current", left_out);

@@ -43,8 +43,9 @@ std::vector<MotionWindow> cutWindows(const std::vector<MotionSpan>& spans,
                                      const MotionOptions& options,
                                      std::vector<WindowsLeftOut>& left_out);
 
-/// Those in which a coil carries a fiftieth of the largest current of all. In the others something
-/// else moves the rotor, as a fixture between dwells: they are added to `left_out`.
+/// Those in which a coil carries a fiftieth of the largest current that is usual in a window. In
+/// the others something else moves the rotor, as a fixture between dwells: they are added to
+/// `left_out`.
 std::vector<MotionWindow> drivenWindows(const std::vector<MotionSpan>& spans,
                                         const std::vector<MotionWindow>& windows,
                                         std::vector<WindowsLeftOut>& left_out);
