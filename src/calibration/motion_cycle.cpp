@@ -137,18 +137,55 @@ std::string wrongSign(const ParameterSpace& space,
   return {};
 }
 
+/// The reasons of most windows, and how many windows have others.
+std::vector<WindowsLeftOut> usualReasons(const MotionSummary& summary) {
+  constexpr std::size_t kMostNamed = 4;
+  std::vector<WindowsLeftOut> reasons = summary.left_out;
+  std::stable_sort(
+      reasons.begin(), reasons.end(), [](const WindowsLeftOut& one, const WindowsLeftOut& other) {
+        return one.count > other.count;
+      });
+  if (reasons.size() > kMostNamed) {
+    WindowsLeftOut others{"other reasons, which the report lists", 0};
+    for (std::size_t n = kMostNamed - 1; n < reasons.size(); ++n) {
+      others.count += reasons[n].count;
+    }
+    reasons.resize(kMostNamed - 1);
+    reasons.push_back(others);
+  }
+  return reasons;
+}
+
+/// " of 79 (the rotor rests in 3)"; empty where none is left out.
+std::string leftOutInWords(const MotionSummary& summary) {
+  std::string words;
+  for (const WindowsLeftOut& one : usualReasons(summary)) {
+    words += format("%s%s in %zu", words.empty() ? "" : ", ", one.reason.c_str(), one.count);
+  }
+  return words.empty() ? words : format(" of %zu (%s)", summary.windows, words.c_str());
+}
+
 std::string tooFewInWords(const MotionSummary& summary) {
   std::size_t left_out = 0;
-  std::string reasons;
   for (const WindowsLeftOut& one : summary.left_out) {
     left_out += one.count;
-    reasons += format("%s%s in %zu", reasons.empty() ? "" : ", ", one.reason.c_str(), one.count);
   }
-  const std::string others =
-      left_out == 0 ? "" : format(" of %zu (%s)", summary.windows, reasons.c_str());
   return format("%zu windows%s are too few; record a longer motion with currents in all coils.",
                 summary.windows - left_out,
-                others.c_str());
+                leftOutInWords(summary).c_str());
+}
+
+/// "", or a sentence with a space behind it.
+std::string endsInWords(const std::vector<WindowsLeftOut>& at_end) {
+  const auto most = std::max_element(
+      at_end.begin(), at_end.end(), [](const WindowsLeftOut& one, const WindowsLeftOut& other) {
+        return one.count < other.count;
+      });
+  return most == at_end.end() ? std::string()
+                              : format("In %zu windows %s%s. ",
+                                       most->count,
+                                       most->reason.c_str(),
+                                       at_end.size() > 1 ? ", and others are, too" : "");
 }
 
 /// Why an estimate is not to be used; empty: it is.
@@ -173,10 +210,10 @@ std::string failure(const MotionProblem& problem,
   if (rejected > options.max_rejected_fraction * static_cast<double>(summary.windows) &&
       summary.used * summary.values < 2 * static_cast<std::size_t>(estimate.belief.x.size())) {
     return format(
-        "%.0f of %zu windows cannot serve; record again, with all streams and without touching the "
+        "%.0f windows%s cannot serve; record again, with all streams and without touching the "
         "rotor.",
         rejected,
-        summary.windows);
+        leftOutInWords(summary).c_str());
   }
   const double worst = std::max(summary.window_chi_square, summary.orientation_chi_square);
   if (worst > options.max_reduced_chi_square) {
@@ -185,9 +222,10 @@ std::string failure(const MotionProblem& problem,
                   is_balance ? "the momentum balance" : "the tracker",
                   std::sqrt(worst)) +
            (is_balance
-                ? "Check signs and channels of currents, torque curve, strengths, polarities, "
-                  "joint sensors and the clocks of the streams. Where a force/torque sensor "
-                  "is at hand, samples at rest tell more (diagnose)."
+                ? endsInWords(found.at_end) +
+                      "Check signs and channels of currents, torque curve, strengths, polarities, "
+                      "joint sensors and the clocks of the streams. Where a force/torque sensor "
+                      "is at hand, samples at rest tell more (diagnose)."
                 : "Check joint sensors, frames, and the tracker with its clock.");
   }
   const std::string sign = wrongSign(problem.model->space(), estimate, problem.free);
@@ -227,7 +265,7 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
              summary.duration,
              summary.used,
              summary.orientations);
-  for (const WindowsLeftOut& left_out : summary.left_out) {
+  for (const WindowsLeftOut& left_out : usualReasons(summary)) {
     words += format(" %zu windows left out: %s.", left_out.count, left_out.reason.c_str());
   }
   if (summary.held_out.windows > 0) {
@@ -238,6 +276,19 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
                     unobservable);
   }
   return words;
+}
+
+/// "", or a sentence: of strength and inertia one is found, the other is that of the drawing.
+std::string exactInertiaInWords(const ParameterSpace& space) {
+  const std::vector<PlacedEffect>& effects = space.effects().effects();
+  const bool finds_strength =
+      std::any_of(effects.begin(), effects.end(), [](const PlacedEffect& placed) {
+        return placed.name == effect_name::kStrengthScale;
+      });
+  return finds_strength ? " Strength, unbalance and friction are relative to the inertia of the "
+                          "drawing, which "
+                          "counts as exact: by how much it is off, they are, too."
+                        : "";
 }
 
 HasOrientations orientationsIn(const MotionRecording& recording) {
@@ -293,8 +344,8 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
                  untold.end(),
                  std::back_inserter(coordinates.unobservable));
   conclude(model, found.estimate, coordinates, ExpectedErrors::kReported, outcome.state, report);
-  report.message =
-      successInWords(found.summary, coordinates.unobservable.size()) + silentInWords(silent);
+  report.message = successInWords(found.summary, coordinates.unobservable.size()) +
+                   silentInWords(silent) + exactInertiaInWords(model.space());
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;
   }

@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -28,6 +29,11 @@ double chiSquareProbability(double degrees_of_freedom, double value) {
 double chiSquareNonCentrality(double degrees_of_freedom, double value, double probability) {
   return boost::math::non_central_chi_squared::find_non_centrality(
       degrees_of_freedom, value, probability);
+}
+
+double varianceRatioProbability(double ratio, double freedom_of_one, double freedom_of_other) {
+  const boost::math::fisher_f_distribution<double> distribution(freedom_of_one, freedom_of_other);
+  return boost::math::cdf(boost::math::complement(distribution, ratio));
 }
 
 double binomialTail(std::size_t count, double rate, std::size_t at_least) {

@@ -10,6 +10,7 @@
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
+#include "residual_pace.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
@@ -37,6 +38,7 @@ class Estimator {
  private:
   bool solve();
   bool solveFinely();
+  bool leaveSaturated();
   bool leavePushed();
   bool fits() const;
   bool takeHeldOut();
@@ -109,6 +111,12 @@ bool Estimator::solveFinely() {
   return descent_.solveFinely([this] { return weighAnew(); });
 }
 
+/// As many windows as tell all that is asked are left.
+bool Estimator::leaveSaturated() {
+  const auto values = static_cast<std::size_t>(terms_.valuesPerWindow());
+  return !leaveCutOff(terms_, 1 + 2 * problem_.free.size() / values) || solveFinely();
+}
+
 /// Whether the misfit of what serves is that of noise.
 bool Estimator::fits() const {
   const double freedom = windowFreedom();
@@ -165,6 +173,7 @@ void Estimator::judgeMisfit() {
   result_.orientations = terms_.orientations().misfit(descent_.x(), joints);
   result_.orientations.expected = meansOverDifferences(terms_.noise(), terms_.spans());
   result_.summary.orientation_chi_square = result_.orientations.reduced();
+  result_.pace = residualPace(terms_);
   estimate.reduced_chi_square = squares / freedom;
   estimate.covariance_scale = std::sqrt(misfitVariance(squares, freedom));
 }
@@ -290,7 +299,7 @@ ObservationResidual Estimator::residualOf(std::size_t window) const {
 
 void Estimator::listResiduals() {
   for (std::size_t n = 0; n < terms_.windowCount(); ++n) {
-    if (!terms_.windows()[n].held_out) {
+    if (!terms_.windows()[n].held_out && !terms_.windows()[n].is_cut_off) {
       result_.estimate.residuals.push_back(residualOf(n));
     }
   }
@@ -308,12 +317,11 @@ void Estimator::summarise() {
     if (term.held_out) {
       continue;
     }
-    if (!term.active) {
-      countLeftOut("it contradicts the others: something else moved the rotor", summary.left_out);
-      continue;
+    if (!term.at_end.empty()) {
+      countLeftOut(term.at_end, result_.at_end);
     }
-    if (term.is_pushed) {
-      countLeftOut("something held or turned the rotor steadily for longer", summary.left_out);
+    if (!term.isSound()) {
+      countLeftOut(leftOutReason(term), summary.left_out);
       continue;
     }
     const JointTrack& track = terms_.spans()[term.window.span].track;
@@ -343,7 +351,7 @@ MotionEstimate Estimator::run() {
     summarise();
     return std::move(result_);
   }
-  const bool solved = solve() && leavePushed() && takeHeldOut();
+  const bool solved = solve() && leaveSaturated() && leavePushed() && takeHeldOut();
   estimate.unobservable = descent_.open().coordinates;
   estimate.open_directions = descent_.open().directions;
   estimate.error_history = descent_.errors();

@@ -51,4 +51,31 @@ bool rejectOutliers(MotionTerms& terms, double false_alarm_probability) {
   return windows || orientations;
 }
 
+bool leaveCutOff(MotionTerms& terms, std::size_t least) {
+  constexpr std::size_t kPart = 4;
+  std::size_t at_end = 0;
+  std::size_t contradicting = 0;
+  std::size_t others = 0;
+  for (const WindowTerm& term : terms.windows()) {
+    at_end += term.at_end.empty() ? 0 : 1;
+    contradicting += !term.at_end.empty() && !term.active ? 1 : 0;
+    others += term.at_end.empty() && term.serves() ? 1 : 0;
+  }
+  if (contradicting == 0 || kPart * contradicting < at_end || others < least) {
+    return false;
+  }
+  for (WindowTerm& term : terms.windows()) {
+    term.is_cut_off = !term.at_end.empty();
+  }
+  return true;
+}
+
+std::string leftOutReason(const WindowTerm& term) {
+  if (!term.at_end.empty() && (term.is_cut_off || !term.active)) {
+    return term.at_end;
+  }
+  return term.active ? "something held or turned the rotor steadily for longer"
+                     : "it contradicts the others: something else moved the rotor";
+}
+
 }  // namespace sac

@@ -9,4 +9,12 @@ namespace sac {
 /// of all windows together, and of all orientations.
 bool rejectOutliers(MotionTerms& terms, double false_alarm_probability);
 
+/// Leaves out the windows with readings that look like the end of a sensor's range, where a quarter
+/// of them and more contradict the others, and at least so many others serve: what that end has cut
+/// off is in none of them. Whether anything changed.
+bool leaveCutOff(MotionTerms& terms, std::size_t least);
+
+/// Why a window is not sound.
+std::string leftOutReason(const WindowTerm& term);
+
 }  // namespace sac

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "saturated_readings.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/parallel_for.hpp"
 
@@ -120,7 +121,12 @@ MotionTerms::MotionTerms(const MotionProblem& problem, const MotionOptions& opti
       orientations_(*problem.model, places_, spans_, options, heldOutOf(windows_, spans_)),
       sums_(problem.prior.x.size()),
       evaluators_(std::max(1U, std::thread::hardware_concurrency()),
-                  BalanceEvaluator(options, noise_.joint)) {}
+                  BalanceEvaluator(options, noise_.joint)) {
+  const SaturatedReadings saturated(spans_);
+  for (WindowTerm& term : windows_) {
+    term.at_end = saturated.within(term.window, options.largest_delay);
+  }
+}
 
 std::size_t MotionTerms::servingWindows() const {
   std::size_t count = 0;

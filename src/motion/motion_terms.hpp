@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,13 +29,15 @@ struct WindowTerm {
   Eigen::VectorXd residual;  ///< whitened
   double square = 0.0;       ///< squared whitened residual, over the number of residuals
   bool active = true;
-  bool held_out = false;   ///< judges, and does not serve as long as it does
-  bool is_summed = false;  ///< its derivatives are not kept: what it tells is in a sum of many
-  bool is_in_sum = false;  ///< it was sound when it was summed up
-  bool is_pushed = false;  ///< with others around it: see steadilyPushed()
-  TorqueEvidence steady;   ///< of one that is summed
+  bool held_out = false;    ///< judges, and does not serve as long as it does
+  bool is_summed = false;   ///< its derivatives are not kept: what it tells is in a sum of many
+  bool is_in_sum = false;   ///< it was sound when it was summed up
+  bool is_pushed = false;   ///< with others around it: see steadilyPushed()
+  std::string at_end;       ///< SaturatedReadings::within()
+  bool is_cut_off = false;  ///< by that end: see leaveCutOff()
+  TorqueEvidence steady;    ///< of one that is summed
 
-  bool isSound() const { return active && !is_pushed; }
+  bool isSound() const { return active && !is_pushed && !is_cut_off; }
   bool serves() const { return isSound() && !held_out; }
   bool isKept() const { return whitening.size() > 0; }
 };

@@ -25,6 +25,11 @@ TEST(ChiSquareNonCentrality, IsWhatLeavesTheProbabilityBelow) {
   EXPECT_NEAR(chiSquareNonCentrality(6.0, 8.0, 0.01), 19.753896, 1e-5);
 }
 
+TEST(VarianceRatio, IsAsProbableAsFishersDistributionSays) {
+  EXPECT_NEAR(varianceRatioProbability(1.0, 40.0, 40.0), 0.5, 1e-12);
+  EXPECT_NEAR(varianceRatioProbability(3.32583, 5.0, 10.0), 0.05, 1e-6);
+}
+
 TEST(BinomialTail, CountsFromTheGivenNumberOn) {
   EXPECT_EQ(binomialTail(10, 0.1, 0), 1.0);
   EXPECT_NEAR(binomialTail(10, 0.1, 1), 1.0 - std::pow(0.9, 10), 1e-12);

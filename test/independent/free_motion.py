@@ -5,6 +5,7 @@ Frames: R maps rotor to stator. SI units. A stamp is later than what it belongs 
 """
 
 import dataclasses
+import math
 
 import laboratory as lab
 import numpy as np
@@ -28,6 +29,8 @@ class Machine:
     step: float = 5e-3  # [s] between setpoints
     lag: float = 2e-3  # [s] of the amplifier
     limit: float = 8.0  # [A] of the sum
+    coil_limit: float = math.inf  # [A] of the setpoint of each coil
+    chatter: float = 0.0  # [A] standard deviation of what a noisy controller adds to the setpoint of each coil, at every step
     excitation: float = 0.35  # [A] peak of the multisine of a coil
     push: tuple = None  # (begin, end [s], torque [N m]): a hand touches the rotor
 
@@ -237,10 +240,12 @@ def simulate(unit, errors, machine, duration, seed, nominal_inertia=(0.7e-3, 0.7
     setpoint, current = np.zeros(coils), np.zeros(coils)
     decay = np.exp(-h / machine.lag * np.array([0.5, 1.0])) if machine.lag > 0 else np.zeros(2)
     out = Motion(np.arange(steps) * h, np.zeros((steps, 3, 3)), np.zeros((steps, coils)), np.zeros((steps, coils)), machine.lag)
+    noise = np.random.default_rng([seed, 2])
     for n in range(steps):
         R = _quaternion_matrix(p)
         if n % per_setpoint == 0:
-            setpoint = controller.setpoint(n * h, R, rotor.rate(R, L))
+            wish = controller.setpoint(n * h, R, rotor.rate(R, L)) + machine.chatter * noise.normal(size=coils)
+            setpoint = np.clip(wish, -machine.coil_limit, machine.coil_limit)
         begin = current if machine.lag > 0 else setpoint
         middle, end = (setpoint + (begin - setpoint) * share for share in decay)
         out.orientation[n], out.setpoint[n], out.current[n] = R, setpoint, begin

@@ -112,6 +112,56 @@ class Motion(unittest.TestCase):
             outcome = calibrate(recording, stretched)
             self.assertGreater(outcome.chi_square, 20.0)
 
+    def told_with_chatter(self, **machine):
+        """What is said of currents that step like noise with their readings."""
+        machine = free_motion.Machine(chatter=0.03, **machine)
+        motion = free_motion.simulate(self.unit, self.errors, machine, SECONDS, SEED)
+        streams = free_motion.Streams(joint_rate=200.0, current_rate=200.0)
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "motion.bag")
+            write_bag(bag, free_motion.record(self.unit, self.errors, motion, streams, SEED), len(self.unit.coils))
+            return self.calibrate_bags(folder, "motion", [bag]).stdout
+
+    def test_what_passes_for_noise_of_currents_is_told(self):
+        said = self.told_with_chatter(curve_stretch=3e-3)
+        self.assertIn("changes too slowly for noise", said)
+        self.assertNotIn("grade: good", said)
+        said = self.told_with_chatter()
+        self.assertIn("held-out windows agree", said)
+        self.assertNotIn("too slowly", said)
+
+    def test_one_spoilt_reading_costs_its_window_alone(self):
+        recording = self.record()
+        stamps, currents = recording["currents"]
+        currents = np.array(currents)
+        currents[len(currents) // 3, 7] = 65.535
+        outcome = calibrate({**recording, "currents": (stamps, currents)})
+        self.check(outcome, 1.6e-4)
+        self.assertNotIn("no coil carries current", outcome.left_out)
+        self.assertLessEqual(sum(outcome.left_out.values()), 4)  # a hand touched the rotor
+
+    def test_readings_at_the_end_of_their_range_are_told(self):
+        recording = self.record()
+        stamps, currents = recording["currents"]
+        currents = np.array(currents)
+        most = 0.7 * np.abs(currents[:, 7]).max()
+        currents[:, 7] = np.clip(currents[:, 7], -most, most)
+        outcome = calibrate({**recording, "currents": (stamps, currents)})
+        self.check(outcome, 1.6e-4)
+        cut_off = {reason.split(" A:")[0] for reason in outcome.left_out if "end of its range" in reason}
+        self.assertTrue(cut_off)
+        self.assertEqual({part.split(" reads ")[0] for part in cut_off}, {"the current of coil 8"})
+
+    def test_setpoints_at_a_limit_are_sound(self):
+        machine = free_motion.Machine(coil_limit=0.4, lag=0.0)
+        motion = free_motion.simulate(self.unit, self.errors, machine, SECONDS, SEED)
+        self.assertGreater(np.mean(np.abs(motion.setpoint).max(axis=1) == 0.4), 0.2)
+        streams = free_motion.Streams(joint_rate=200.0, current_rate=200.0, current_stddev=0.0)
+        outcome = calibrate(free_motion.record(self.unit, self.errors, motion, streams, SEED))
+        self.assertTrue(outcome.converged)
+        self.assertEqual([reason for reason in outcome.left_out if "end of its range" in reason], [])
+        self.assertLessEqual(sum(outcome.left_out.values()), 3)
+
     def test_calibrate_bag_takes_motion_by_itself(self):
         with tempfile.TemporaryDirectory() as folder:
             bag, output = os.path.join(folder, "motion.bag"), os.path.join(folder, "calibrated.yaml")

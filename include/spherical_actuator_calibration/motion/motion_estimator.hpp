@@ -9,10 +9,14 @@ namespace sac {
 
 /// What a recording of motion tells (doc/method.md).
 struct MotionEstimate {
-  /// Its residuals are those of windows: the index of their sample is that of the window.
+  /// Its residuals are those of windows: the index of their sample is that of the window. One that
+  /// is left out for the end of a range has none.
   Estimate estimate;
   MotionSummary summary;
   WindowMeansMisfit orientations;
+  ResidualPace pace;
+  /// Windows with readings that look like the end of a sensor's range, whether they served or not.
+  std::vector<WindowsLeftOut> at_end;
 };
 
 /// Finds the coordinates by weighted least squares over the momentum balance of windows and over

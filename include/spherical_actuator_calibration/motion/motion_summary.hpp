@@ -44,6 +44,18 @@ struct WindowMeansMisfit {
   double reduced() const { return freedom > 0.0 ? squares / freedom : 0.0; }
 };
 
+/// Whitened residuals of windows by how fast they change. Those of noise are alike; what a model
+/// lacks is slow, and where it passes for noise of the currents the fast ones are too small.
+struct ResidualPace {
+  double slow = 0.0;     ///< mean square with the slower half of the test functions
+  double fast = 0.0;     ///< with the faster half
+  double freedom = 0.0;  ///< values in each
+
+  /// Of noise that is as much slower, by chance. What parameters take from the slow ones is not
+  /// given back: it is too large rather than too small.
+  double probability() const;
+};
+
 /// What became of a recording of motion.
 struct MotionSummary {
   double duration = 0.0;    ///< of the windows that served [s]
