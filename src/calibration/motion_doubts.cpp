@@ -74,6 +74,28 @@ std::string slowMisfitInWords(const MotionEstimate& found) {
       1e3 * found.summary.current_stddev);
 }
 
+/// What takes friction for another law shifts friction most, and hardly the axes.
+std::string otherFrictionInWords(const MotionEstimate& found) {
+  constexpr double kSure = 5.0;  // standard deviations
+  const double scale = std::max(1.0, found.estimate.covariance_scale);
+  std::string words;
+  double most = kSure;
+  for (const OtherFriction& one : found.frictions) {
+    const double stddev = scale * one.stddev;
+    if (std::abs(one.value) > most * stddev) {
+      most = std::abs(one.value) / stddev;
+      words = format(
+          "The motion fits better with a friction %s, by %.2g +- %.1g %s: viscous_friction and "
+          "coulomb_friction take up what they can of it, and may be further off than is stated.",
+          one.law,
+          one.value,
+          stddev,
+          one.unit);
+    }
+  }
+  return words;
+}
+
 /// Measurements have noise: where most readings of all coils are those before to the last digit,
 /// they are setpoints, or one measurement that was told several times.
 std::string repetitionInWords(const MotionRecording& recording) {
@@ -110,7 +132,8 @@ std::vector<std::string> motionDoubts(const MotionEstimate& found,
   std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
                                  driftInWords(found.orientations),
                                  repetitionInWords(recording),
-                                 slowMisfitInWords(found)};
+                                 slowMisfitInWords(found),
+                                 otherFrictionInWords(found)};
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
     words.push_back(
         format("Residuals are %.2f times their noise: something acts that is not modelled, as a "

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "current_steps.hpp"
+#include "friction_probe.hpp"
 #include "motion_outliers.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
@@ -188,6 +189,7 @@ void Estimator::findCovariance() {
   const Eigen::MatrixXd all = information + prior;
   const Eigen::MatrixXd inverse =
       solveSemidefinite(all(estimated, estimated), Eigen::MatrixXd::Identity(count, count));
+  result_.frictions = probedFriction(terms_, descent_.x(), estimated, inverse);
   const double windows = std::pow(result_.estimate.covariance_scale, 2);
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
   const Eigen::MatrixXd all_noise =

@@ -73,6 +73,9 @@ class MotionTerms {
   /// Where the tracker's delay is known better than at the begin, what seemed noise may be motion.
   void findTrackerNoise(const Eigen::VectorXd& x);
   const MotionPlaces& places() const { return places_; }
+  MotionPoint pointAt(const Eigen::VectorXd& x) const {
+    return MotionPoint(*problem_.model, places_, x, &tabulated_);
+  }
   /// Whether derivatives of some windows are not kept.
   bool areSummed() const;
   /// Residuals of a window.

@@ -22,6 +22,8 @@ class Machine:
     viscous: float = 6e-4  # [N m s/rad]
     coulomb: float = 4e-4  # [N m]
     friction_speed: float = 0.05  # [rad/s]
+    drag: float = 0.0  # [N m s^2/rad^2] of air: grows with the square of the speed
+    spin_viscous: float = 0.0  # [N m s/rad] more about the rotor's axis z
     strength: float = 1.0  # of all torques
     curve_stretch: float = 0.0  # the torque at an angle is that of the drawing at angle / (1 + stretch)
     pole_gains: np.ndarray = None  # errors of strength
@@ -194,7 +196,8 @@ class _Rotor:
         speed = np.sqrt(w @ w + machine.friction_speed**2)
         a = R @ self.centre
         torque = self.coils.torque(R, current) + np.array([-a[1], a[0], 0.0])
-        torque = torque - (machine.viscous + machine.coulomb / speed) * w
+        torque = torque - (machine.viscous + machine.coulomb / speed + machine.drag * np.sqrt(w @ w)) * w
+        torque = torque - machine.spin_viscous * (R[:, 2] @ w) * R[:, 2]
         if machine.push is not None and machine.push[0] <= t < machine.push[1]:
             torque = torque + np.array(machine.push[2])
         return 0.5 * np.append(-w @ p[1:], w * p[0] + _cross(w, p[1:])), torque

@@ -2,6 +2,7 @@
 """Calibration in motion on a free rotor that the package did not simulate: one motion, recorded in several ways."""
 
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -129,6 +130,21 @@ class Motion(unittest.TestCase):
         said = self.told_with_chatter()
         self.assertIn("held-out windows agree", said)
         self.assertNotIn("too slowly", said)
+        self.assertNotIn("fits better with a friction", said)
+
+    def test_frictions_of_another_law_are_told(self):
+        for law, machine in (("that grows with the square of the speed", {"drag": 3e-4}), ("about the rotor's axis z", {"spin_viscous": 2e-4})):
+            motion = free_motion.simulate(self.unit, self.errors, free_motion.Machine(**machine), SECONDS, SEED)
+            with tempfile.TemporaryDirectory() as folder:
+                bag = os.path.join(folder, "motion.bag")
+                write_bag(bag, free_motion.record(self.unit, self.errors, motion, free_motion.Streams(), SEED), len(self.unit.coils))
+                said = self.calibrate_bags(folder, "motion", [bag]).stdout
+            found = re.search(r"fits better with a friction (.*), by (\S+) \+- (\S+) N\.m\.s", said)
+            self.assertTrue(found, said)
+            self.assertIn(law, found[1])
+            (true,) = machine.values()
+            self.assertLess(abs(float(found[2]) - true), 5.0 * float(found[3]) + 0.05 * true)
+            self.assertNotIn("grade: good", said)
 
     def test_one_spoilt_reading_costs_its_window_alone(self):
         recording = self.record()

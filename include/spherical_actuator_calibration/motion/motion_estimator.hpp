@@ -15,6 +15,7 @@ struct MotionEstimate {
   MotionSummary summary;
   WindowMeansMisfit orientations;
   ResidualPace pace;
+  std::vector<OtherFriction> frictions;  ///< beside that of the model
   /// Windows with readings that look like the end of a sensor's range, whether they served or not.
   std::vector<WindowsLeftOut> at_end;
 };

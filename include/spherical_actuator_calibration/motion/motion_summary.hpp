@@ -56,6 +56,14 @@ struct ResidualPace {
   double probability() const;
 };
 
+/// A friction that the model lacks, and what the residuals tell of it.
+struct OtherFriction {
+  const char* law = "";   ///< "that grows with …"
+  const char* unit = "";  ///< of both
+  double value = 0.0;
+  double stddev = 0.0;
+};
+
 /// What became of a recording of motion.
 struct MotionSummary {
   double duration = 0.0;    ///< of the windows that served [s]
