@@ -1,10 +1,13 @@
 """How a program that moves the rotor ends: with ROS still there to take the currents to zero."""
 
 import signal
+import sys
 import time
 
+import rosgraph
 import rospy
 
+POLL = 0.2  # [s] between looks for a master
 PATIENCE = 10.0  # [s] in which a program that was told to end is left to do so
 
 _told = [None]  # when, the first time
@@ -32,8 +35,22 @@ def registered(name, **options):
     told to end before there is one. Options: of rospy.init_node."""
     end_by_exception()
     try:
+        _wait_for_master(name)
         rospy.init_node(name, disable_signals=True, **options)
     except KeyboardInterrupt:
+        pass
+    # What asks the master catches all exceptions now and then.
+    if _told[0] is not None:
         print(f"{name}: interrupted; there was no master to register with.", flush=True)
-        return False
-    return True
+    return _told[0] is None
+
+
+def _wait_for_master(name):
+    is_said = False
+    while _told[0] is None and not rosgraph.is_master_online():
+        if not is_said:
+            print(f"{name}: no ROS master answers at {rosgraph.get_master_uri()}; waiting for one.", file=sys.stderr, flush=True)
+        is_said = True
+        time.sleep(POLL)
+    if _told[0] is not None:
+        raise KeyboardInterrupt
