@@ -48,7 +48,7 @@ Eigen::MatrixXd derivatives(const WindowTerm& term,
   }
   const TestFunctions tests(track.time(first), track.time(last), functions);
   TestFunctionValues test;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * functions, kLaws);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(term.residual.size(), kLaws);
   for (std::size_t n = first; n < last; ++n) {
     const std::size_t from = std::max(first, n - std::min(n, reach));
     const std::size_t to = std::min(last, n + 1 + reach);
