@@ -156,11 +156,11 @@ std::vector<WindowsLeftOut> usualReasons(const MotionSummary& summary) {
   return reasons;
 }
 
-/// " of 79 (the rotor rests in 3)"; empty where none is left out.
+/// " of 79 (3: the rotor rests)"; empty where none is left out.
 std::string leftOutInWords(const MotionSummary& summary) {
   std::string words;
   for (const WindowsLeftOut& one : usualReasons(summary)) {
-    words += format("%s%s in %zu", words.empty() ? "" : ", ", one.reason.c_str(), one.count);
+    words += format("%s%zu: %s", words.empty() ? "" : "; ", one.count, one.reason.c_str());
   }
   return words.empty() ? words : format(" of %zu (%s)", summary.windows, words.c_str());
 }

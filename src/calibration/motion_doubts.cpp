@@ -84,13 +84,17 @@ std::string otherFrictionInWords(const MotionEstimate& found) {
     const double stddev = scale * one.stddev;
     if (std::abs(one.value) > most * stddev) {
       most = std::abs(one.value) / stddev;
-      words = format(
-          "The motion fits better with a friction %s, by %.2g +- %.1g %s: viscous_friction and "
-          "coulomb_friction take up what they can of it, and may be further off than is stated.",
-          one.law,
-          one.value,
-          stddev,
-          one.unit);
+      words =
+          format("The motion fits better with a friction %s, by %.2g +- %.2g %s: ",
+                 one.law,
+                 one.value,
+                 stddev,
+                 one.unit) +
+          (one.value > 0.0
+               ? "viscous_friction and coulomb_friction take up what they can of it, and may be "
+                 "further off than is stated."
+               : "no friction gives back, so that torque curve, strengths and clocks are to be "
+                 "checked, too.");
     }
   }
   return words;

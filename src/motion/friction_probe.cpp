@@ -1,9 +1,11 @@
 #include "friction_probe.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -18,13 +20,6 @@ constexpr std::size_t kLaws = 2;
 constexpr std::array<Law, kLaws> kLawsInWords{
     {{"that grows with the square of the speed, as of air", "N.m.s2/rad2"},
      {"that is another about the rotor's axis z than about others", "N.m.s/rad"}}};
-
-/// What some windows tell of one law.
-struct Evidence {
-  double information = 0.0;
-  double gradient = 0.0;
-  Eigen::VectorXd with_estimated;  ///< information that it has in common with them
-};
 
 /// Readings on either side of one over which a rate is not noise.
 std::size_t rateReach(const JointTrack& track) {
@@ -70,41 +65,46 @@ Eigen::MatrixXd derivatives(const WindowTerm& term,
 
 std::vector<OtherFriction> probedFriction(const MotionTerms& terms,
                                           const Eigen::VectorXd& x,
-                                          const std::vector<Eigen::Index>& estimated,
-                                          const Eigen::MatrixXd& covariance) {
-  std::array<Evidence, kLaws> evidence;
-  for (Evidence& one : evidence) {
-    one.with_estimated.setZero(static_cast<Eigen::Index>(estimated.size()));
-  }
+                                          const std::vector<Eigen::Index>& estimated) {
   const MotionPoint point = terms.pointAt(x);
   const int functions = static_cast<int>(terms.valuesPerWindow() / 3);
-  for (const WindowTerm& term : terms.windows()) {
+  const auto count = static_cast<Eigen::Index>(estimated.size());
+  // Of the laws, of the parameters, and what they have in common.
+  Eigen::MatrixXd of_laws = Eigen::MatrixXd::Zero(kLaws, kLaws);
+  Eigen::MatrixXd of_both = Eigen::MatrixXd::Zero(count, kLaws);
+  Eigen::MatrixXd of_parameters = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd laws_gradient = Eigen::VectorXd::Zero(kLaws);
+  Eigen::VectorXd parameters_gradient = Eigen::VectorXd::Zero(count);
+  // Others are kept because they stand out.
+  const std::size_t stride = noiseStride(terms.windowCount());
+  for (std::size_t n = 0; n < terms.windowCount(); n += terms.areSummed() ? stride : 1) {
+    const WindowTerm& term = terms.windows()[n];
     if (!term.serves() || !term.isKept()) {
       continue;
     }
     const JointTrack& track = terms.spans()[term.window.span].track;
     const auto whitening = term.whitening.triangularView<Eigen::Lower>();
     const Eigen::MatrixXd by_law = whitening * derivatives(term, track, point, functions);
-    const Eigen::MatrixXd by_parameters = whitening * term.balance.jacobian;
-    for (std::size_t k = 0; k < kLaws; ++k) {
-      const auto column = by_law.col(static_cast<Eigen::Index>(k));
-      evidence[k].information += column.squaredNorm();
-      evidence[k].gradient += column.dot(term.residual);
-      const Eigen::VectorXd common = by_parameters.transpose() * column;
-      evidence[k].with_estimated += common(estimated);
-    }
+    const Eigen::MatrixXd by_all = whitening * term.balance.jacobian;
+    const Eigen::MatrixXd by_parameters = by_all(Eigen::all, estimated);
+    of_laws += by_law.transpose() * by_law;
+    of_both += by_parameters.transpose() * by_law;
+    of_parameters += by_parameters.transpose() * by_parameters;
+    laws_gradient += by_law.transpose() * term.residual;
+    parameters_gradient += by_parameters.transpose() * term.residual;
   }
   // Of the rest nothing is known that the parameters do not explain as well.
   constexpr double kLeastShare = 1e-3;
+  const Eigen::MatrixXd taken_up = solveSemidefinite(of_parameters, of_both);
   std::vector<OtherFriction> result;
   for (std::size_t k = 0; k < kLaws; ++k) {
-    const Evidence& one = evidence[k];
-    const double told = one.information - one.with_estimated.dot(covariance * one.with_estimated);
-    if (told > kLeastShare * one.information) {
-      result.push_back({kLawsInWords[k].words,
-                        kLawsInWords[k].unit,
-                        -one.gradient / told,
-                        1.0 / std::sqrt(told)});
+    const auto law = static_cast<Eigen::Index>(k);
+    const double all = of_laws(law, law);
+    const double told = all - of_both.col(law).dot(taken_up.col(law));
+    const double gradient = laws_gradient[law] - parameters_gradient.dot(taken_up.col(law));
+    if (told > kLeastShare * all) {
+      result.push_back(
+          {kLawsInWords[k].words, kLawsInWords[k].unit, -gradient / told, 1.0 / std::sqrt(told)});
     }
   }
   return result;

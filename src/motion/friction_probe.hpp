@@ -9,12 +9,10 @@
 namespace sac {
 
 /// What the residuals tell of each friction that the model lacks, by one step from the estimate in
-/// the derivatives of the windows that are kept. What the parameters would take up of it is not
-/// counted as told. `covariance`: of the coordinates that were estimated, by the noise as it is
-/// stated.
+/// the derivatives of windows that are kept, evenly over the recording. What the parameters could
+/// take up of it there is not counted as told. `estimated`: coordinates that were.
 std::vector<OtherFriction> probedFriction(const MotionTerms& terms,
                                           const Eigen::VectorXd& x,
-                                          const std::vector<Eigen::Index>& estimated,
-                                          const Eigen::MatrixXd& covariance);
+                                          const std::vector<Eigen::Index>& estimated);
 
 }  // namespace sac

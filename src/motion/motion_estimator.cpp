@@ -189,7 +189,6 @@ void Estimator::findCovariance() {
   const Eigen::MatrixXd all = information + prior;
   const Eigen::MatrixXd inverse =
       solveSemidefinite(all(estimated, estimated), Eigen::MatrixXd::Identity(count, count));
-  result_.frictions = probedFriction(terms_, descent_.x(), estimated, inverse);
   const double windows = std::pow(result_.estimate.covariance_scale, 2);
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
   const Eigen::MatrixXd all_noise =
@@ -367,6 +366,7 @@ MotionEstimate Estimator::run() {
   if (estimate.termination == Termination::kConverged) {
     judgeMisfit();
     findCovariance();
+    result_.frictions = probedFriction(terms_, descent_.x(), descent_.estimated());
     CurrentSteps steps;
     for (const MotionSpan& span : terms_.spans()) {
       steps.add(*span.streams);

@@ -1,6 +1,9 @@
 #include "motion_outliers.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/base/median.hpp"
@@ -40,10 +43,11 @@ bool rejectThose(Terms& terms,
 }  // namespace
 
 bool rejectOutliers(MotionTerms& terms, double false_alarm_probability) {
-  const bool windows = rejectThose(terms.windows(),
-                                   static_cast<double>(terms.valuesPerWindow()),
-                                   false_alarm_probability,
-                                   [](const WindowTerm& term) { return term.residual.size() > 0; });
+  const bool windows = rejectThose(
+      terms.windows(),
+      static_cast<double>(terms.valuesPerWindow()),
+      false_alarm_probability,
+      [](const WindowTerm& term) { return term.residual.size() > 0 && !term.is_cut_off; });
   const bool orientations = rejectThose(
       terms.orientations().terms(), 3.0, false_alarm_probability, [](const OrientationTerm& term) {
         return term.is_known;
@@ -53,25 +57,36 @@ bool rejectOutliers(MotionTerms& terms, double false_alarm_probability) {
 
 bool leaveCutOff(MotionTerms& terms, std::size_t least) {
   constexpr std::size_t kPart = 4;
-  std::size_t at_end = 0;
-  std::size_t contradicting = 0;
-  std::size_t others = 0;
+  constexpr double kChance = 1e-3;
+  constexpr double kLeastRate = 0.01;
+  struct Tally {
+    std::size_t count = 0;
+    std::size_t contradicting = 0;
+  };
+  std::map<std::string, Tally> ends;
+  Tally others;
   for (const WindowTerm& term : terms.windows()) {
-    at_end += term.at_end.empty() ? 0 : 1;
-    contradicting += !term.at_end.empty() && !term.active ? 1 : 0;
-    others += term.at_end.empty() && term.serves() ? 1 : 0;
+    Tally& tally = term.at_end.empty() ? others : ends[term.at_end];
+    ++tally.count;
+    tally.contradicting += term.active ? 0 : 1;
   }
-  if (contradicting == 0 || kPart * contradicting < at_end || others < least) {
-    return false;
-  }
+  // Hands come in windows with such readings, too.
+  const double rate = std::max(kLeastRate,
+                               static_cast<double>(others.contradicting) /
+                                   static_cast<double>(std::max<std::size_t>(1, others.count)));
+  bool changed = false;
   for (WindowTerm& term : terms.windows()) {
-    term.is_cut_off = !term.at_end.empty();
+    const Tally& tally = term.at_end.empty() ? others : ends[term.at_end];
+    term.is_cut_off = !term.at_end.empty() && others.count >= least &&
+                      kPart * tally.contradicting >= tally.count &&
+                      binomialTail(tally.count, rate, tally.contradicting) < kChance;
+    changed = changed || term.is_cut_off;
   }
-  return true;
+  return changed;
 }
 
 std::string leftOutReason(const WindowTerm& term) {
-  if (!term.at_end.empty() && (term.is_cut_off || !term.active)) {
+  if (term.is_cut_off) {
     return term.at_end;
   }
   return term.active ? "something held or turned the rotor steadily for longer"

@@ -10,8 +10,9 @@ namespace sac {
 bool rejectOutliers(MotionTerms& terms, double false_alarm_probability);
 
 /// Leaves out the windows with readings that look like the end of a sensor's range, where a quarter
-/// of them and more contradict the others, and at least so many others serve: what that end has cut
-/// off is in none of them. Whether anything changed.
+/// of those with the same end and more contradict the others, beyond what chance makes of how often
+/// windows without one do, and at least so many others are there: what that end has cut off is in
+/// none of them. Whether anything changed.
 bool leaveCutOff(MotionTerms& terms, std::size_t least);
 
 /// Why a window is not sound.

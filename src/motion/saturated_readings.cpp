@@ -149,7 +149,7 @@ std::string SaturatedReadings::within(const MotionWindow& window, double largest
     for (std::size_t n = window.first; n <= window.last; ++n) {
       if (span.track.reading(n)[static_cast<Eigen::Index>(end.column)] == end.value) {
         return format(
-            "joint %zu reads no further than %.4g rad: its sensor is at the end of its range",
+            "joint %zu reads no further than %.4g rad, as at the end of its sensor's range",
             numberOf(end.column),
             end.value);
       }
@@ -163,7 +163,7 @@ std::string SaturatedReadings::within(const MotionWindow& window, double largest
       if (static_cast<double>(span.streams->currents(
               static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(end.column))) == end.value) {
         return format(
-            "the current of coil %zu reads no further than %.4g A: its sensor is at the end of its "
+            "the current of coil %zu reads no further than %.4g A, as at the end of its sensor's "
             "range",
             numberOf(end.column),
             end.value);

@@ -32,7 +32,7 @@ def end_by_exception():
 
 def registered(name, **options):
     """Registers a program that ends by exception with the master, and waits for one. False, and a sentence, where it is
-    told to end before there is one. Options: of rospy.init_node."""
+    told to end before that is done. Options: of rospy.init_node."""
     end_by_exception()
     try:
         _wait_for_master(name)
@@ -41,14 +41,14 @@ def registered(name, **options):
         pass
     # What asks the master catches all exceptions now and then.
     if _told[0] is not None:
-        print(f"{name}: interrupted; there was no master to register with.", flush=True)
+        print(f"{name}: interrupted before it began.", flush=True)
     return _told[0] is None
 
 
 def _wait_for_master(name):
     is_said = False
     while _told[0] is None and not rosgraph.is_master_online():
-        if not is_said:
+        if not is_said and _told[0] is None:
             print(f"{name}: no ROS master answers at {rosgraph.get_master_uri()}; waiting for one.", file=sys.stderr, flush=True)
         is_said = True
         time.sleep(POLL)

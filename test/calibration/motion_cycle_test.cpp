@@ -276,7 +276,7 @@ TEST_F(MotionCycleTest, SaysWhyTooFewWindowsServe) {
   session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
   const CycleReport report = session_.run({Cycle::kMotion});
   EXPECT_FALSE(report.success);
-  EXPECT_NE(report.message.find("0 windows of 23 (the rotor rests in 23) are too few"),
+  EXPECT_NE(report.message.find("0 windows of 23 (23: the rotor rests) are too few"),
             std::string::npos)
       << report.message;
 }

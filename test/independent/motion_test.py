@@ -164,18 +164,18 @@ class Motion(unittest.TestCase):
         currents[:, 7] = np.clip(currents[:, 7], -most, most)
         outcome = calibrate({**recording, "currents": (stamps, currents)})
         self.check(outcome, 1.6e-4)
-        cut_off = {reason.split(" A:")[0] for reason in outcome.left_out if "end of its range" in reason}
+        cut_off = {reason.split(" A,")[0] for reason in outcome.left_out if "end of its sensor" in reason}
         self.assertTrue(cut_off)
         self.assertEqual({part.split(" reads ")[0] for part in cut_off}, {"the current of coil 8"})
 
     def test_setpoints_at_a_limit_are_sound(self):
-        machine = free_motion.Machine(coil_limit=0.4, lag=0.0)
+        machine = free_motion.Machine(coil_limit=0.4, lag=0.0, push=(6.0, 6.2, (0.0, 0.0, 4e-3)))
         motion = free_motion.simulate(self.unit, self.errors, machine, SECONDS, SEED)
         self.assertGreater(np.mean(np.abs(motion.setpoint).max(axis=1) == 0.4), 0.2)
         streams = free_motion.Streams(joint_rate=200.0, current_rate=200.0, current_stddev=0.0)
         outcome = calibrate(free_motion.record(self.unit, self.errors, motion, streams, SEED))
         self.assertTrue(outcome.converged)
-        self.assertEqual([reason for reason in outcome.left_out if "end of its range" in reason], [])
+        self.assertEqual([reason for reason in outcome.left_out if "end of its sensor" in reason], [])
         self.assertLessEqual(sum(outcome.left_out.values()), 3)
 
     def test_calibrate_bag_takes_motion_by_itself(self):

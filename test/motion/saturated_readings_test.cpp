@@ -120,7 +120,7 @@ TEST(SaturatedReadings, OfACoilSpoilTheirWindowsAlone) {
     ASSERT_GT(clipped, 3U);
     ASSERT_LT(clipped, looked.windows.size());
     const std::string end =
-        "the current of coil 2 reads no further than 0.45 A: its sensor is at the end of its range";
+        "the current of coil 2 reads no further than 0.45 A, as at the end of its sensor's range";
     EXPECT_EQ(looked.at_end, (std::map<std::string, std::size_t>{{end, clipped}})) << step;
     // Currents count later than they are stamped.
     EXPECT_GT(lookedAt(streams, 0.06).at_end[end], clipped);
@@ -137,7 +137,7 @@ TEST(SaturatedReadings, OfAJointToo) {
   const LookedAt looked = lookedAt(streams);
   ASSERT_EQ(looked.at_end.size(), 1U);
   EXPECT_EQ(looked.at_end.begin()->first,
-            "joint 1 reads no further than -0.15 rad: its sensor is at the end of its range");
+            "joint 1 reads no further than -0.15 rad, as at the end of its sensor's range");
 }
 
 TEST(SaturatedReadings, AreNoneWhereTheRotorRestsAtTheEndOfItsWay) {

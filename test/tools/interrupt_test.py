@@ -66,7 +66,7 @@ class InterruptTest(unittest.TestCase):
             program.send_signal(number)
             said += program.communicate(timeout=60.0)[0].splitlines()
             waits = f"a_program: no ROS master answers at {NOWHERE}; waiting for one.\n"
-            self.assertEqual(said, ["waits\n", waits, "a_program: interrupted; there was no master to register with."])
+            self.assertEqual(said, ["waits\n", waits, "a_program: interrupted before it began."])
             self.assertEqual(program.returncode, 7)
 
 
