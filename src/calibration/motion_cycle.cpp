@@ -286,8 +286,7 @@ std::string exactInertiaInWords(const ParameterSpace& space) {
         return placed.name == effect_name::kStrengthScale;
       });
   return finds_strength ? " Strength, unbalance and friction are relative to the inertia of the "
-                          "drawing, which "
-                          "counts as exact: by how much it is off, they are, too."
+                          "drawing, which counts as exact: by how much it is off, they are, too."
                         : "";
 }
 

@@ -59,7 +59,7 @@ std::string driftInWords(const WindowMeansMisfit& orientations) {
 /// lacks then passes for noise, but for being slow.
 std::string slowMisfitInWords(const MotionEstimate& found) {
   constexpr double kSignificance = 1e-3;
-  // Of sound recordings, some 60 by another simulation, 1.09 at most.
+  // Of 42 sound recordings by another simulation it is 1.09 at most.
   constexpr double kLeast = 1.15;
   const double ratio = found.pace.slow / found.pace.fast;
   if (!(ratio > kLeast) || found.pace.probability() > kSignificance) {
@@ -69,7 +69,7 @@ std::string slowMisfitInWords(const MotionEstimate& found) {
       "What is left over changes too slowly for noise: with slow test functions its mean square is "
       "%.2f times that with fast ones. Something is not modelled that passes for noise of the "
       "readings (of currents %.3g mA), as the torque curve, friction or uneven strengths, and may "
-      "bias the parameters.",
+      "bias the parameters: check these, or model effects for them.",
       ratio,
       1e3 * found.summary.current_stddev);
 }

@@ -73,6 +73,7 @@ class MotionTerms {
   /// Where the tracker's delay is known better than at the begin, what seemed noise may be motion.
   void findTrackerNoise(const Eigen::VectorXd& x);
   const MotionPlaces& places() const { return places_; }
+  /// The model at other coordinates. Keeps references to these terms.
   MotionPoint pointAt(const Eigen::VectorXd& x) const {
     return MotionPoint(*problem_.model, places_, x, &tabulated_);
   }

@@ -14,8 +14,8 @@ double chiSquareProbability(double degrees_of_freedom, double value);
 /// the given probability.
 double chiSquareNonCentrality(double degrees_of_freedom, double value, double probability);
 
-/// Probability that the variance of one normal sample is at least so many times that of another, in
-/// truth the same; both of so many degrees of freedom.
+/// Probability that the variance found in one normal sample is at least so many times that found in
+/// another of the same true variance, each of its degrees of freedom.
 double varianceRatioProbability(double ratio, double freedom_of_one, double freedom_of_other);
 
 /// Probability that at least so many of `count` come, each of which comes at the rate, 0 to 1.
