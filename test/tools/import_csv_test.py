@@ -66,10 +66,18 @@ class Tables(Folder):
         self.assertEqual(self.angles("# one remark, and\n# " + self.HEADINGS + rows), [(1, 2, 3), (4, 5, 6)])
 
     def test_another_separator_is_named(self):
-        for separator, name in ((";", "semicolons"), ("\t", "tabs")):
-            text = (self.HEADINGS + "1,2,3\n").replace(",", separator)
-            (self.folder / "out.bag").unlink(missing_ok=True)
-            self.refused(f"s.csv:1: {name} separate the headings", self.write("s.csv", text))
+        text = (self.HEADINGS + "1,2,3\n").replace(",", "\t")
+        self.refused("s.csv:1: tabs separate the headings", self.write("s.csv", text))
+
+    def test_a_spreadsheet_with_decimal_commas_is_read(self):
+        headings = self.HEADINGS.replace(",", ";")
+        self.assertEqual(self.angles(headings + "1,5;-0,25;3\n"), [(1.5, -0.25, 3.0)])
+        self.assertEqual(self.angles("# by hand, twice\n" + headings + "1e-3;2,5e1;3.5\n"), [(1e-3, 25.0, 3.5)])
+        self.assertEqual(self.angles("# " + headings + "1,5;2;3\n"), [(1.5, 2.0, 3.0)])
+        (self.folder / "out.bag").unlink()
+        # Neither is known to be the decimal mark.
+        self.refused('"1.234,5" is not a number.', self.write("s.csv", headings + "1.234,5;2;3\n"))
+        self.refused('"1,234,5" is not a number.', self.write("s.csv", headings + "1,234,5;2;3\n"))
 
     def test_numbers_of_python_alone_are_none(self):
         for text in ("1_0", "\u0661"):
@@ -86,6 +94,51 @@ class Streams(Folder):
         entry = {"file": "joints.csv", "stream": "joint_states", "time": {"column": "t"}, "values": ["a", "b", "c"]}
         entry.update(changes)
         self.refused(part, "--streams", self.write("i.yaml", yaml.safe_dump({"streams": [entry]})))
+
+    def imported(self, text, **changes):
+        """Angles and seconds of the streams of one or several texts, and what was said."""
+        self.description(0)
+        entries = []
+        for number, lines in enumerate([text] if isinstance(text, str) else text):
+            name = self.write(f"joints_{number}.csv", lines).name
+            entries.append({"file": name, "stream": "joint_states", "time": {"column": "t"}, "values": ["a", "b", "c"], **changes})
+        result = self.import_csv("--force", "--streams", self.write("i.yaml", yaml.safe_dump({"streams": entries})))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return [(*joints.position, joints.header.stamp.to_sec()) for joints in self.messages("joint_states")], result.stdout
+
+    def test_decimal_commas(self):
+        text = "t;a;b;c\n1,25;0,5;-1,5;2\n"
+        self.assertEqual(self.imported(text, separator=";", decimal=",")[0], [(0.5, -1.5, 2.0, 1.25)])
+        self.write("joints.csv", text)
+        entry = {"file": "joints.csv", "stream": "joint_states", "separator": ";"}
+        entry.update({"time": {"column": 3}, "values": ["a", "b", "c"]})
+        (self.folder / "out.bag").unlink()
+        key = '"0,5" is not a number; for decimal commas give the stream the key decimal: ","'
+        self.refused(key, "--streams", self.write("i.yaml", yaml.safe_dump({"streams": [entry]})))
+        self.expect("streams[0].decimal: it is a point or a comma.", decimal="·")
+
+    def test_a_sensor_that_is_read_twice_is_refused(self):
+        first, second = "t,a,b,c\n1,0,0,0\n2,0,0,0\n", "t,a,b,c\n2,0,0,0\n3,0,0,0\n"
+        later = second.replace("2,0", "2.5,0")
+        self.assertEqual([row[3] for row in self.imported([first, later])[0]], [1.0, 2.0, 2.5, 3.0])
+        (self.folder / "out.bag").unlink()
+        entry = {"stream": "joint_states", "time": {"column": "t"}, "values": ["a", "b", "c"]}
+        for name, text in (("a.csv", first), ("b.csv", second)):
+            self.write(name, text)
+        streams = [{"file": "a.csv", **entry}, {"file": "b.csv", **entry}]
+        self.refused(
+            "streams[0] and streams[1] are both joint_states, and overlap in time",
+            "--streams",
+            self.write("i.yaml", yaml.safe_dump({"streams": streams})),
+        )
+
+    def test_angles_that_may_be_degrees_are_told(self):
+        text = "t,a,b,c\n1,12,-31.5,3\n"
+        self.assertIn("its angles reach 31.5, and count as radians", self.imported(text)[1])
+        for told in ({"unit": "rad"}, {"unit": "deg"}, {"values": [2, 3, 4]}):
+            named = text.replace("a,b,c", "a [deg],b [rad],c [rad]") if "values" in told else text
+            self.assertNotIn("count as radians", self.imported(named, **told)[1])
+        self.assertNotIn("count as radians", self.imported("t,a,b,c\n1,1,-0.5,6.28\n")[1])
 
     def test_times_of_any_size(self):
         place = "joints.csv:3: column 1 (t): "

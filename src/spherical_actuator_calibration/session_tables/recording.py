@@ -120,19 +120,36 @@ def record_streams(recording, path):
     """Writes the streams that a YAML file describes; returns what was written, in words."""
     streams = streams_of(path, read_yaml(path, LARGEST_CONFIGURATION), recording.actuator)
     require_separate_files([(path, stream.path) for stream in streams], recording.files())
-    lines = []
+    lines, spans = [], {}
     with recording:
-        described = False
-        for stream in streams:
-            count = 0
-            for stamp, message in stream.messages():
-                if not described:
-                    recording.describe(stamp)
-                    described = True
-                recording.write(stream.topic, stamp, message)
-                count += 1
-            left_out = f", {stream.left_out} lines without values left out" if stream.left_out else ""
-            lines.append(f"{stream.topic}: {count} measurements{left_out}")
-        if not described:
+        for number, stream in enumerate(streams):
+            count, span = _write_stream(recording, stream, is_first=not spans)
+            if span is not None:
+                _require_apart(path, number, stream.topic, span, spans)
+                spans[number] = stream.topic, span
+            lines.append(stream.summary(count))
+        if not spans:
             raise TableError(f"{path}: the files hold no measurement.")
     return lines
+
+
+def _write_stream(recording, stream, is_first):
+    """How many measurements, and the first and the last stamp; None of none."""
+    count, span = 0, None
+    for stamp, message in stream.messages():
+        if is_first and count == 0:
+            recording.describe(stamp)
+        recording.write(stream.topic, stamp, message)
+        count += 1
+        span = (min(span[0], stamp), max(span[1], stamp)) if span else (stamp, stamp)
+    return count, span
+
+
+def _require_apart(path, number, topic, span, spans):
+    """Files of one stream follow each other. Raises TableError."""
+    for other, (other_topic, other_span) in spans.items():
+        if topic == other_topic and span[0] <= other_span[1] and other_span[0] <= span[1]:
+            raise TableError(
+                f"{path}: streams[{other}] and streams[{number}] are both {topic}, and overlap in time: one sensor is "
+                "read once; take one of them out."
+            )

@@ -29,7 +29,7 @@ class SampleTable:
     orientations."""
 
     def __init__(self, path, coils, has_joints=True):
-        self._table = Table(path)
+        self._table = Table(path, separator=None)
         self._coils = coils
         self._has_joints = has_joints
         self._columns = {}

@@ -14,10 +14,10 @@ from ..text_files import excerpt
 from ..unit_quaternion import normalised
 from .columns import UNITS
 from .sample_messages import LATEST, unit_quaternion
-from .table import Table, TableError, parsed
+from .table import Table, TableError, named, parsed
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
-KEYS = {"file", "stream", "headings", "separator", "time", "values", "unit"}
+KEYS = {"file", "stream", "headings", "separator", "decimal", "time", "values", "unit"}
 FURTHER_KEYS = {
     "joint_states": set(),
     "measured_orientation": {"stator_tracker", "rotor_marker"},
@@ -65,10 +65,11 @@ class Stream:
         if unknown:
             self._fail(sorted(map(str, unknown))[0], f"a stream {self.topic} has no such key.")
         self.path = os.path.join(folder, self._get("file", str))
-        self._table = Table(self.path, self._get("headings", int, 1), self._separator())
+        self._table = Table(self.path, self._get("headings", int, 1), self._separator(), self._decimal())
         self._time, self._time_factor, self._offset = self._time_column()
         self._columns, self._factors = self._value_columns("values", self._width(), UNIT_OF[self.topic], "unit")
         self.left_out = 0
+        self._largest_untold = 0.0  # angle of a column that names no unit [rad, as it is taken]
 
     def _fail(self, key, sentence):
         raise TableError(f"{self._where}.{key}: {sentence}")
@@ -84,6 +85,12 @@ class Stream:
         if len(separator) != 1:
             self._fail("separator", "it is one character.")
         return separator
+
+    def _decimal(self):
+        decimal_mark = self._get("decimal", str, ".")
+        if decimal_mark not in (".", ","):
+            self._fail("decimal", "it is a point or a comma.")
+        return decimal_mark
 
     def _width(self):
         return {"joint_states": 3, "measured_orientation": 4, "measured_torque": 3}.get(
@@ -137,7 +144,7 @@ class Stream:
     def _stamp(self, row):
         text = row.text(self._time)
         try:
-            ticks = (parsed(text, decimal.Decimal) * self._time_factor + self._offset).to_integral_value()
+            ticks = (parsed(row.figure(self._time), decimal.Decimal) * self._time_factor + self._offset).to_integral_value()
             is_stamp = 0 < ticks <= LATEST
         except (ArithmeticError, ValueError):  # of decimal: no number, none to compare, or one beyond its exponents
             row.fail(f'"{excerpt(text, 40)}" is not a time.', self._time)
@@ -162,7 +169,28 @@ class Stream:
         names = [joint["name"] for joint in self._actuator["joints"]]
         if not names:
             self._fail("stream", "the description has no joints; leave their readings out.")
-        return lambda _row, values: JointState(name=names, position=values)
+        untold = [index for index, column in enumerate(self._columns) if not self._is_unit_told(column)]
+
+        def make(_row, values):
+            self._largest_untold = max([self._largest_untold, *(abs(values[index]) for index in untold)])
+            return JointState(name=names, position=values)
+
+        return make
+
+    def _is_unit_told(self, column):
+        return self._entry.get("unit") is not None or bool(named(self._table.titles[column])[1])
+
+    def summary(self, count):
+        """What was written, in words."""
+        text = f"{self.topic}: {count} measurements"
+        if self.left_out:
+            text += f", {self.left_out} lines without values left out"
+        if self._largest_untold > 2.0 * math.pi:
+            text += (
+                f"; its angles reach {self._largest_untold:.3g}, and count as radians: if they are degrees, write "
+                "unit: deg to this stream"
+            )
+        return text
 
     def _coil_currents(self):
         return lambda _row, values: CoilCurrents(current=values)

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 
 from spherical_actuator_calibration.text_files import excerpt, read_bytes
 
@@ -14,6 +15,7 @@ LONGEST_TEXT = 1 << 16  # [characters] of a cell
 
 
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 
 
 class TableError(ValueError):
@@ -37,9 +39,9 @@ def parsed(text, kind):
     return kind(text)
 
 
-def _are_numbers(cells):
+def _are_numbers(cells, decimal):
     try:
-        return bool([parsed(cell.strip(), float) for cell in cells if cell.strip()])
+        return bool([parsed(cell.strip().replace(decimal, "."), float) for cell in cells if cell.strip()])
     except ValueError:
         return False
 
@@ -66,16 +68,26 @@ class Row:
     def is_empty(self, column):
         return not self.text(column)
 
+    def figure(self, column):
+        """The text of a number, with a point where the table has decimal commas."""
+        text = self.text(column)
+        is_by_comma = self.table.decimal == "," and text.count(",") == 1 and "." not in text
+        return text.replace(",", ".") if is_by_comma else text
+
     def number(self, column, factor=1.0):
         """A finite number."""
         text = self.text(column)
         try:
-            value = parsed(text, float) * factor
+            value = parsed(self.figure(column), float) * factor
         except ValueError:
-            self.fail(f'"{excerpt(text, 40)}" is not a number.', column)
+            self.fail(f'"{excerpt(text, 40)}" is not a number{self._about_commas(text)}.', column)
         if not math.isfinite(value):
             self.fail(f'"{excerpt(text, 40)}" is not a finite number.', column)
         return value
+
+    def _about_commas(self, text):
+        is_by_comma = self.table.decimal == "." and DECIMAL_COMMA.fullmatch(text)
+        return '; for decimal commas give the stream the key decimal: ","' if is_by_comma else ""
 
     def integer(self, column, smallest=0, largest=(1 << 63) - 1):
         """A whole number."""
@@ -91,19 +103,32 @@ class Row:
 
 class Table:
     """A CSV file with a line of headings. `headings`: which line that is, from 1, or the first after it that is neither
-    empty nor begins with #; what is before it is left out. Where numbers stand there, the line with # before them."""
+    empty nor begins with #; what is before it is left out. Where numbers stand there, the line with # before them.
+    `separator` None: by commas, or as spreadsheets save it where commas are decimal, by semicolons. `decimal`: the mark
+    in numbers."""
 
-    def __init__(self, path, headings=1, separator=","):
+    def __init__(self, path, headings=1, separator=",", decimal="."):
         self.path = path
-        self._lines = self._filled(self._read(headings, separator))
+        text = read_bytes(path, LARGEST).decode("utf-8-sig", errors="replace")
+        if separator is None:
+            separator, decimal = self._dialect(text)
+        self.decimal = decimal
+        self._lines = self._filled(self._read(text, headings, separator))
         self._first, self.titles = next(self._lines, (0, None))
         if not self.titles:
             raise TableError(f"{path}: there is no line {headings} with headings.")
         self.titles = [title.strip() or f"column {number}" for number, title in enumerate(self.titles, 1)]
         self._require_separated(separator)
 
-    def _read(self, headings, separator):
-        text = read_bytes(self.path, LARGEST).decode("utf-8-sig", errors="replace")
+    @staticmethod
+    def _dialect(text):
+        """Separator and decimal mark, by the first line that is no remark."""
+        for line in text.splitlines():
+            if line.strip() and not line.startswith("#"):
+                return (";", ",") if ";" in line else (",", ".")
+        return ",", "."
+
+    def _read(self, text, headings, separator):
         csv.field_size_limit(LONGEST_TEXT)
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
         while True:
@@ -116,8 +141,7 @@ class Table:
             if reader.line_num >= headings:
                 yield reader.line_num, cells
 
-    @staticmethod
-    def _filled(lines):
+    def _filled(self, lines):
         """The headings, then the lines after them; empty ones, and those that begin with #, are left out."""
         remark, has_headings = None, False
         for line, cells in lines:
@@ -126,7 +150,7 @@ class Table:
             if cells[0].startswith("#"):
                 remark = line, [cells[0].lstrip("# "), *cells[1:]]
                 continue
-            if not has_headings and remark and len(remark[1]) == len(cells) and _are_numbers(cells):
+            if not has_headings and remark and len(remark[1]) == len(cells) and _are_numbers(cells, self.decimal):
                 yield remark
             has_headings = True
             yield line, cells
