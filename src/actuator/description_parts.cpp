@@ -142,6 +142,9 @@ std::shared_ptr<const OrientationMap> readOrientationMap(const YamlMap& actuator
   description.length = arrayOf<kJoints>(map.numbers("length", positive, kJoints));
   description.amplitude = arrayOf<3>(map.numbers("amplitude", positive, 3));
   description.noise = arrayOf<3>(map.numbers("noise", positive, 3));
+  if (map.has("tracker_noise")) {
+    description.tracker_noise = map.number("tracker_noise", positive);
+  }
   for (const YamlMap& point : map.maps("points")) {
     description.readings.push_back(vectorOf(point, "reading"));
     description.rotations.push_back(vectorOf(point, "rotation"));
@@ -159,6 +162,9 @@ void writeOrientationMap(YamlWriter& writer, const OrientationMap& map) {
   writer.entry(2, "length", yamlNumbers(description.length));
   writer.entry(2, "amplitude", yamlNumbers(description.amplitude));
   writer.entry(2, "noise", yamlNumbers(description.noise));
+  if (description.tracker_noise > 0.0) {
+    writer.entry(2, "tracker_noise", yamlNumber(description.tracker_noise));
+  }
   std::vector<std::string> points;
   for (std::size_t n = 0; n < description.readings.size(); ++n) {
     points.push_back(YamlLine()

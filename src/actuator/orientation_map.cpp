@@ -56,6 +56,9 @@ void validate(const OrientationMapDescription& description) {
   requirePositive(description.length, "length");
   requirePositive(description.amplitude, "amplitude");
   requirePositive(description.noise, "noise");
+  if (!std::isfinite(description.tracker_noise) || description.tracker_noise < 0.0) {
+    throw ConfigError("orientation_map.tracker_noise: it must be finite, and not negative.");
+  }
   const std::size_t points = description.readings.size();
   if (points == 0 || points > kMostMapPoints || description.rotations.size() != points) {
     throw ConfigError("orientation_map: " + std::to_string(points) + " readings and " +
@@ -122,6 +125,7 @@ OrientationMap::Uncertainty OrientationMap::uncertainty(const Eigen::Vector3d& r
   const Eigen::VectorXd k = kernel(reading);
   const double share = shareAt(readings_, reading);
   Uncertainty result;
+  const double tracker = description_.tracker_noise * description_.tracker_noise;
   double prior = 0.0;
   for (std::size_t c = 0; c < factor_.size(); ++c) {
     const auto component = static_cast<Eigen::Index>(c);
@@ -130,6 +134,8 @@ OrientationMap::Uncertainty OrientationMap::uncertainty(const Eigen::Vector3d& r
     // Of the difference between what is there and a share of what the points say.
     result.variance[component] = square * (1.0 - explained * share * (2.0 - share));
     result.noise[component] = description_.noise[c] * description_.noise[c];
+    result.of_rotor[component] =
+        result.variance[component] + std::max(0.0, result.noise[component] - tracker);
     prior += square;
   }
   result.support = 1.0 - result.variance.sum() / prior;

@@ -140,8 +140,7 @@ FrameFit::Row FrameFit::row(const ModelPoint& point,
     noise += reading * reading.transpose();
   }
   if (const auto& map = model_.space().nominal().orientation_map) {
-    const OrientationMap::Uncertainty left_open = map->uncertainty(measured.joint_position);
-    noise.diagonal() += left_open.variance + left_open.noise;
+    noise.diagonal() += map->uncertainty(measured.joint_position).of_rotor;
   }
   const Eigen::Matrix3d W = whiteningOf(noise_scale * noise_scale * noise);
   row.whitened.residual = W * row.residual;

@@ -28,6 +28,12 @@ constexpr double kNoiseFactors[] = {1.0, 5.0, 25.0};
 /// Rotation beyond which no machine bends, root mean square [rad].
 constexpr double kLargestBend = 5e-3;
 
+/// Standard deviation of each component by the tracker, as stated [rad].
+double statedStddev(const Sample& sample, const EstimationOptions& options) {
+  return sample.orientation_stddev > 0.0 ? sample.orientation_stddev
+                                         : options.default_orientation_stddev;
+}
+
 /// A sample whose orientation serves.
 bool serves(const Sample& sample) {
   return sample.has_orientation && !sample.validation;
@@ -49,6 +55,7 @@ UnexplainedRotations withoutOutliers(const UnexplainedRotations& all) {
     if (sizes[n] <= kFar * median) {
       kept.readings.push_back(all.readings[n]);
       kept.rotations.push_back(all.rotations[n]);
+      kept.tracker_variances.push_back(all.tracker_variances[n]);
     }
   }
   return kept;
@@ -57,7 +64,8 @@ UnexplainedRotations withoutOutliers(const UnexplainedRotations& all) {
 /// What a state leaves of the orientations of samples, their nominal map counted in.
 UnexplainedRotations unexplained(const CalibrationModel& model,
                                  const std::vector<Sample>& samples,
-                                 const Eigen::VectorXd& x) {
+                                 const Eigen::VectorXd& x,
+                                 const EstimationOptions& options) {
   const std::shared_ptr<const OrientationMap>& nominal = model.space().nominal().orientation_map;
   const ModelPoint point(model, x);
   UnexplainedRotations result;
@@ -72,6 +80,7 @@ UnexplainedRotations unexplained(const CalibrationModel& model,
     }
     result.readings.push_back(sample.joint_position);
     result.rotations.push_back(rotation);
+    result.tracker_variances.push_back(std::pow(statedStddev(sample, options), 2));
   }
   return withoutOutliers(result);
 }
@@ -107,9 +116,7 @@ std::vector<Sample> noisier(std::vector<Sample> samples,
                             double factor,
                             const EstimationOptions& options) {
   for (Sample& sample : samples) {
-    const double stated = sample.orientation_stddev > 0.0 ? sample.orientation_stddev
-                                                          : options.default_orientation_stddev;
-    sample.orientation_stddev = factor * stated;
+    sample.orientation_stddev = factor * statedStddev(sample, options);
   }
   return samples;
 }
@@ -154,9 +161,9 @@ class RegionJudge {
       }
       const CycleOutcome outcome = fromOrientations(model_, others, state_, options_);
       const UnexplainedRotations known =
-          mergedPoses(unexplained(model_, others, outcome.state.belief.x));
+          mergedPoses(unexplained(model_, others, outcome.state.belief.x, options_));
       const UnexplainedRotations tested =
-          mergedPoses(unexplained(model_, held, outcome.state.belief.x));
+          mergedPoses(unexplained(model_, held, outcome.state.belief.x, options_));
       if (outcome.report.success && !known.readings.empty() && !tested.readings.empty()) {
         errors.push_back(errorsOf(OrientationMap(fitOrientationMap(known, &start).map), tested));
       }
@@ -306,7 +313,7 @@ OrientationMapChoice chooseOrientationMap(const CalibrationModel& model,
     return choice;
   }
   const UnexplainedRotations poses =
-      mergedPoses(unexplained(model, fitted, outcome.state.belief.x));
+      mergedPoses(unexplained(model, oriented, outcome.state.belief.x, options));
   if (rmsOf(poses.rotations) > kLargestBend) {
     return choice;
   }

@@ -54,7 +54,7 @@ Predictor::Orientation Predictor::orientation(const Eigen::Vector3d& reading) co
   const Actuator& actuator = model_->space().nominal();
   if (actuator.orientation_map) {
     const OrientationMap::Uncertainty map = actuator.orientation_map->uncertainty(reading);
-    variance += map.variance.sum() + map.noise.sum();
+    variance += map.of_rotor.sum();
     result.is_supported = map.support >= kLeastMapSupport;
   }
   result.stddev = rootMeanVariance(variance);
@@ -96,8 +96,7 @@ Predictor::Torque Predictor::torqueOfCoils(const Eigen::Vector3d& reading,
     }
     const Eigen::Matrix3d d_rotation =
         joints.d_offset.transpose().fullPivLu().solve(d_offset.transpose()).transpose();
-    const Eigen::Vector3d rotation = map.variance + map.noise;
-    result.covariance += d_rotation * rotation.asDiagonal() * d_rotation.transpose();
+    result.covariance += d_rotation * map.of_rotor.asDiagonal() * d_rotation.transpose();
   }
   result.stddev = rootMeanVariance(result.covariance.trace());
   return result;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
@@ -200,11 +201,26 @@ UnexplainedRotations chosenPoses(const UnexplainedRotations& poses, std::size_t 
   return points;
 }
 
+/// The stated noise of the tracker, root mean square, or 0 where the poses differ by less than it
+/// says: what it is then nobody knows.
+double believedTrackerNoise(const std::vector<double>& variances,
+                            const std::array<double, 3>& noise) {
+  constexpr double kContradicted = 0.7;  // of the stated one: two standard deviations of 30 poses
+  if (variances.empty()) {
+    return 0.0;
+  }
+  const double stated = std::sqrt(std::accumulate(variances.begin(), variances.end(), 0.0) /
+                                  static_cast<double>(variances.size()));
+  const double found = Eigen::Vector3d(noise[0], noise[1], noise[2]).norm() / std::sqrt(3.0);
+  return found < kContradicted * stated ? 0.0 : stated;
+}
+
 }  // namespace
 
 UnexplainedRotations mergedPoses(const UnexplainedRotations& all) {
   constexpr double kSamePose = 1e-3;  // [rad]
   UnexplainedRotations merged;
+  const bool has_variances = !all.tracker_variances.empty();
   std::vector<double> counts;
   for (std::size_t n = 0; n < all.readings.size(); ++n) {
     const auto found = std::find_if(
@@ -215,11 +231,20 @@ UnexplainedRotations mergedPoses(const UnexplainedRotations& all) {
       merged.readings.push_back(all.readings[n]);
       merged.rotations.push_back(all.rotations[n]);
       counts.push_back(1.0);
+      if (has_variances) {
+        merged.tracker_variances.push_back(all.tracker_variances[n]);
+      }
       continue;
     }
     const auto place = static_cast<std::size_t>(found - merged.readings.begin());
     counts[place] += 1.0;
     merged.rotations[place] += (all.rotations[n] - merged.rotations[place]) / counts[place];
+    if (has_variances) {
+      merged.tracker_variances[place] += all.tracker_variances[n];
+    }
+  }
+  for (std::size_t n = 0; n < merged.tracker_variances.size(); ++n) {
+    merged.tracker_variances[n] /= counts[n] * counts[n];  // of a mean: Σσ²/n²
   }
   return merged;
 }
@@ -239,6 +264,7 @@ OrientationMapFit fitOrientationMap(const UnexplainedRotations& poses,
   fit.gain = likelihood.ofNoise() - likelihood(fit.map.length, &fit.map);
   fit.map.readings = points.readings;
   fit.map.rotations = points.rotations;
+  fit.map.tracker_noise = believedTrackerNoise(poses.tracker_variances, fit.map.noise);
   return fit;
 }
 

@@ -120,7 +120,7 @@ class PoseUncertainty {
     if (model_.hasOrientationMap()) {
       const OrientationMap::Uncertainty map =
           space().nominal().orientation_map->uncertainty(pose.joint_position);
-      own.diagonal() += map.variance + map.noise;
+      own.diagonal() += map.of_rotor;
     }
     const Eigen::Index others = space().size() - space().pole(0);
     moved_covariance_.topLeftCorner<3, 3>() = own;

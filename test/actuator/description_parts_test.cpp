@@ -15,6 +15,7 @@ constexpr char kMap[] =
     "    length: [0.3, 0.5, 0.8]\n"
     "    amplitude: [1.0e-3, 2.0e-3, 5.0e-4]\n"
     "    noise: [1.0e-4, 3.0e-4, 2.0e-4]\n"
+    "    tracker_noise: 1.5e-4\n"
     "    points:\n"
     "      - {reading: [0.1, 0.2, 0.3], rotation: [1.0e-3, 0.0, -1.0e-3]}\n"
     "      - {reading: [0.4, 0.2, 0.3], rotation: [5.0e-4, 0.0, 2.0e-4]}\n";
@@ -65,6 +66,7 @@ TEST(IdentifiedDescription, IsReadWhole) {
   ASSERT_TRUE(description.actuator.orientation_map);
   EXPECT_EQ(description.actuator.orientation_map->description().rotations[1],
             Eigen::Vector3d(5e-4, 0.0, 2e-4));
+  EXPECT_EQ(description.actuator.orientation_map->description().tracker_noise, 1.5e-4);
   EXPECT_EQ(description.calibration->covariance->lower, (std::vector<double>{1.0, 0.5, 2.0}));
   EXPECT_EQ(description.calibration->orientation_map->inside, 0.94);
 }
@@ -86,6 +88,7 @@ TEST(IdentifiedDescription, IsWrittenAsItWasRead) {
   EXPECT_EQ(back.actuator.friction.value().coulomb, read.actuator.friction.value().coulomb);
   const Eigen::Vector3d q(0.2, 0.2, 0.3);
   EXPECT_EQ(back.actuator.orientation_map->mean(q), read.actuator.orientation_map->mean(q));
+  EXPECT_EQ(back.actuator.orientation_map->description().tracker_noise, 1.5e-4);
   EXPECT_EQ(back.calibration->covariance->lower, read.calibration->covariance->lower);
   EXPECT_EQ(back.calibration->covariance->effects, read.calibration->covariance->effects);
   EXPECT_EQ(back.calibration->orientation_map->map_rms, 6e-4);
@@ -103,6 +106,7 @@ TEST(IdentifiedDescription, NamesThePlaceOfWhatIsWrong) {
   expectRefused("coulomb: 4.0e-4", "coulomb: much", "rotor_friction.coulomb");
   expectRefused("amplitude: [1.0e-3", "amplitude: [-1.0e-3", "orientation_map.amplitude");
   expectRefused("length: [0.3, 0.5, 0.8]", "length: [0.3, 0.5]", "orientation_map.length");
+  expectRefused("tracker_noise: 1.5e-4", "tracker_noise: -1.5e-4", "orientation_map.tracker_noise");
   expectRefused("rotation: [5.0e-4, ", "rotation: [.nan, ", "orientation_map.points[1].rotation");
   expectRefused("reading: [0.4", "turned: [0.4", "orientation_map.points[1]");
   expectRefused("lower: [1.0, 0.5, 2.0]", "lower: [1.0, 0.5]", "calibration.covariance.lower");

@@ -55,6 +55,21 @@ TEST(OrientationMap, IsTheGaussianProcessGivenItsPoints) {
   }
 }
 
+// What the tracker adds to a measurement is nowhere the rotor is.
+TEST(OrientationMap, LeavesTheTrackersNoiseOutOfTheRotors) {
+  OrientationMapDescription description = scenarios::orientationMap();
+  description.noise = {1e-4, 3e-4, 5e-4};
+  description.tracker_noise = 3.0001e-4;
+  const Eigen::Vector3d q(0.05, -0.1, 1.2);
+  const OrientationMap::Uncertainty told = OrientationMap(description).uncertainty(q);
+  EXPECT_EQ(told.of_rotor[0], told.variance[0]);
+  EXPECT_EQ(told.of_rotor[1], told.variance[1]);
+  EXPECT_NEAR(told.of_rotor[2] - told.variance[2], 16e-8, 1e-11);
+  description.tracker_noise = 0.0;
+  const OrientationMap::Uncertainty unknown = OrientationMap(description).uncertainty(q);
+  EXPECT_EQ(unknown.of_rotor, Eigen::Vector3d(unknown.variance + unknown.noise));
+}
+
 // A length that was found within the points' range says nothing of how far it goes on beyond.
 TEST(OrientationMap, FallsBackToTheAxesBeyondTheRangeOfItsPointsHoweverLongItsLengthsAre) {
   OrientationMapDescription description = scenarios::orientationMap();

@@ -48,16 +48,16 @@ class DescribedRotor:
         return max(0.0, 1.0 - beyond) ** 2
 
     def unexplained(self, q):
-        """Mean, variance of the smooth part and noise of the map's rotation vector."""
+        """Mean, variance of the smooth part and the rotor's own noise of the map's rotation vector."""
         if not self.map:
             return np.zeros((3, 3))
         k, share = self.kernel(q), self.share(q)
-        rows = []
+        rows, tracker = [], self.map.get("tracker_noise", 0.0)
         for c, (amplitude, noise) in enumerate(zip(self.map["amplitude"], self.map["noise"])):
             inverse = np.linalg.inv(amplitude**2 * self.gram + noise**2 * np.eye(len(k)))
             mean = amplitude**2 * k @ inverse @ self.rotations[:, c]
             explained = amplitude**4 * k @ inverse @ k
-            rows.append([share * mean, amplitude**2 - share * (2.0 - share) * explained, noise**2])
+            rows.append([share * mean, amplitude**2 - share * (2.0 - share) * explained, max(0.0, noise**2 - tracker**2)])
         return np.array(rows).T
 
     def orientation(self, q, change=None):

@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 import yaml
 from described_rotor import DescribedRotor, matrix_of
-from laboratory import rotation_vector
+from laboratory import quaternion_xyzw, rotation, rotation_vector
 
 PROGRAMS = os.environ["PROGRAMS"]
 POSITIONER = os.path.join(os.environ["SOURCE"], "config", "examples", "two_axis_positioner")
@@ -139,6 +139,38 @@ class RealPositioner(unittest.TestCase):
         self.assertLess(np.linalg.norm(rotation_vector(matrix_of(quaternions[0]) @ axes.T)), 0.3e-3)
         near = calibration.predict([known[0]["joint_position"]])[1]
         self.assertGreater(stddevs[0], 1.5 * near[0])
+
+
+class BentMachine(unittest.TestCase):
+    """Not real: known where it is, so that intervals of the rotor itself can be judged, not of a tracker beside it."""
+
+    def bent(self, q):
+        with open(ACTUATOR, encoding="utf-8") as file:
+            axes = DescribedRotor(yaml.safe_load(file)).orientation(q)
+        turned = np.array([np.sin(3.0 * q[0]), np.cos(1.5 * q[1]), np.sin(q[1] + 2.0 * q[0])])
+        return rotation(1.0e-3 * turned) @ axes
+
+    def test_intervals_of_the_rotor_hold_what_its_tracker_does_not_blur(self):
+        rng = np.random.default_rng(7)
+        joints = rng.uniform([-0.5, 0.0, 0.0], [0.5, 6.0, 0.0], (300, 3))
+        known = [
+            {
+                "joint_position": q.tolist(),
+                "orientation_xyzw": quaternion_xyzw(rotation(rng.normal(0.0, 5.0e-4, 3)) @ self.bent(q)).tolist(),
+            }
+            for q in joints[:120]
+        ]
+        with tempfile.TemporaryDirectory() as folder:
+            calibration = Calibration(folder, known)
+            self.assertIn("orientation_map", calibration.loaded()["actuator"], calibration.said)
+            quaternions, stddevs = calibration.predict(joints[120:])
+        errors = [
+            rotation_vector(self.bent(q) @ matrix_of(quaternion).T) for q, quaternion in zip(joints[120:], quaternions)
+        ]
+        scaled = np.array(errors) / stddevs[:, None]
+        print(f"normalised rms of the rotor {np.sqrt(np.mean(scaled**2)):.2f}, ±{1e3 * np.median(stddevs):.3f} mrad")
+        self.assertGreater(np.sqrt(np.mean(scaled**2)), 0.6)  # 0.27 with the noise of the tracker
+        self.assertLess(np.sqrt(np.mean(scaled**2)), 1.25)
 
 
 class SameNumbers(unittest.TestCase):

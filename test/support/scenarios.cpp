@@ -326,6 +326,7 @@ OrientationMapDescription orientationMap() {
   map.length = {0.3, 0.5, 0.8};
   map.amplitude = {1e-3, 2e-3, 5e-4};
   map.noise = {1e-4, 3e-4, 2e-4};
+  map.tracker_noise = 5e-5;
   for (int n = 0; n < 12; ++n) {
     map.readings.emplace_back(0.1 * std::sin(n), 0.2 * std::cos(2.0 * n), 0.5 * n);
     map.rotations.emplace_back(1e-3 * std::cos(n), 2e-3 * std::sin(3.0 * n), 5e-4 * std::sin(n));

@@ -15,15 +15,17 @@ namespace sac {
 struct OrientationMapDescription {
   /// Length scale of each joint, of the chord 2 sin(Δq/2) between two readings [rad].
   std::array<double, 3> length = {1.0, 1.0, 1.0};
-  std::array<double, 3> amplitude = {};    ///< standard deviation of each component [rad]
-  std::array<double, 3> noise = {};        ///< of a pose, beside the smooth part [rad]
+  std::array<double, 3> amplitude = {};  ///< standard deviation of each component [rad]
+  std::array<double, 3> noise = {};      ///< of a measured pose, beside the smooth part [rad]
+  /// What of the noise is the tracker's, as stated, of each component [rad]. 0: not known.
+  double tracker_noise = 0.0;
   std::vector<Eigen::Vector3d> readings;   ///< raw sensor angles of the support points [rad]
   std::vector<Eigen::Vector3d> rotations;  ///< unexplained rotation vectors there [rad]
 };
 
 /// Throws ConfigError that names the field: sizes that differ, no support points or more than
 /// kMostMapPoints, numbers that are not finite, lengths, amplitudes or noises that are not
-/// positive.
+/// positive, a negative noise of the tracker.
 void validate(const OrientationMapDescription& description);
 
 /// Support points that a map may have: one evaluation costs an exponential for each.
@@ -43,7 +45,8 @@ class OrientationMap {
 
   struct Uncertainty {
     Eigen::Vector3d variance;  ///< of the smooth part [rad²]
-    Eigen::Vector3d noise;     ///< of what is not smooth: poses differ by it beside that [rad²]
+    Eigen::Vector3d noise;     ///< of what is not smooth: measured poses differ by it, too [rad²]
+    Eigen::Vector3d of_rotor;  ///< both, the tracker's noise left out: of where the rotor is [rad²]
     /// Share of the variance that the support points explain, 0…1: where it is small, the axes
     /// alone tell the orientation.
     double support = 0.0;

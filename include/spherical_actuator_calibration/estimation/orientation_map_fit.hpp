@@ -14,6 +14,8 @@ struct UnexplainedRotations {
   std::vector<Eigen::Vector3d> readings;  ///< raw sensor angles [rad]
   std::vector<Eigen::Vector3d>
       rotations;  ///< R_measured = e^{rotation} R_model, stator frame [rad]
+  /// Of each component of each rotation, by the tracker as stated [rad²]. Empty: not known.
+  std::vector<double> tracker_variances;
 };
 
 /// One entry for each pose: readings that differ by less than a milliradian are averaged.
@@ -31,7 +33,8 @@ struct OrientationMapFit {
 /// wide log-normal prior of the lengths; a joint that hardly moves has the prior's length
 /// (doc/method.md, Residual map). With `start`, the search begins at its lengths, and is short. At
 /// most kMostMapPoints rotations are used, and 150 of them for lengths, amplitudes and noises; they
-/// are chosen evenly. Precondition: at least one rotation.
+/// are chosen evenly. The tracker's part of the noise is what it states, unless the poses differ by
+/// less than 0.7 of that: it is not known then. Precondition: at least one rotation.
 OrientationMapFit fitOrientationMap(const UnexplainedRotations& poses,
                                     const OrientationMapDescription* start = nullptr);
 

@@ -73,6 +73,7 @@ msg::OrientationMap mapToRos(const OrientationMapDescription& map) {
   std::copy(map.length.begin(), map.length.end(), message.length.begin());
   std::copy(map.amplitude.begin(), map.amplitude.end(), message.amplitude.begin());
   std::copy(map.noise.begin(), map.noise.end(), message.noise.begin());
+  message.tracker_noise = map.tracker_noise;
   std::transform(
       map.readings.begin(), map.readings.end(), std::back_inserter(message.readings), vectorToRos);
   std::transform(map.rotations.begin(),
@@ -91,6 +92,7 @@ std::shared_ptr<const OrientationMap> mapFromRos(const msg::OrientationMap& mess
   std::copy(message.length.begin(), message.length.end(), map.length.begin());
   std::copy(message.amplitude.begin(), message.amplitude.end(), map.amplitude.begin());
   std::copy(message.noise.begin(), message.noise.end(), map.noise.begin());
+  map.tracker_noise = message.tracker_noise;
   std::transform(message.readings.begin(),
                  message.readings.end(),
                  std::back_inserter(map.readings),

@@ -207,6 +207,8 @@ TEST(MsgConversion, ParametersTellAllThatIsIdentified) {
   const Eigen::Vector3d q(0.2, -0.1, 1.0);
   const Eigen::Matrix3d R = rotorOrientation(jointGeometry(actuator), q);
   EXPECT_LT((rotorOrientation(jointGeometry(*back), q) - R).norm(), 1e-14);
+  EXPECT_EQ(back->orientation_map->description().tracker_noise,
+            actuator.orientation_map->description().tracker_noise);
   EXPECT_GT((rotorOrientation(jointGeometry(scenarios::paperTruth()), q) - R).norm(), 1e-3);
   const auto torques = [&](const Actuator& from) {
     return torquePerAmpere(TorqueCurve(*from.torque_curve), torqueGeometry(from), R);
@@ -232,6 +234,9 @@ TEST(MsgConversion, ParametersThatAreNoneAreRefused) {
   ASSERT_TRUE(actuatorFromRos(sound, scenarios::paperNominal()));
   msg::ActuatorParameters message = sound;
   message.orientation_map.noise[1] = 0.0;
+  EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
+  message = sound;
+  message.orientation_map.tracker_noise = -1e-4;
   EXPECT_FALSE(actuatorFromRos(message, scenarios::paperNominal()));
   message = sound;
   message.orientation_map.rotations.pop_back();
