@@ -58,8 +58,8 @@ class Judge {
   void collectSteps(std::vector<std::string>& steps) const {
     if (graded_.grade == Grade::kContradicted) {
       steps.emplace_back(
-          "Find out why the held-out samples differ: compare their residuals with those of the "
-          "samples in use, and check that nothing was moved in between.");
+          "Find out why what was held out differs: compare its residuals with those of what is in "
+          "use, and check that nothing was moved in between.");
     }
     addFailures(steps);
     addOpen(steps);

@@ -48,7 +48,7 @@ class Guide {
       return closingStep();  // by a motion: there is nothing to refine
     }
     if (progress_.contradicted && progress_.isAllIdentified() && !isSeenWell()) {
-      return "Do not use the parameters in force, which held-out samples contradict. Call "
+      return "Do not use the parameters in force: what was held out contradicts them. Call "
              "diagnose, "
              "and check what was changed at the machine; then calibrate anew by a session of its "
              "own, as plan_poses or guided_session plans: the samples in use do not tell all "
@@ -158,10 +158,10 @@ class Guide {
     if (!progress_.good) {
       const std::string rest = "the grade's reason says what it is not good for.";
       return progress_.saved ? "The calibration is saved, and usable as far as it goes: " + rest
-                             : "Call save: held-out samples agree, and " + rest;
+                             : "Call save: what was held out agrees, and " + rest;
     }
     return progress_.saved ? "Nothing is left to do: the calibration is complete and saved."
-                           : "Call save: held-out samples agree.";
+                           : "Call save: what was held out agrees.";
   }
 
   /// The parameters still have the effect of what was removed.

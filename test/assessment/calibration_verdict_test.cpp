@@ -69,7 +69,7 @@ TEST(CalibrationVerdict, HeldOutSamplesCanContradict) {
       verdictOf(sessionWith(samples, {{Cycle::kJoint}, {Cycle::kRefine}}));
   EXPECT_EQ(verdict.graded.grade, Grade::kContradicted);
   EXPECT_EQ(verdict.graded.reason.find("Do not use this calibration yet"), 0U);
-  EXPECT_EQ(verdict.next_steps[0].find("Find out why the held-out samples differ"), 0U);
+  EXPECT_EQ(verdict.next_steps[0].find("Find out why what was held out differs"), 0U);
 }
 
 TEST(CalibrationVerdict, SaysWhichPoseWouldShowAPoleThatNoSampleSees) {

@@ -53,7 +53,7 @@ TEST(SessionGuidance, LeadsThroughTheWholeCalibration) {
   progress.validation_samples = 3;
   progress.judged = true;
   progress.good = true;
-  EXPECT_EQ(nextStep(session, progress), "Call save: held-out samples agree.");
+  EXPECT_EQ(nextStep(session, progress), "Call save: what was held out agrees.");
   progress.saved = true;
   EXPECT_NE(nextStep(session, progress).find("Nothing is left to do"), std::string::npos);
   progress.validation_samples = 0;
@@ -160,7 +160,7 @@ TEST(SessionGuidance, WithoutSamplesThereIsNothingToRefine) {
   progress.judged = true;
   progress.good = true;
   ASSERT_TRUE(progress.isAllIdentified());
-  EXPECT_EQ(nextStep(session, progress), "Call save: held-out samples agree.");
+  EXPECT_EQ(nextStep(session, progress), "Call save: what was held out agrees.");
 }
 
 TEST(SessionGuidance, APlanGoesFirst) {
