@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from unittest import mock
 
 import actionlib
 import rospy
@@ -207,15 +206,6 @@ class SessionEngine(LabCase):
         self.assertIn("the engine ends. The currents are zero", self.result(excite, GoalStatus.PREEMPTED).message)
         self.time_to_zero()
         self.assertTrue(self.action("excite").wait_for_server(DEADLINE))
-
-    def test_a_refusal_at_once_leaves_no_error_of_actionlib(self):
-        excite = self.action("excite")
-        with mock.patch.object(rospy, "logerr") as logged:
-            for _ in range(10):
-                self.send(excite, msg.ExciteGoal(coils=[25], current=1.5))
-                self.result(excite, GoalStatus.ABORTED)
-            time.sleep(1.0)  # what comes late
-        self.assertEqual(logged.call_args_list, [])
 
     def test_poses_one_by_one(self):
         plan = self.action("plan")

@@ -6,9 +6,12 @@ import math
 import threading
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
+import actionlib
+import rospy
 from spherical_actuator_calibration.msg import CoilPattern, JointAxis, PoseProgress
-from spherical_actuator_calibration.session_guide import laboratory, progress
+from spherical_actuator_calibration.session_guide import client, laboratory, progress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.calibration import excitations_of, message_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
@@ -19,6 +22,28 @@ from spherical_actuator_calibration.terminal import Terminal
 
 TOLERANCE = 0.05  # [rad] of one pose
 STATUS = SimpleNamespace(least_current=0.09)
+
+
+class AcceptedAtOnce(unittest.TestCase):
+    def test_is_heard_of_without_an_error(self):
+        """By the thread of the status, before there is a handle here, as on a busy computer."""
+        handle = SimpleNamespace(get_comm_state=lambda: actionlib.CommState.ACTIVE)
+        threads, accepted = [], []
+
+        def send_goal(_goal, transition, _feedback):
+            threads.append(threading.Thread(target=transition, args=(handle,)))
+            threads[0].start()
+            threads[0].join(0.1)
+            return handle
+
+        with mock.patch("actionlib.simple_action_client.ActionClient") as sender:
+            sender.return_value.send_goal = send_goal
+            sender.return_value.ns = "/engine"
+            goals = client.GoalClient("/engine", None)
+            with mock.patch.object(rospy, "logerr") as logged:
+                goals.send_goal(None, active_cb=lambda: accepted.append(True))
+                threads[0].join(60.0)
+        self.assertEqual((logged.call_args_list, accepted), ([], [True]))
 
 
 class KnownJoint(unittest.TestCase):

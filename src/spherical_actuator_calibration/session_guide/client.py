@@ -49,6 +49,24 @@ class Follower:
             self._terminal.show(told)
 
 
+class GoalClient(actionlib.SimpleActionClient):
+    """Of an engine that may accept a goal before the goal has a handle here, on a busy computer: actionlib prints an
+    error then, and forgets that it was accepted."""
+
+    def __init__(self, name, action):
+        self._sending = threading.Lock()
+        super().__init__(name, action)
+
+    def send_goal(self, *goal, **callbacks):
+        with self._sending:
+            super().send_goal(*goal, **callbacks)
+
+    def _handle_transition(self, gh):
+        with self._sending:  # until there is a handle
+            pass
+        super()._handle_transition(gh)
+
+
 class SessionClient:
     """Has an engine lead a session; ends with its outcome."""
 
@@ -56,7 +74,7 @@ class SessionClient:
         self._ns = ns
         self._action = f"{ns}/calibration/session"
         self._terminal = terminal
-        self._client = actionlib.SimpleActionClient(self._action, SessionAction)
+        self._client = GoalClient(self._action, SessionAction)
 
     def is_served(self):
         """Whether an engine is there, or comes while the laboratory starts."""

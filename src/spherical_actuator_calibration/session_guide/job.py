@@ -9,9 +9,6 @@ from .account import Account
 from .task import Cancelled, Task
 
 PERIOD = 0.1  # [s] between two messages of feedback
-# [s] that a goal takes at least: its client hears by different links that it was accepted and how it ended, and
-# actionlib prints an error where the end comes first.
-SHORTEST = 0.2
 PATIENCE = 5.0  # [s] in which a client is to subscribe to the feedback
 
 
@@ -50,7 +47,6 @@ class Job:
         self._ending = threading.Lock()
         self._thread = threading.Thread(target=self._run, args=(previous,), daemon=True)
         self._beat = threading.Thread(target=self._follow, daemon=True)
-        self._begin = Task.time()
 
     def start(self):
         self._thread.start()
@@ -104,7 +100,6 @@ class Job:
             with self._ending:
                 self._action.let_go()
                 self._is_answered.set()
-        rospy.rostime.wallsleep(max(0.0, self._begin + SHORTEST - Task.time()))
         answer()
         self.task.wait_for_calls()
 
