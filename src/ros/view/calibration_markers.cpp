@@ -35,8 +35,8 @@ constexpr double kRingWidth = 0.003;
 constexpr double kRodRadius = 0.0025;
 constexpr double kRodEnd = 0.012;  ///< of the rod that carries the ring, beyond it
 constexpr int kRingPoints = 72;
-constexpr double kLegendHeight = 0.005;
-constexpr double kLegendDistance = 0.028;  ///< beyond the shaft's end and the dots
+constexpr double kLegendHeight = 0.0078;
+constexpr double kLegendDistance = 0.03;  ///< beyond the shaft's end and the dots
 
 constexpr double kFullGlow = 2.0;          // [A]
 constexpr double kSmallestGlow = 0.02;     // of the full one
@@ -360,13 +360,12 @@ class Drawing {
     drawText(
         legend,
         (scene_.dimensions.shaft_length + kLegendDistance) * Eigen::Vector3d::UnitZ(),
-        "red, blue: north, south poles; copper: coils; yellow: its current flows; thin grey, "
-        "faint rotor: as drawn; green rotor: where it is to go\nthick arrow: identified axis, "
-        "its error " +
-            times + "; violet cone: 1 sigma " + times + "; P: poles, C: coils" +
-            (scene_.nominal.has_joints ? "; ring: gimbal of the joints, about J1, J2, J3" : "") +
-            "\ndots: samples; green fit, red do not, black are rejected, grey await a cycle "
-            "or are held out",
+        std::string(
+            "P, red and blue: north and south poles; C, copper: coils, yellow with current") +
+            (scene_.nominal.has_joints ? "; J: joints" : "") +
+            "\nthin grey, faint: as drawn; thick: identified, its error " + times +
+            "; violet: 1 sigma " + times + "; green rotor: go there" +
+            "\ndots: samples; green fit, red do not, black are rejected, grey wait or are held out",
         kLegendHeight);
     array_.markers.push_back(legend);
   }
