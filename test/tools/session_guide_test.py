@@ -75,17 +75,20 @@ class PlannedPatterns(unittest.TestCase):
 
 
 class Excitation(unittest.TestCase):
-    def test_commands_the_signs_of_a_pattern(self):
+    def test_commands_the_signs_of_a_pattern_at_once(self):
+        commanded = []
         bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
         bench._coils, bench._lock, bench._is_held = 4, threading.Lock(), False
         bench._listeners = [lambda: None]  # it listens already
+        bench._commands = SimpleNamespace(publish=lambda message: commanded.append(message.current))
         bench.excite((1,), 1.5)
-        self.assertEqual(bench._command, [0.0] * 4)
+        self.assertEqual((bench._command, commanded), ([0.0] * 4, []))
         bench.hold()
         bench.excite((1, -3), 1.5)
         self.assertEqual(bench._command, [1.5, 0.0, -1.5, 0.0])
         bench.excite((), 0.0)
         self.assertEqual(bench._command, [0.0] * 4)
+        self.assertEqual(commanded, [[1.5, 0.0, -1.5, 0.0], [0.0] * 4])
 
     def test_with_less_than_the_node_tells_from_none_is_refused(self):
         course = PoseCourse(SimpleNamespace(status=lambda: STATUS), None, Options(), Task(), Account())

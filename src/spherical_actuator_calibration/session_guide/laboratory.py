@@ -86,6 +86,8 @@ class Laboratory:
             self._command = [0.0] * self._coils
             for coil in pattern if self._is_held else ():
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
+            if self._is_held:
+                self._publish()  # captures need not wait for the timer
 
     def currents(self):
         """The last measured ones [A]; empty before the first, and while it is not held."""
