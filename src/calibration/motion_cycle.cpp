@@ -10,6 +10,7 @@
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
 #include "motion_doubts.hpp"
+#include "motion_dynamics.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
@@ -344,7 +345,8 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
                  std::back_inserter(coordinates.unobservable));
   conclude(model, found.estimate, coordinates, ExpectedErrors::kReported, outcome.state, report);
   report.message = successInWords(found.summary, coordinates.unobservable.size()) +
-                   silentInWords(silent) + exactInertiaInWords(model.space());
+                   silentInWords(silent) + exactInertiaInWords(model.space()) +
+                   strangeInertiaInWords(report);
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spherical_actuator_calibration/actuator/rotor_dynamics.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
@@ -68,6 +69,25 @@ ToldDynamics toldDynamics(const std::vector<CycleReport>& reports) {
   }
   dynamics.unbalance = unbalance;
   return dynamics;
+}
+
+std::string strangeInertiaInWords(const CycleReport& motion) {
+  constexpr double kFar = 3.0;
+  const std::optional<Eigen::Matrix3d> inertia = toldInertia(motion);
+  if (!inertia) {
+    return {};
+  }
+  const double factor = inertia->trace() / RigidRotor().inertia.trace();
+  if (factor > 1.0 / kFar && factor < kFar) {
+    return {};
+  }
+  return format(
+      " The rotor's moments of inertia are %.2g times those of the drawing. A motion tells only "
+      "their ratio to the torques: where the rotor is as drawn, the torques of the recorded "
+      "currents "
+      "are %.2g times the real ones; check the unit of the currents, and the torque curve.",
+      factor,
+      factor);
 }
 
 }  // namespace sac

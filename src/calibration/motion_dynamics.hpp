@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,5 +23,9 @@ struct ToldDynamics {
 /// Of the last motion of these cycles, also where their model does not know it; nothing without one
 /// that succeeded.
 ToldDynamics toldDynamics(const std::vector<CycleReport>& reports);
+
+/// "", or a sentence where the moments of inertia that a motion has told are far from those of the
+/// drawing: torques by the drawing are then as far from the real ones, or the rotor is another one.
+std::string strangeInertiaInWords(const CycleReport& motion);
 
 }  // namespace sac

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_excerpt.hpp"
 #include "spherical_actuator_calibration/motion/rough_motion.hpp"
@@ -36,10 +37,16 @@ double misfitWithout(const CalibrationSession& session,
   return roughMisfit(problem, variance);
 }
 
-/// Mistakes of one coil or pole, or of all currents.
+/// Mistakes of one coil or pole, or of all currents. A factor on all of them is sought coarsely:
+/// milliamperes, or a gain that is far off; inertia takes up one that is near 1.
 std::vector<Candidate> singleMistakes(const Actuator& actuator) {
+  constexpr double kFactors[] = {1e-3, 0.1, 10.0};
+  constexpr double kTolerance = 0.1;
   std::vector<Candidate> mistakes{
       {currentSign()}, {coilShift(1)}, {coilShift(actuator.coils.size() - 1)}};
+  for (const double factor : kFactors) {
+    mistakes.push_back({currentUnit(factor, kTolerance)});
+  }
   for (std::size_t coil = 0; coil < actuator.coils.size(); ++coil) {
     mistakes.push_back({coilSign(coil)});
     mistakes.push_back({coilDead(coil)});
@@ -137,10 +144,18 @@ Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string
       all.push_back({coilSwap(first, second)});
     }
   }
+  for (Hypothesis& mistake : jointHypotheses(actuator, ManufacturingTolerance{})) {
+    if (mistake.start.size() == 0) {
+      all.push_back({std::move(mistake)});
+    }
+  }
   Candidate found;
-  for (const Candidate& candidate : all) {
-    if (std::find(causes.begin(), causes.end(), candidate.front().cause) != causes.end()) {
-      found.push_back(candidate.front());
+  for (const std::string& cause : causes) {
+    const auto named = std::find_if(all.begin(), all.end(), [&](const Candidate& candidate) {
+      return candidate.front().cause == cause;
+    });
+    if (named != all.end()) {
+      found.push_back(named->front());
     }
   }
   return found;

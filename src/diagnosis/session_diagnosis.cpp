@@ -8,6 +8,7 @@
 
 #include "evidence.hpp"
 #include "explanation_words.hpp"
+#include "motion_poses.hpp"
 #include "motion_wiring.hpp"
 #include "single_explanations.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
@@ -186,7 +187,14 @@ std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
   if (unchanged.converged && !unchanged.isBeyondChance()) {
     return {};
   }
-  std::vector<Diagnosis> diagnoses = wiringThatExplainsMotion(session);
+  // Joints and tracker need no torque to be seen through.
+  std::vector<Diagnosis> diagnoses =
+      diagnoseWiring(session.start().actuator, posesOfMotion(*session.motion()), session.config())
+          .mistakes;
+  if (!diagnoses.empty()) {
+    return diagnoses;
+  }
+  diagnoses = wiringThatExplainsMotion(session);
   if (!diagnoses.empty()) {
     return diagnoses;
   }

@@ -195,13 +195,13 @@ class Motion(unittest.TestCase):
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
 
-    def diagnosed(self, change):
-        """What is said of the first seconds of the motion with other currents recorded, and the coils of the description
+    def diagnosed(self, change, stream="currents", status=1):
+        """What is said of the first seconds of the motion with another stream recorded, and the coils of the description
         that corrects it, where there is one."""
         recording = {name: [(t, value) for t, value in zip(*stream) if t < 7.0] for name, stream in self.record().items()}
         recording = {name: tuple(zip(*stream)) for name, stream in recording.items()}
-        stamps, currents = recording["currents"]
-        recording["currents"] = stamps, change(np.array(currents))
+        stamps, values = recording[stream]
+        recording[stream] = stamps, change(np.array(values))
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "wired.bag")
             write_bag(bag, recording, len(self.unit.coils))
@@ -211,7 +211,8 @@ class Motion(unittest.TestCase):
             if os.path.exists(corrected):
                 with open(corrected, encoding="utf-8") as file:
                     coils = [[coil["polar"], coil["azimuth"]] for coil in yaml.safe_load(file)["actuator"]["coils"]]
-        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertEqual(result.returncode, status, result.stdout)
+        self.said = result.stdout
         return coils, [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
 
     def test_names_a_coil_that_counts_the_wrong_way_round(self):
@@ -234,6 +235,21 @@ class Motion(unittest.TestCase):
         expected[[2, 15]] = expected[[15, 2]]
         apart = (np.array(coils) - expected + np.pi) % (2.0 * np.pi) - np.pi
         np.testing.assert_allclose(apart, 0.0, atol=1e-9)
+
+    def test_names_currents_in_milliamperes(self):
+        self.assertEqual(self.diagnosed(lambda currents: 1e3 * currents)[1], ["current_unit"])
+
+    def test_tells_that_currents_are_ten_times_too_large(self):
+        self.assertEqual(self.diagnosed(lambda currents: 10.0 * currents, status=0)[1], [])
+        self.assertIn("moments of inertia are 10 times those of the drawing", self.said)
+        self.assertIn("the torques of the recorded currents are 10 times the real ones", self.said)
+
+    def test_names_a_joint_that_counts_the_wrong_way_round(self):
+        def turned(joints):
+            joints[:, 2] *= -1.0
+            return joints
+
+        self.assertEqual(self.diagnosed(turned, "joints")[1], ["joint_sign:3"])
 
     def dwells_and_motion(self, folder, errors):
         """Bags of both: dwells of a unit with these errors."""

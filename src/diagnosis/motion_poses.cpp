@@ -1,0 +1,70 @@
+#include "motion_poses.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <Eigen/Geometry>
+
+#include "spherical_actuator_calibration/measurement/stamp_interval.hpp"
+
+namespace sac {
+namespace {
+
+constexpr std::size_t kMost = 120;
+
+/// The reading nearest to a stamp. Precondition: there is one.
+std::size_t nearest(const std::vector<Stamp>& stamps, Stamp stamp) {
+  const auto after = std::lower_bound(stamps.begin(), stamps.end(), stamp);
+  const auto place = static_cast<std::size_t>(after - stamps.begin());
+  if (after == stamps.end()) {
+    return place - 1;
+  }
+  const bool is_before = place > 0 && stamp - stamps[place - 1] < *after - stamp;
+  return is_before ? place - 1 : place;
+}
+
+/// Speed of the rotor around an orientation [rad/s].
+double speedAt(const MotionStreams& streams, std::size_t place) {
+  constexpr std::size_t kReach = 5;
+  const std::size_t from = place - std::min(place, kReach);
+  const std::size_t to = std::min(place + kReach, streams.orientations.size() - 1);
+  const double seconds =
+      secondsBetween(streams.orientation_stamps[from], streams.orientation_stamps[to]);
+  return seconds > 0.0
+             ? streams.orientations[from].angularDistance(streams.orientations[to]) / seconds
+             : 0.0;
+}
+
+Sample poseAt(const MotionStreams& streams, std::size_t place) {
+  constexpr double kUsualDelay = 0.02;  // [s]
+  constexpr double kLeast = 5e-3;       // [rad]
+  Sample pose;
+  pose.joint_position =
+      streams.joints[nearest(streams.joint_stamps, streams.orientation_stamps[place])];
+  pose.has_orientation = true;
+  pose.R_stator_rotor = streams.orientations[place].toRotationMatrix();
+  pose.orientation_stddev = kLeast + kUsualDelay * speedAt(streams, place);
+  return pose;
+}
+
+}  // namespace
+
+std::vector<Sample> posesOfMotion(const MotionRecording& recording) {
+  std::size_t all = 0;
+  for (const MotionStreams& streams : recording.spans) {
+    all += streams.joints.empty() ? 0 : streams.orientations.size();
+  }
+  const std::size_t step = std::max<std::size_t>(1, (all + kMost - 1) / kMost);
+  std::vector<Sample> poses;
+  std::size_t count = 0;
+  for (const MotionStreams& streams : recording.spans) {
+    for (std::size_t n = 0; n < streams.orientations.size() && !streams.joints.empty(); ++n) {
+      if (count++ % step == 0) {
+        poses.push_back(poseAt(streams, n));
+      }
+    }
+  }
+  return poses;
+}
+
+}  // namespace sac
