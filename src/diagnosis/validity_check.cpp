@@ -67,7 +67,7 @@ std::vector<Sample> judgedSamples(const CalibrationSession& session, CheckedSamp
   return judged;
 }
 
-/// None where samples with torques tell of every coil, or there are none.
+/// None where samples with torques tell of every coil, or torques are not modelled.
 std::vector<std::size_t> coilsNotSeen(const Actuator& actuator,
                                       const std::vector<Sample>& samples,
                                       double current_threshold) {
@@ -80,7 +80,7 @@ std::vector<std::size_t> coilsNotSeen(const Actuator& actuator,
     }
   }
   std::vector<std::size_t> others;
-  for (std::size_t coil = 0; coil < actuator.coils.size() && !seen.empty(); ++coil) {
+  for (std::size_t coil = 0; coil < actuator.coils.size() && actuator.torque_curve; ++coil) {
     if (seen.count(coil) == 0) {
       others.push_back(coil);
     }
@@ -131,10 +131,36 @@ std::string doubtInWords(const std::vector<std::size_t>& coils, CheckedSamples c
 }
 
 /// What no sample tells of.
-std::string unseenInWords(const std::vector<std::size_t>& coils) {
-  return coils.empty() ? ""
-                       : " No sample judges " + coilsInWords(coils) +
-                             ": nothing is said of them; capture one with each.";
+std::string unseenInWords(const std::vector<std::size_t>& coils, std::size_t all) {
+  if (coils.empty()) {
+    return {};
+  }
+  return coils.size() == all
+             ? " No sample has a torque: nothing is said of poles and coils; capture one with each "
+               "coil."
+             : " No sample judges " + coilsInWords(coils) +
+                   ": nothing is said of them; capture one with each.";
+}
+
+/// What a few poses leave out: a joint shows where it turns.
+std::string fewPosesInWords(const std::vector<Sample>& held_out) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kApart = 0.1;  // [rad]
+  std::vector<Eigen::Vector3d> poses;
+  for (const Sample& sample : held_out) {
+    const bool is_new = std::none_of(poses.begin(), poses.end(), [&](const Eigen::Vector3d& pose) {
+      return (pose - sample.joint_position).cwiseAbs().maxCoeff() < kApart;
+    });
+    if (is_new) {
+      poses.push_back(sample.joint_position);
+    }
+  }
+  return poses.size() < kFewest
+             ? format(
+                   " The samples are of %s: elsewhere more may be off; capture %zu poses or more.",
+                   poses.size() == 1 ? "one pose" : "two poses",
+                   kFewest)
+             : "";
 }
 
 }  // namespace
@@ -159,20 +185,23 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
     check.message = doubtInWords(doubted, checked);
     return check;
   }
+  const Actuator& actuator = session.start().actuator;
   check.is_valid = agrees;
   if (check.is_valid) {
-    check.message = format(
-                        "Valid to %s, by %zu held-out samples%s. This holds beside the "
-                        "registrations: frames that "
-                        "were off when the unit was calibrated, and still are, show in no sample.",
-                        boundsInWords(validation.groups).c_str(),
-                        validation.samples,
-                        validation.outliers > 0
-                            ? format(" (%zu outliers, as rare as the others', are not judged)",
-                                     validation.outliers)
-                                  .c_str()
-                            : "") +
-                    unseenInWords(coilsNotSeen(session.start().actuator, held_out, threshold));
+    check.message =
+        format(
+            "Valid to %s, by %zu held-out samples%s. This holds beside the "
+            "registrations: frames that "
+            "were off when the unit was calibrated, and still are, show in no sample.",
+            boundsInWords(validation.groups).c_str(),
+            validation.samples,
+            validation.outliers > 0
+                ? format(" (%zu outliers, as rare as the others', are not judged)",
+                         validation.outliers)
+                      .c_str()
+                : "") +
+        fewPosesInWords(held_out) +
+        unseenInWords(coilsNotSeen(actuator, held_out, threshold), actuator.coils.size());
     return check;
   }
   check.message = changed.empty() ? format(

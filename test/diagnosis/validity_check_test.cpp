@@ -102,6 +102,29 @@ TEST(ValidityCheck, DoubtsACoilWhoseOnlyTorqueIsAnOutlier) {
       << checkValidity(session).message;
 }
 
+// Orientations say nothing of coils, and one pose little of the joints.
+TEST(ValidityCheck, TellsWhatOrientationsOfOnePoseLeaveOut) {
+  CalibrationSession session({scenarios::paperNominal()}, orientations(40, 3), {});
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  const std::vector<Sample> later = orientations(8, 4);
+  const auto capture = [&](std::size_t n, std::uint32_t id) {
+    Sample sample = later[n];
+    sample.id = id;
+    sample.validation = true;
+    sample.R_stator_rotor = rotationExp({0.0, 0.0, 1e-9 * id}) * sample.R_stator_rotor;
+    session.add(sample);
+    return checkValidity(session).message;
+  };
+  capture(0, 1000);
+  const std::string one = capture(0, 1001);
+  EXPECT_NE(one.find("samples are of one pose"), std::string::npos) << one;
+  EXPECT_NE(one.find("No sample has a torque: nothing is said of poles and coils"),
+            std::string::npos)
+      << one;
+  EXPECT_NE(capture(1, 1002).find("samples are of two poses"), std::string::npos);
+  EXPECT_EQ(capture(2, 1003).find("samples are of"), std::string::npos);
+}
+
 TEST(ValidityCheck, PromisesNothingOfFramesThatWereOffBefore) {
   const ValidityCheck check = checked(0, 0);
   EXPECT_TRUE(check.is_valid) << check.message;

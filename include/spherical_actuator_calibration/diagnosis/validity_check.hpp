@@ -29,9 +29,9 @@ enum class CheckedSamples { kNewest, kAll };
 /// Judges held-out samples against the parameters in force: orientations, and torques of each coil,
 /// by a chi-square test each. What they would not have noticed is told as the largest rms error of
 /// the orientations, and of the torques of the coil that is judged least, that would have passed
-/// with a probability of 1 % (non-central chi-square); coils that no sample judges are named,
-/// and those of which an outlier tells last (of a recording: alone) are in doubt, which is not
-/// valid. Changes nothing. doc/method.md, Held-out samples.
+/// with a probability of 1 % (non-central chi-square); coils that no sample judges are named, fewer
+/// than three poses are told, and those of which an outlier tells last (of a recording: alone) are
+/// in doubt, which is not valid. Changes nothing. doc/method.md, Held-out samples.
 ValidityCheck checkValidity(const CalibrationSession& session,
                             CheckedSamples checked = CheckedSamples::kNewest);
 
