@@ -85,6 +85,17 @@ class Tables(Folder):
         self.refused("is not a whole number", self.write("s.csv", "id," + self.HEADINGS + "1_0,1,2,3\n"))
 
 
+    def test_decimal_commas_between_commas_get_a_remedy(self):
+        told = '"1,5" is not a number; for decimal commas let semicolons separate the columns, or write points.'
+        self.refused(told, self.write("s.csv", self.HEADINGS + '"1,5","2,0","3,0"\n'))
+
+    def test_samples_of_one_id_and_stamp_are_refused(self):
+        headings = "id,stamp [ns]," + self.HEADINGS
+        self.assertEqual(len(self.angles(headings + "1,5,1,2,3\n1,6,4,5,6\n")), 2)
+        (self.folder / "out.bag").unlink()
+        self.refused("s.csv:3: column 1 (id): id 1 and stamp are those of line 2", self.write("s.csv", headings + "1,5,1,2,3\n1,5,4,5,6\n"))
+
+
 class Streams(Folder):
     """Of an entry or a file that holds something else than was expected."""
 
@@ -139,6 +150,19 @@ class Streams(Folder):
             named = text.replace("a,b,c", "a [deg],b [rad],c [rad]") if "values" in told else text
             self.assertNotIn("count as radians", self.imported(named, **told)[1])
         self.assertNotIn("count as radians", self.imported("t,a,b,c\n1,1,-0.5,6.28\n")[1])
+
+    def test_streams_without_a_common_time_are_refused(self):
+        self.description(0)
+        self.write("joints.csv", "t,a,b,c\n1,0,0,0\n2,0,0,0\n")
+        self.write("torque.csv", "t,a,b,c\n3601,0,0,0\n3602,0,0,0\n")
+        entry = {"time": {"column": "t"}, "values": ["a", "b", "c"]}
+        streams = [{"file": "joints.csv", "stream": "joint_states", **entry}]
+        streams.append({"file": "torque.csv", "stream": "measured_torque", **entry})
+        told = "measured_torque, from 3601.000 to 3602.000 s, and joint_states, from 1.000 to 2.000 s, have no time in common"
+        self.refused(told, "--streams", self.write("i.yaml", yaml.safe_dump({"streams": streams})))
+
+    def test_a_column_for_two_values_is_refused(self):
+        self.expect("i.yaml: streams[0].values: one column is there twice.", values=["a", "b", "a"])
 
     def test_times_of_any_size(self):
         place = "joints.csv:3: column 1 (t): "

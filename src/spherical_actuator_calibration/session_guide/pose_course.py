@@ -45,7 +45,8 @@ class PoseCourse:
             )
         total = max((len(pattern) for pattern in excited), default=0) * self.current
         if total > self._options.total_current:
-            raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A.")
+            raise RuntimeError(f"A pattern needs {total:.1f} A, and the total current is to be {self._options.total_current:g} A: plan with "
+                "less current or fewer coils at a time, or allow more (--total-current) where the amplifier bears it.")
 
     def require_dwell(self):
         """Raises OptionError where the calibration node averages no such capture."""

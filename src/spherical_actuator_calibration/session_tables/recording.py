@@ -130,7 +130,23 @@ def record_streams(recording, path):
             lines.append(stream.summary(count))
         if not spans:
             raise TableError(f"{path}: the files hold no measurement.")
+        _require_common_time(path, spans.values())
     return lines
+
+
+def _require_common_time(path, spans):
+    """Of all streams with the first of them. Raises TableError."""
+    whole = {}
+    for topic, (begin, end) in spans:
+        known = whole.get(topic, (begin, end))
+        whole[topic] = min(begin, known[0]), max(end, known[1])
+    first, (begin, end) = next(iter(whole.items()))
+    for topic, (other_begin, other_end) in whole.items():
+        if other_begin > end or begin > other_end:
+            raise TableError(
+                f"{path}: {topic}, from {other_begin.to_sec():.3f} to {other_end.to_sec():.3f} s, and {first}, from "
+                f"{begin.to_sec():.3f} to {end.to_sec():.3f} s, have no time in common: mend their time.offset."
+            )
 
 
 def _write_stream(recording, stream, is_first):
@@ -150,6 +166,7 @@ def _require_apart(path, number, topic, span, spans):
     for other, (other_topic, other_span) in spans.items():
         if topic == other_topic and span[0] <= other_span[1] and other_span[0] <= span[1]:
             raise TableError(
-                f"{path}: streams[{other}] and streams[{number}] are both {topic}, and overlap in time: one sensor is "
-                "read once; take one of them out."
+                f"{path}: streams[{other}] and streams[{number}] are both {topic}, and overlap in time, from "
+                f"{max(span[0], other_span[0]).to_sec():.3f} to {min(span[1], other_span[1]).to_sec():.3f} s: one sensor is "
+                "read once; take out the lines that both have, or one of the files."
             )

@@ -47,14 +47,24 @@ class SampleTable:
 
     def messages(self):
         """Samples in use; those that were removed are left out."""
-        messages = []
+        messages, known = [], {}
         for row in self._table.rows():
             if self._text(row, "removal"):
                 continue
             messages.append(self._message(row, len(messages) + 1))
+            self._require_new(row, messages[-1], known)
         if not messages:
             self._table.fail("there is no sample.")
         return messages
+
+    def _require_new(self, row, message, known):
+        """Who reads the recording takes samples of one id and stamp for one that was told twice."""
+        line = known.setdefault((message.id, message.header.stamp.to_nsec()), row.line)
+        if line != row.line:
+            row.fail(
+                f"id {message.id} and stamp are those of line {line}: of tables that are put together, number the ids on.",
+                self._index("id"),
+            )
 
     def _text(self, row, name):
         return row.text(self._columns[name][0]) if name in self._columns else ""

@@ -87,7 +87,13 @@ class Row:
 
     def _about_commas(self, text):
         is_by_comma = self.table.decimal == "." and DECIMAL_COMMA.fullmatch(text)
-        return '; for decimal commas give the stream the key decimal: ","' if is_by_comma else ""
+        if not is_by_comma:
+            return ""
+        return "; for decimal commas " + (
+            'give the stream the key decimal: ","'
+            if self.table.is_of_stream
+            else "let semicolons separate the columns, or write points"
+        )
 
     def integer(self, column, smallest=0, largest=(1 << 63) - 1):
         """A whole number."""
@@ -109,6 +115,7 @@ class Table:
 
     def __init__(self, path, headings=1, separator=",", decimal="."):
         self.path = path
+        self.is_of_stream = separator is not None
         text = read_bytes(path, LARGEST).decode("utf-8-sig", errors="replace")
         if separator is None:
             separator, decimal = self._dialect(text)
