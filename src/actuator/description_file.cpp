@@ -177,7 +177,8 @@ CycleRecord readCycle(const YamlMap& map) {
 ValidationRecord readValidation(const YamlMap& map) {
   return {readCount(map, "samples"),
           optionalNumber(map, "orientation_rms", ValueRange::nonNegative("rad")),
-          optionalNumber(map, "torque_rms", ValueRange::nonNegative("N*m"))};
+          optionalNumber(map, "torque_rms", ValueRange::nonNegative("N*m")),
+          map.boolean("contradicted", false)};
 }
 
 MapRecord readMapRecord(const YamlMap& map) {
@@ -292,6 +293,11 @@ CalibratedDescription readDescription(const YamlMap& file) {
 
 CalibratedDescription parseDescription(const std::string& text, const std::string& name) {
   return readDescription(YamlMap::parse(text, name));
+}
+
+bool isContradicted(const CalibratedDescription& description) {
+  return description.calibration && description.calibration->validation &&
+         description.calibration->validation->contradicted;
 }
 
 CalibratedDescription loadDescription(const std::string& path) {

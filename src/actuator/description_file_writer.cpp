@@ -99,6 +99,9 @@ std::string validationLine(const ValidationRecord& record) {
   line.add("samples", std::to_string(record.samples));
   addOptional(line, "orientation_rms", record.orientation_rms);
   addOptional(line, "torque_rms", record.torque_rms);
+  if (record.contradicted) {
+    line.add("contradicted", "true");
+  }
   return line.text();
 }
 

@@ -65,7 +65,7 @@ class CalibrationGrader::Examiner {
       const bool is_motion = refused_ != nullptr && refused_->cycle == Cycle::kMotion;
       return is_motion ? Grade::kContradicted : Grade::kFailed;
     }
-    if (refused_ != nullptr || isContradicted()) {
+    if (refused_ != nullptr || isContradicted() || beginsContradicted()) {
       return Grade::kContradicted;
     }
     if (!isValidated()) {
@@ -74,9 +74,15 @@ class CalibrationGrader::Examiner {
     return shortcoming_.empty() && undecided().empty() ? Grade::kGood : Grade::kUsable;
   }
 
+  bool hasVerdict() const { return validation_ != nullptr && validation_->hasVerdict(); }
+
   bool isContradicted() const {
-    return validation_ != nullptr && validation_->hasVerdict() &&
-           (validation_->probability < kLeastProbability || is_outdated_);
+    return hasVerdict() && (validation_->probability < kLeastProbability || is_outdated_);
+  }
+
+  /// By what was held out when its description was made; nothing has changed or judged it since.
+  bool beginsContradicted() const {
+    return sac::isContradicted(session_.start()) && last_success_ == nullptr && !hasVerdict();
   }
 
   /// Whether the newest held-out samples contradict, by all that those before them tell of the
@@ -115,10 +121,8 @@ class CalibrationGrader::Examiner {
 
   /// Torques judge everything, orientations the joint only.
   bool isValidated() const {
-    if (validation_ == nullptr || !validation_->hasVerdict()) {
-      return false;
-    }
-    return !isTorqueIdentified() || validation_->torques > validation_->unjudged_torques;
+    return hasVerdict() &&
+           (!isTorqueIdentified() || validation_->torques > validation_->unjudged_torques);
   }
 
   bool isTorqueIdentified() const {
@@ -275,8 +279,11 @@ class CalibrationGrader::Examiner {
         return session_.reports().empty() ? "Nothing is calibrated: no cycle was run."
                                           : "Nothing is calibrated: no cycle succeeded.";
       case Grade::kContradicted:
-        if (refused_ != nullptr) {
-          return "Do not use this calibration: " + refused_->message;
+        if (refused_ != nullptr || !isContradicted()) {
+          return "Do not use this calibration: " +
+                 (refused_ != nullptr ? refused_->message
+                                      : "what was held out when its description was made "
+                                        "contradicts it; calibrate anew, or hold out others.");
         }
         return "Do not use this calibration yet: " + identified() + ", but the " +
                (validation_->probability < kLeastProbability ? "" : "newest ") + heldOut() +
@@ -309,9 +316,8 @@ class CalibrationGrader::Examiner {
   }
 
   std::string unjudged() const {
-    return validation_ != nullptr && validation_->hasVerdict()
-               ? "; no held-out torque judges poles and coils."
-               : "; no held-out sample judges them.";
+    return hasVerdict() ? "; no held-out torque judges poles and coils."
+                        : "; no held-out sample judges them.";
   }
 
   std::string identified() const {

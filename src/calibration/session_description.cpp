@@ -32,6 +32,7 @@ ValidationRecord validationRecord(const HeldOutValidation& validation) {
   if (validation.torques > 0) {
     record.torque_rms = validation.torque_rms;
   }
+  record.contradicted = validation.hasVerdict() && validation.probability < kLeastProbability;
   return record;
 }
 

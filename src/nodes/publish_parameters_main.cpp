@@ -1,5 +1,6 @@
 #include <string>
 
+#include <ros/console.h>
 #include <ros/publisher.h>
 #include <ros/time.h>
 
@@ -32,7 +33,12 @@ void publish(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   const std::string path = map.nonEmptyText("description");
   const std::string frame = map.text("frame", "stator");
   map.finish();
-  const Message message = messageOf(sac::loadDescription(path), frame);
+  const sac::CalibratedDescription description = sac::loadDescription(path);
+  if (sac::isContradicted(description)) {
+    ROS_WARN("%s was contradicted by what was held out when it was made: do not use it.",
+             path.c_str());
+  }
+  const Message message = messageOf(description, frame);
   constexpr bool kLatched = true;
   ros::NodeHandle advertising = node;
   const ros::Publisher publisher = advertising.advertise<Message>("parameters", 1, kLatched);

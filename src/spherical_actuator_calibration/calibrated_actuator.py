@@ -13,6 +13,7 @@ import contextlib
 import os
 import subprocess
 import typing
+import warnings
 
 from .programs import program as program_path
 
@@ -64,6 +65,9 @@ class CalibratedActuator:
             raise ValueError(message)
         self.coils = int(words[1])  # 0 without a torque model
         self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
+        self.is_contradicted = words[3] == "1"  # by what was held out when the description was made
+        if self.is_contradicted:
+            warnings.warn(f"{description} was contradicted by what was held out: do not use it.", RuntimeWarning, 2)
 
     def close(self):
         """Ends the program; what is asked later raises RuntimeError."""

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/scenarios.hpp"
 
@@ -145,6 +146,29 @@ TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
 }
 
 // Of a turned marker, too, so that joints and poles would be wrong by as much.
+// A file that was written all the same tells it to who begins with it.
+TEST(CalibrationGrade, ContradictedWhereTheDescriptionWasWhenItWasMade) {
+  std::vector<Sample> samples = scenarios::heldOutSession();
+  for (Sample& sample : samples) {
+    sample.torque *= sample.validation ? 1.1 : 1.0;
+  }
+  CalibrationSession made({scenarios::paperNominal()}, samples, registered());
+  ASSERT_TRUE(made.run({Cycle::kRefine}).success);
+  const CalibratedDescription written = parseDescription(
+      renderDescription(made.description({"2026-11-28T12:00:00Z", {}, "test"}), "f.yaml"),
+      "f.yaml");
+  EXPECT_TRUE(isContradicted(written));
+  CalibrationSession begun(written, {}, registered());
+  EXPECT_EQ(gradeCalibration(begun).grade, Grade::kContradicted);
+  EXPECT_TRUE(tells(gradeCalibration(begun), "when its description was made"))
+      << gradeCalibration(begun).reason;
+  // Who judges it anew, or calibrates anew, decides.
+  for (const Sample& sample : scenarios::heldOutSession()) {
+    begun.add(sample);
+  }
+  EXPECT_EQ(gradeCalibration(begun).grade, Grade::kGood) << gradeCalibration(begun).reason;
+}
+
 TEST(CalibrationGrade, UsableWhereARegistrationIsFoundElsewhereThatAnotherWouldExplain) {
   std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {

@@ -10,8 +10,10 @@ import sys
 import tempfile
 import time
 import unittest
+import warnings
 from unittest import mock
 
+import yaml
 from spherical_actuator_calibration.calibrated_actuator import CalibratedActuator
 
 PROGRAMS = os.environ["PROGRAMS"]
@@ -42,6 +44,23 @@ class Asked(unittest.TestCase):
             pose, made = actuator.orientation(JOINTS), actuator.torque(JOINTS, currents)
             self.assertEqual([*pose.quaternion_xyzw, pose.stddev, *made.torque, made.stddev], expected)
             self.assertFalse(actuator.has_uncertainty)
+
+    def test_a_description_that_was_contradicted_is_told(self):
+        with open(NOMINAL, encoding="utf-8") as file:
+            described = yaml.safe_load(file)
+        made = {"date": "2026-11-28T12:00:00Z", "revision": 1, "software": "test", "source": [], "cycles": [], "unidentified": []}
+        for is_contradicted in (True, False):
+            made["validation"] = {"samples": 3, **({"contradicted": True} if is_contradicted else {})}
+            described["actuator"]["calibration"] = made
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "calibrated.yaml")
+                with open(path, "w", encoding="utf-8") as file:
+                    yaml.safe_dump(described, file)
+                with warnings.catch_warnings(record=True) as told:
+                    warnings.simplefilter("always")
+                    with opened(path) as actuator:
+                        self.assertEqual(actuator.is_contradicted, is_contradicted)
+            self.assertEqual([str(one.message) for one in told], [f"{path} was contradicted by what was held out: do not use it."] * is_contradicted)
 
     def test_currents_make_the_torque_within_their_limit(self):
         with opened(NOMINAL) as actuator:

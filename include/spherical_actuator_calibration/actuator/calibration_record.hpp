@@ -87,6 +87,7 @@ struct ValidationRecord {
   std::uint32_t samples = 0;
   std::optional<double> orientation_rms;  ///< [rad]
   std::optional<double> torque_rms;       ///< [N·m]
+  bool contradicted = false;              ///< they misfit beyond chance
 };
 
 /// Where a calibration comes from and how good it is.

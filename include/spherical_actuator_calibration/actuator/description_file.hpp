@@ -18,6 +18,9 @@ struct CalibratedDescription {
   std::optional<CalibrationRecord> calibration = std::nullopt;
 };
 
+/// Whether samples that were held out contradicted a description when it was made: not to be used.
+bool isContradicted(const CalibratedDescription& description);
+
 /// Reads a description file, nominal or calibrated: one form for both. Joint axes that are unit to
 /// 1e-3 only are normalised. Throws ConfigError that names file, line and key for anything unknown,
 /// missing, repeated, of the wrong type or out of range.

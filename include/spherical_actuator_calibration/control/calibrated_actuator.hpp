@@ -42,6 +42,10 @@ class CalibratedActuator {
   /// deviations are zero then.
   bool hasUncertainty() const { return predictor_.hasUncertainty(); }
 
+  /// Whether samples that were held out contradicted the description when it was made: its numbers
+  /// and their standard deviations are not to be trusted.
+  bool isContradicted() const { return sac::isContradicted(description_); }
+
   /// Rotor orientation. Throws DataError when a reading is not finite, and for a rotor without
   /// joints, whose orientation is measured.
   Predictor::Orientation orientation(const Eigen::Vector3d& reading) const;
