@@ -346,7 +346,7 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
   conclude(model, found.estimate, coordinates, ExpectedErrors::kReported, outcome.state, report);
   report.message = successInWords(found.summary, coordinates.unobservable.size()) +
                    silentInWords(silent) + exactInertiaInWords(model.space()) +
-                   strangeInertiaInWords(report);
+                   strangeInertiaInWords(report, model.space().nominal());
   for (const std::string& doubt : report.doubts) {
     report.message += " " + doubt;
   }

@@ -71,22 +71,22 @@ ToldDynamics toldDynamics(const std::vector<CycleReport>& reports) {
   return dynamics;
 }
 
-std::string strangeInertiaInWords(const CycleReport& motion) {
+std::string strangeInertiaInWords(const CycleReport& motion, const Actuator& described) {
   constexpr double kFar = 3.0;
   const std::optional<Eigen::Matrix3d> inertia = toldInertia(motion);
   if (!inertia) {
     return {};
   }
-  const double factor = inertia->trace() / RigidRotor().inertia.trace();
+  const double factor = inertia->trace() / described.inertia.value_or(RigidRotor().inertia).trace();
   if (factor > 1.0 / kFar && factor < kFar) {
     return {};
   }
   return format(
-      " The rotor's moments of inertia are %.2g times those of the drawing. A motion tells only "
-      "their ratio to the torques: where the rotor is as drawn, the torques of the recorded "
-      "currents "
-      "are %.2g times the real ones; check the unit of the currents, and the torque curve.",
+      " The rotor's moments of inertia are %.3g times those of %s. A motion tells only their ratio "
+      "to the torques: where the rotor is not that different, the torques of the recorded currents "
+      "are %.3g times the real ones; check the unit of the currents, and the torque curve.",
       factor,
+      described.inertia ? "the description" : "the rotor that a motion begins with",
       factor);
 }
 

@@ -25,7 +25,8 @@ struct ToldDynamics {
 ToldDynamics toldDynamics(const std::vector<CycleReport>& reports);
 
 /// "", or a sentence where the moments of inertia that a motion has told are far from those of the
-/// drawing: torques by the drawing are then as far from the real ones, or the rotor is another one.
-std::string strangeInertiaInWords(const CycleReport& motion);
+/// description, or where it has none from those that a motion begins with: torques by the
+/// description are then as far from the real ones, or the rotor is another one.
+std::string strangeInertiaInWords(const CycleReport& motion, const Actuator& described);
 
 }  // namespace sac

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "orientation_hypotheses.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_excerpt.hpp"
 #include "spherical_actuator_calibration/motion/rough_motion.hpp"
@@ -142,11 +141,6 @@ Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string
   for (std::size_t first = 0; first < actuator.coils.size(); ++first) {
     for (std::size_t second = first + 1; second < actuator.coils.size(); ++second) {
       all.push_back({coilSwap(first, second)});
-    }
-  }
-  for (Hypothesis& mistake : jointHypotheses(actuator, ManufacturingTolerance{})) {
-    if (mistake.start.size() == 0) {
-      all.push_back({std::move(mistake)});
     }
   }
   Candidate found;

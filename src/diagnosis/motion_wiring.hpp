@@ -15,11 +15,11 @@ struct SuspectedWiring {
   double share_left = 1.0;  ///< of the misfit as described, without them
 };
 
-/// Mistakes at coils and poles that the motion of a session may have been recorded with, two at the
-/// most together, the most promising first; none: as it is described, it is explained as well. By
-/// how much misfit one step from the description leaves: where all axes are off, coils that
-/// counteract each other tell so little of strengths that these cannot be asked for.
-/// Precondition: the session has a motion.
+/// Mistakes at coils, poles and of the unit of currents that the motion of a session may have been
+/// recorded with, two at the most together, the most promising first; none: as it is described, it
+/// is explained as well. By how much misfit one step from the description leaves: where all axes
+/// are off, coils that counteract each other tell so little of strengths that these cannot be asked
+/// for. Precondition: the session has a motion.
 std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session);
 
 /// The mistakes of these causes among those that are looked for; of others none.

@@ -129,6 +129,11 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
       Diagnosis diagnosis;
       diagnosis.cause = hypothesis.cause;
       diagnosis.message = hypothesis.sentence(hypothesis.start);
+      if (hypothesis.cause == "current_unit") {
+        diagnosis.message +=
+            " A motion tells only the ratio of currents and inertia: a rotor that is as much "
+            "lighter or heavier looks the same.";
+      }
       // By what one step leaves: with the mistake a fit may find no end.
       diagnosis.evidence =
           0.5 * report.degrees_of_freedom * (1.0 - suspected.share_left) / suspected.share_left;
@@ -189,8 +194,7 @@ std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
   }
   // Joints and tracker need no torque to be seen through.
   std::vector<Diagnosis> diagnoses =
-      diagnoseWiring(session.start().actuator, posesOfMotion(*session.motion()), session.config())
-          .mistakes;
+      diagnosePosesOfMotion(session.start().actuator, *session.motion(), session.config()).mistakes;
   if (!diagnoses.empty()) {
     return diagnoses;
   }
@@ -206,8 +210,16 @@ std::vector<Diagnosis> explainMotion(const CalibrationSession& session) {
 
 }  // namespace
 
-std::optional<Redescription> redescribedMotion(const Actuator& nominal,
+std::optional<Redescription> redescribedMotion(const CalibrationSession& session,
                                                const std::vector<Diagnosis>& diagnoses) {
+  if (session.motion() == nullptr || diagnoses.empty()) {
+    return std::nullopt;
+  }
+  const Actuator& nominal = session.start().actuator;
+  WiringDiagnosis poses = diagnosePosesOfMotion(nominal, *session.motion(), session.config());
+  if (!poses.mistakes.empty() && poses.mistakes.front().cause == diagnoses.front().cause) {
+    return Redescription{std::move(poses.redescribed), std::move(poses.beyond_description)};
+  }
   std::vector<std::string> causes(diagnoses.size());
   std::transform(diagnoses.begin(), diagnoses.end(), causes.begin(), [](const Diagnosis& one) {
     return one.cause;

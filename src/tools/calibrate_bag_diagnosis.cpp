@@ -80,7 +80,7 @@ void writeCorrection(const CalibrationSession& session,
     }
     return;
   }
-  if (const auto motion = redescribedMotion(session.start().actuator, diagnoses)) {
+  if (const auto motion = redescribedMotion(session, diagnoses)) {
     writeRedescribed(motion->actuator, motion->beyond_description, path, policy);
     return;
   }

@@ -6,6 +6,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+from unittest import mock
 
 import free_motion
 import laboratory
@@ -210,7 +211,8 @@ class Motion(unittest.TestCase):
             coils = None
             if os.path.exists(corrected):
                 with open(corrected, encoding="utf-8") as file:
-                    coils = [[coil["polar"], coil["azimuth"]] for coil in yaml.safe_load(file)["actuator"]["coils"]]
+                    self.corrected = yaml.safe_load(file)["actuator"]
+                coils = [[coil["polar"], coil["azimuth"]] for coil in self.corrected["coils"]]
         self.assertEqual(result.returncode, status, result.stdout)
         self.said = result.stdout
         return coils, [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
@@ -241,8 +243,8 @@ class Motion(unittest.TestCase):
 
     def test_tells_that_currents_are_ten_times_too_large(self):
         self.assertEqual(self.diagnosed(lambda currents: 10.0 * currents, status=0)[1], [])
-        self.assertIn("moments of inertia are 10 times those of the drawing", self.said)
-        self.assertIn("the torques of the recorded currents are 10 times the real ones", self.said)
+        self.assertIn("moments of inertia are 10.5 times those of the rotor that a motion begins with", self.said)
+        self.assertIn("the torques of the recorded currents are 10.5 times the real ones", self.said)
 
     def test_names_a_joint_that_counts_the_wrong_way_round(self):
         def turned(joints):
@@ -250,6 +252,24 @@ class Motion(unittest.TestCase):
             return joints
 
         self.assertEqual(self.diagnosed(turned, "joints")[1], ["joint_sign:3"])
+        np.testing.assert_allclose(self.corrected["joints"][2]["axis"], [0.0, 0.0, -1.0], atol=1e-12)
+
+    def test_names_an_index_and_corrects_what_a_description_can_hold(self):
+        def turned(joints):
+            joints[:, 0] += 0.5
+            return joints
+
+        self.assertEqual(self.diagnosed(turned, "joints")[1][0], "joint_index:1")
+        self.assertAlmostEqual(self.corrected["joints"][0]["offset"], -0.5, delta=0.03)
+
+    def test_a_late_tracker_is_no_mistake_of_wiring(self):
+        def reversed_coil(currents):
+            currents[:, 4] *= -1.0
+            return currents
+
+        late = self.record(tracker_delay=0.055)
+        with mock.patch.object(self, "record", lambda: late):
+            self.assertEqual(self.diagnosed(reversed_coil)[1], ["coil_sign:5"])
 
     def dwells_and_motion(self, folder, errors):
         """Bags of both: dwells of a unit with these errors."""

@@ -25,8 +25,8 @@ struct Redescription {
   std::vector<std::string> beyond_description;
 };
 
-/// By the mistakes of wiring that a motion was diagnosed with; nothing: it names none.
-std::optional<Redescription> redescribedMotion(const Actuator& nominal,
+/// By the mistakes of wiring that the motion of a session was diagnosed with; nothing: it has none.
+std::optional<Redescription> redescribedMotion(const CalibrationSession& session,
                                                const std::vector<Diagnosis>& diagnoses);
 
 /// Sentences of all diagnoses, one after the other; empty without any.
