@@ -74,6 +74,7 @@ class Tables(Folder):
         self.assertEqual(self.angles(headings + "1,5;-0,25;3\n"), [(1.5, -0.25, 3.0)])
         self.assertEqual(self.angles("# by hand, twice\n" + headings + "1e-3;2,5e1;3.5\n"), [(1e-3, 25.0, 3.5)])
         self.assertEqual(self.angles("# " + headings + "1,5;2;3\n"), [(1.5, 2.0, 3.0)])
+        self.assertEqual(self.angles("sep=;\n" + headings + "1,5;2;3\n"), [(1.5, 2.0, 3.0)])
         (self.folder / "out.bag").unlink()
         # Neither is known to be the decimal mark.
         self.refused('"1.234,5" is not a number.', self.write("s.csv", headings + "1.234,5;2;3\n"))

@@ -152,7 +152,8 @@ class Table:
         """The headings, then the lines after them; empty ones, and those that begin with #, are left out."""
         remark, has_headings = None, False
         for line, cells in lines:
-            if not any(cell.strip() for cell in cells):
+            is_for_spreadsheets = not has_headings and cells and cells[0].lower().startswith("sep=")
+            if is_for_spreadsheets or not any(cell.strip() for cell in cells):
                 continue
             if cells[0].startswith("#"):
                 remark = line, [cells[0].lstrip("# "), *cells[1:]]
