@@ -82,7 +82,9 @@ class CalibrationGrader::Examiner {
 
   /// By what was held out when its description was made; nothing has changed or judged it since.
   bool beginsContradicted() const {
-    return sac::isContradicted(session_.start()) && last_success_ == nullptr && !hasVerdict();
+    const bool is_mended = last_success_ != nullptr && (last_success_->cycle != Cycle::kJoint ||
+                                                        !session_.model().hasTorqueModel());
+    return sac::isContradicted(session_.start()) && !is_mended && !isValidated();
   }
 
   /// Whether the newest held-out samples contradict, by all that those before them tell of the
@@ -141,8 +143,7 @@ class CalibrationGrader::Examiner {
     if (!open.empty() || !doubt.empty()) {
       return open + doubt;
     }
-    std::string missed = missedAccuracy();
-    if (!missed.empty()) {
+    if (std::string missed = missedAccuracy(); !missed.empty()) {
       return missed;
     }
     if (isUnasked()) {
@@ -162,8 +163,7 @@ class CalibrationGrader::Examiner {
   }
 
   std::string unidentified() const {
-    const std::vector<std::string> open = session_.openParameters();
-    if (!open.empty()) {
+    if (const std::vector<std::string> open = session_.openParameters(); !open.empty()) {
       return ", " + std::to_string(open.size()) + " that were asked for are not";
     }
     return identified_ < parameters_ ? ", the others are not" : "";

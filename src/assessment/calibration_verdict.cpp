@@ -56,7 +56,7 @@ class Judge {
 
  private:
   void collectSteps(std::vector<std::string>& steps) const {
-    if (graded_.grade == Grade::kContradicted) {
+    if (graded_.grade == Grade::kContradicted && !session_.samples().empty()) {
       steps.emplace_back(
           "Find out why what was held out differs: compare its residuals with those of what is in "
           "use, and check that nothing was moved in between.");

@@ -135,6 +135,10 @@ CalibrationRecord CalibrationSession::record(const CalibrationOrigin& origin) co
   if (const auto validation = this->validation()) {
     record.validation = validationRecord(*validation);
   }
+  // Nothing has changed, and nothing judges it anew.
+  if (record.cycles.empty() && isContradicted(start_) && !record.validation) {
+    record.validation = start_.calibration->validation;
+  }
   return record;
 }
 

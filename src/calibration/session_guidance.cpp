@@ -34,7 +34,7 @@ class Guide {
                   : "") +
              progress_.plan_step;
     }
-    if (progress_.saved && progress_.samples == 0) {
+    if (progress_.saved && progress_.samples == 0 && !progress_.contradicted) {
       return "The parameters in force are saved, and no sample is in use: there is nothing to do. "
              "To calibrate anew, capture at new poses.";
     }

@@ -131,11 +131,14 @@ std::string doubtInWords(const std::vector<std::size_t>& coils, CheckedSamples c
 }
 
 /// What no sample tells of.
-std::string unseenInWords(const std::vector<std::size_t>& coils, std::size_t all) {
+std::string unseenInWords(const std::vector<std::size_t>& coils,
+                          const std::vector<Sample>& held_out) {
   if (coils.empty()) {
     return {};
   }
-  return coils.size() == all
+  const bool has_torques = std::any_of(
+      held_out.begin(), held_out.end(), [](const Sample& one) { return one.has_torque; });
+  return !has_torques
              ? " No sample has a torque: nothing is said of poles and coils; capture one with each "
                "coil."
              : " No sample judges " + coilsInWords(coils) +
@@ -147,7 +150,8 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
   constexpr std::size_t kFewest = 3;
   constexpr double kApart = 0.1;  // [rad]
   std::vector<Eigen::Vector3d> poses;
-  for (const Sample& sample : held_out) {
+  for (std::size_t n = 0; n < held_out.size() && poses.size() < kFewest; ++n) {
+    const Sample& sample = held_out[n];
     const bool is_new = std::none_of(poses.begin(), poses.end(), [&](const Eigen::Vector3d& pose) {
       return (pose - sample.joint_position).cwiseAbs().maxCoeff() < kApart;
     });
@@ -188,20 +192,19 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
   const Actuator& actuator = session.start().actuator;
   check.is_valid = agrees;
   if (check.is_valid) {
-    check.message =
-        format(
-            "Valid to %s, by %zu held-out samples%s. This holds beside the "
-            "registrations: frames that "
-            "were off when the unit was calibrated, and still are, show in no sample.",
-            boundsInWords(validation.groups).c_str(),
-            validation.samples,
-            validation.outliers > 0
-                ? format(" (%zu outliers, as rare as the others', are not judged)",
-                         validation.outliers)
-                      .c_str()
-                : "") +
-        fewPosesInWords(held_out) +
-        unseenInWords(coilsNotSeen(actuator, held_out, threshold), actuator.coils.size());
+    check.message = format(
+                        "Valid to %s, by %zu held-out samples%s. This holds beside the "
+                        "registrations: frames that "
+                        "were off when the unit was calibrated, and still are, show in no sample.",
+                        boundsInWords(validation.groups).c_str(),
+                        validation.samples,
+                        validation.outliers > 0
+                            ? format(" (%zu outliers, as rare as the others', are not judged)",
+                                     validation.outliers)
+                                  .c_str()
+                            : "") +
+                    fewPosesInWords(held_out) +
+                    unseenInWords(coilsNotSeen(actuator, held_out, threshold), held_out);
     return check;
   }
   check.message = changed.empty() ? format(

@@ -67,7 +67,14 @@ class CalibratedActuator:
         self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
         self.is_contradicted = words[3] == "1"  # by what was held out when the description was made
         if self.is_contradicted:
-            warnings.warn(f"{description} was contradicted by what was held out: do not use it.", RuntimeWarning, 2)
+            self._warn(f"{description} was contradicted by what was held out: do not use it.")
+
+    def _warn(self, message):
+        try:
+            warnings.warn(message, RuntimeWarning, 3)
+        except RuntimeWarning:  # made an error by a filter
+            self.close()
+            raise
 
     def close(self):
         """Ends the program; what is asked later raises RuntimeError."""

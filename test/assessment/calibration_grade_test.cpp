@@ -145,7 +145,6 @@ TEST(CalibrationGrade, ContradictedWhereHeldOutSamplesDisagree) {
   EXPECT_EQ(gradeOf(samples, wholeCalibration()).grade, Grade::kContradicted);
 }
 
-// Of a turned marker, too, so that joints and poles would be wrong by as much.
 // A file that was written all the same tells it to who begins with it.
 TEST(CalibrationGrade, ContradictedWhereTheDescriptionWasWhenItWasMade) {
   std::vector<Sample> samples = scenarios::heldOutSession();
@@ -162,6 +161,7 @@ TEST(CalibrationGrade, ContradictedWhereTheDescriptionWasWhenItWasMade) {
   EXPECT_EQ(gradeCalibration(begun).grade, Grade::kContradicted);
   EXPECT_TRUE(tells(gradeCalibration(begun), "when its description was made"))
       << gradeCalibration(begun).reason;
+  EXPECT_TRUE(isContradicted(begun.description({"2026-11-28T12:00:00Z", {}, "test"})));
   // Who judges it anew, or calibrates anew, decides.
   for (const Sample& sample : scenarios::heldOutSession()) {
     begun.add(sample);
@@ -169,6 +169,7 @@ TEST(CalibrationGrade, ContradictedWhereTheDescriptionWasWhenItWasMade) {
   EXPECT_EQ(gradeCalibration(begun).grade, Grade::kGood) << gradeCalibration(begun).reason;
 }
 
+// Of a turned marker, too, so that joints and poles would be wrong by as much.
 TEST(CalibrationGrade, UsableWhereARegistrationIsFoundElsewhereThatAnotherWouldExplain) {
   std::vector<Sample> samples = scenarios::heldOutSession();
   for (Sample& sample : samples) {
