@@ -35,8 +35,9 @@ void publish(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   map.finish();
   const sac::CalibratedDescription description = sac::loadDescription(path);
   if (sac::isContradicted(description)) {
-    ROS_WARN("%s was contradicted by what was held out when it was made: do not use it.",
-             path.c_str());
+    ROS_WARN(
+        "%s was contradicted by what was held out when it was made: do not use it, calibrate anew.",
+        path.c_str());
   }
   const Message message = messageOf(description, frame);
   constexpr bool kLatched = true;

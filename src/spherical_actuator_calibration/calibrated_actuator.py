@@ -67,7 +67,7 @@ class CalibratedActuator:
         self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
         self.is_contradicted = words[3] == "1"  # by what was held out when the description was made
         if self.is_contradicted:
-            self._warn(f"{description} was contradicted by what was held out: do not use it.")
+            self._warn(f"{description} was contradicted by what was held out: do not use it, calibrate anew.")
 
     def _warn(self, message):
         try:

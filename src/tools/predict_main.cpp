@@ -205,8 +205,10 @@ void predict(const Options& options) {
                 options.actuator_path.c_str());
   }
   if (isContradicted(description)) {
-    std::printf("%s was contradicted by what was held out when it was made: do not use it.\n",
-                options.actuator_path.c_str());
+    std::printf(
+        "%s was contradicted by what was held out when it was made: do not use it, calibrate "
+        "anew.\n",
+        options.actuator_path.c_str());
   }
   tellUnsupported(unsupported, poses.rows.size());
   std::printf("%s: %zu poses\n", options.output_path.c_str(), poses.rows.size());

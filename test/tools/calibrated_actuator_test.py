@@ -60,7 +60,7 @@ class Asked(unittest.TestCase):
                     warnings.simplefilter("always")
                     with opened(path) as actuator:
                         self.assertEqual(actuator.is_contradicted, is_contradicted)
-            self.assertEqual([str(one.message) for one in told], [f"{path} was contradicted by what was held out: do not use it."] * is_contradicted)
+            self.assertEqual([str(one.message) for one in told], [f"{path} was contradicted by what was held out: do not use it, calibrate anew."] * is_contradicted)
 
     def test_currents_make_the_torque_within_their_limit(self):
         with opened(NOMINAL) as actuator:
