@@ -12,9 +12,19 @@ set(laboratory
   tracker_bridge
   ${PROJECT_NAME}_generate_messages_py
 )
-add_custom_target(demo_programs
-  DEPENDS ${laboratory} calibrate_bag generate_urdf session_recorder visualization)
-add_custom_target(tracking_demo_programs
-  DEPENDS ${laboratory} orientation_controller visualization ${PROJECT_NAME}_rviz)
-add_custom_target(motion_demo_programs
-  DEPENDS ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder)
+
+# add_demonstration(<name> targets...): <name>_programs. A name that is no target would be taken for a file, which only
+# fails once the demonstration is built.
+function(add_demonstration name)
+  foreach(program IN LISTS ARGN)
+    if(NOT TARGET ${program})
+      message(FATAL_ERROR "${name} needs \"${program}\", which is no target.")
+    endif()
+  endforeach()
+  add_custom_target(${name}_programs DEPENDS ${ARGN})
+endfunction()
+
+add_demonstration(demo ${laboratory} calibrate_bag generate_urdf session_recorder visualization)
+add_demonstration(tracking_demo ${laboratory} orientation_controller visualization sac_rviz)
+add_demonstration(motion_demo
+  ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder)
