@@ -25,6 +25,9 @@ function(add_demonstration name)
 endfunction()
 
 add_demonstration(demo ${laboratory} calibrate_bag generate_urdf session_recorder visualization)
-add_demonstration(tracking_demo ${laboratory} orientation_controller visualization sac_rviz)
+add_demonstration(tracking_demo ${laboratory} orientation_controller visualization)
 add_demonstration(motion_demo
   ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder)
+if(LIVE_VIEW)
+  add_dependencies(tracking_demo_programs sac_rviz)
+endif()

@@ -34,6 +34,17 @@ function(use_precompiled_headers target)
   endif()
 endfunction()
 
+# A program that shares the headers of a library: they are valid for the code of libraries alone, which programs may be
+# made of, too.
+function(use_headers_of_library program library)
+  if(NOT PRECOMPILED_HEADERS)
+    return()
+  endif()
+  set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${program} PRIVATE -fPIC)
+  use_precompiled_headers(${program} ${library})
+endfunction()
+
 option(SOURCES_IN_BATCHES "Compile twenty sources of a room together, and six of its tests, in less than two thirds of the time" ON)
 
 # One shared library, whose rooms add their sources: sac_<part>, and sac::<part> for those who link it.
