@@ -20,30 +20,7 @@ function(use_project_options target)
   target_link_libraries(${target} PRIVATE Threads::Threads)
 endfunction()
 
-option(PRECOMPILED_HEADERS "Parse the headers of Eigen, ROS and GoogleTest once, which halves the build" ON)
-
-# The headers that a target precompiles, or shares: use_precompiled_headers(<target> <other target> | <headers...>)
-function(use_precompiled_headers target)
-  if(NOT PRECOMPILED_HEADERS)
-    return()
-  endif()
-  if(TARGET "${ARGV1}")
-    target_precompile_headers(${target} REUSE_FROM ${ARGV1})
-  else()
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-  endif()
-endfunction()
-
-# A program that shares the headers of a library: they are valid for the code of libraries alone, which programs may be
-# made of, too.
-function(use_headers_of_library program library)
-  if(NOT PRECOMPILED_HEADERS)
-    return()
-  endif()
-  set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_compile_options(${program} PRIVATE -fPIC)
-  use_precompiled_headers(${program} ${library})
-endfunction()
+include(cmake/precompiled_headers.cmake)
 
 option(SOURCES_IN_BATCHES "Compile twenty sources of a room together, and six of its tests, in less than two thirds of the time" ON)
 
