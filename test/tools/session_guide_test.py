@@ -199,6 +199,8 @@ class CommandLine(unittest.TestCase):
     def test_defaults_are_those_of_the_options(self):
         self.assertEqual(parse([]), Options())
         self.assertEqual(parse(["--yes", "--plan", "p.yaml"]), Options(plan="p.yaml"))
+        arguments = ["--plan", "p.yaml", "--poses", "12", "--wanted-stddev", "1e-4"]
+        self.assertEqual(parse(arguments), Options(plan="p.yaml", poses=12, wanted_stddev=1e-4))
 
     def test_names_the_option_that_cannot_be_used(self):
         for arguments, name in (
@@ -210,6 +212,8 @@ class CommandLine(unittest.TestCase):
             (["--ns", "actuator"], "--ns"),
             (["--pose-timeout", "0"], "--pose-timeout"),
             (["--plan", "a", "--repeat", "b"], "--repeat"),
+            (["--plan", "a", "--poses", "8"], "--poses"),
+            (["--repeat", "a", "--poses", "8"], "--poses"),
         ):
             with self.assertRaisesRegex(OptionError, name):
                 parse(arguments)

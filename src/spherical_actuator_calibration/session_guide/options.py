@@ -140,6 +140,13 @@ def _add_how_it_is_measured(add, default):
     add("--yes", action="store_true", help="nothing is asked any more: for scripts that say so")
 
 
+def _refuse_what_a_file_decides(values, default):
+    """A plan, or an earlier session, tells the poses: a number of them would be ignored, unless more may be added."""
+    from_file = values["plan"] is not None or values["repeat"] is not None
+    if from_file and values["poses"] != default.poses and values["wanted_stddev"] == default.wanted_stddev:
+        raise OptionError("poses", "the file says how many; beside it this bounds what --wanted-stddev adds.")
+
+
 def parse(arguments):
     """Options of a command line. Raises OptionError; prints help and exits for --help."""
     default = Options()
@@ -153,6 +160,7 @@ def parse(arguments):
     values = vars(command_line.parse_args(arguments))
     del values["yes"]
     try:
+        _refuse_what_a_file_decides(values, default)
         return Options(**values)
     except OptionError as error:
         raise OptionError("--" + error.option.replace("_", "-"), error.reason) from None
