@@ -42,6 +42,7 @@ def decimals_of(stddev):
 def plus_minus(value, stddev):
     """ "0.017933 ± 0.000032": both to the second significant digit of the uncertainty."""
     decimals = decimals_of(stddev)
+    value = round(value, decimals) + 0.0  # what rounds to zero has no sign
     return f"{value:.{decimals}f} ± {stddev:.{decimals}f}".replace("-", "−")
 
 

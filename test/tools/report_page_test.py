@@ -255,13 +255,23 @@ class ReportPage(unittest.TestCase):
 
     def test_a_session_without_success_has_a_page(self):
         figures = dict(self.figures, influences=[], validation=None)
-        figures["cycles"] = [dict(self.figures["cycles"][0], success=False, error_history=[], residuals=[])]
+        nothing = {"error_history": [], "residuals": [], "reduced_chi_square": 0.0, "condition_number": 0.0}
+        figures["cycles"] = [dict(self.figures["cycles"][0], success=False, **nothing)]
         figures["parameters"] = [dict(item, identified=False) for item in self.figures["parameters"]]
         figures["verdict"] = {"grade": "failed", "sentence": "Nothing is calibrated."}
         page = self.render(figures, "failed")
         self.assertIn("Failed", page.text)
         self.assertIn("Nothing was held out", page.text)
-        self.assertIn("failed", page.row("Joint")[0])
+        row = page.row("Joint")
+        self.assertIn("failed", row[0])
+        self.assertEqual(row.count("–"), 3, row)
+
+    def test_what_rounds_to_zero_has_no_sign(self):
+        figures = copy.deepcopy(self.figures)
+        figures["parameters"][0].update(value=-1e-9, stddev=0.012)
+        text = self.render(figures, "zero").text
+        self.assertIn("0.000 ± 0.012", text)
+        self.assertNotIn("−0.000 ± 0.012", text)
 
     def test_a_joint_alone_has_a_page(self):
         figures = dict(self.figures)

@@ -188,8 +188,8 @@ class Report:
                     "samples": self._samples_of(cycle),
                     "iterations": cycle["iterations"],
                     "error": change_of(history[0], history[-1], cycle["error_unit"]) if history else "–",
-                    "chi_square": significant(cycle["reduced_chi_square"]),
-                    "condition": significant(cycle["condition_number"]),
+                    "chi_square": significant(cycle["reduced_chi_square"]) if history else "–",
+                    "condition": significant(cycle["condition_number"]) if history else "–",
                     "time": f"{1e3 * cycle['solve_time']:.0f} ms",
                 }
             )
