@@ -212,7 +212,7 @@ class CommandLine(unittest.TestCase):
             (["--ns", "actuator"], "--ns"),
             (["--pose-timeout", "0"], "--pose-timeout"),
             (["--plan", "a", "--repeat", "b"], "--repeat"),
-            (["--plan", "a", "--poses", "8"], "--poses"),
+            (["--plan", "a", "--poses", "10"], "--poses"),
             (["--repeat", "a", "--poses", "8"], "--poses"),
         ):
             with self.assertRaisesRegex(OptionError, name):

@@ -82,7 +82,7 @@ class Options:
 
 def _add_what_is_measured(add, default):
     add("--ns", default=default.ns, help="namespace of the actuator (%(default)s)")
-    add("--poses", type=int, default=default.poses, help="planned poses (%(default)s)")
+    add("--poses", type=int, help=f"planned poses ({default.poses}, or those of a file)")
     add(
         "--validation-poses",
         type=int,
@@ -140,11 +140,15 @@ def _add_how_it_is_measured(add, default):
     add("--yes", action="store_true", help="nothing is asked any more: for scripts that say so")
 
 
-def _refuse_what_a_file_decides(values, default):
-    """A plan, or an earlier session, tells the poses: a number of them would be ignored, unless more may be added."""
+def _poses(values, default):
+    """How many are planned. A plan, or an earlier session, tells the poses: a number of them would be ignored beside it,
+    unless more may be added. Raises OptionError."""
+    if values["poses"] is None:
+        return default.poses
     from_file = values["plan"] is not None or values["repeat"] is not None
-    if from_file and values["poses"] != default.poses and values["wanted_stddev"] == default.wanted_stddev:
-        raise OptionError("poses", "the file says how many; beside it this bounds what --wanted-stddev adds.")
+    if from_file and values["wanted_stddev"] == default.wanted_stddev:
+        raise OptionError("poses", "the file says how many: leave it out, or let --wanted-stddev add some up to it.")
+    return values["poses"]
 
 
 def parse(arguments):
@@ -160,7 +164,6 @@ def parse(arguments):
     values = vars(command_line.parse_args(arguments))
     del values["yes"]
     try:
-        _refuse_what_a_file_decides(values, default)
-        return Options(**values)
+        return Options(**{**values, "poses": _poses(values, default)})
     except OptionError as error:
         raise OptionError("--" + error.option.replace("_", "-"), error.reason) from None
