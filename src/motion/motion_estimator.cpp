@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "current_steps.hpp"
-#include "friction_probe.hpp"
 #include "motion_outliers.hpp"
+#include "motion_probe.hpp"
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
@@ -366,7 +366,7 @@ MotionEstimate Estimator::run() {
   if (estimate.termination == Termination::kConverged) {
     judgeMisfit();
     findCovariance();
-    result_.frictions = probedFriction(terms_, descent_.x(), descent_.estimated());
+    probeMotion(terms_, options_, descent_.estimated(), result_);
     CurrentSteps steps;
     for (const MotionSpan& span : terms_.spans()) {
       steps.add(*span.streams);

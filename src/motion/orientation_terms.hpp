@@ -66,6 +66,7 @@ class OrientationTerms {
                    const MotionOptions& options,
                    const std::vector<HeldOutStretch>& held_out);
 
+  const CalibrationModel& model() const { return model_; }
   const std::vector<OrientationTerm>& terms() const { return terms_; }
   std::vector<OrientationTerm>& terms() { return terms_; }
   const std::vector<OrientationGroup>& groups() const { return groups_; }

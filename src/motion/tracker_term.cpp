@@ -19,12 +19,12 @@ bool TrackerTerm::evaluate(const MotionSpan& span, std::size_t orientation) {
     return false;
   }
   sample_.joint_position = track->position;
+  rates_ = track->velocity;
   sample_.R_stator_rotor = span.streams->orientations[orientation].toRotationMatrix();
   residual_ = point_.orientationResidual(sample_, &jacobian_);
   if (places_.tracker_delay >= 0) {
     for (std::size_t k = 0; k < kJoints; ++k) {
-      jacobian_.col(places_.tracker_delay) -=
-          (scale_ * track->velocity[static_cast<Eigen::Index>(k)]) * jacobian_.col(space_.joint(k));
+      jacobian_.col(places_.tracker_delay) -= scale_ * byTime(k);
     }
   }
   return true;

@@ -19,6 +19,10 @@ class TrackerTerm {
   const Eigen::Vector3d& residual() const { return residual_; }
   /// By all coordinates.
   const ResidualJacobian& jacobian() const { return jacobian_; }
+  /// By the time at which joint k, counted from 0, is asked for [rad/s].
+  Eigen::Vector3d byTime(std::size_t k) const {
+    return rates_[static_cast<Eigen::Index>(k)] * jacobian_.col(space_.joint(k));
+  }
   /// True time of the orientation, by the clock of the joints [s].
   double time() const { return time_; }
 
@@ -30,6 +34,7 @@ class TrackerTerm {
   double scale_ = 0.0;  ///< of the coordinate of the delay [s]
   double time_ = 0.0;
   Sample sample_;
+  Eigen::Vector3d rates_ = Eigen::Vector3d::Zero();  ///< of the joints [rad/s]
   Eigen::Vector3d residual_ = Eigen::Vector3d::Zero();
   ResidualJacobian jacobian_;
 };

@@ -53,6 +53,10 @@ class BalanceEvaluator {
   void add(BalanceEvaluator& other);
   void conclude(const MotionPoint& point, WindowBalance& out);
 
+  /// Where the covariance was asked for: derivatives of the last residual by the readings in units
+  /// of their noise, 3K × 3 for each from the second before the window to the second behind it.
+  const Eigen::MatrixXd& byReadings() const { return noise_; }
+
  private:
   /// 1/√(ω² + v²) of dry friction, by the turn between two of the readings.
   struct Fading {

@@ -48,6 +48,7 @@ class Streams:
     current_delay: float = 0.0  # [s]
     tracker_delay: float = 4e-3  # [s]
     joint_phase: float = 0.0  # [s] of the first stamp
+    joint_skews: tuple = (0.0, 0.0, 0.0)  # [s] by how much later than its stamp each joint is read
     current_phase: float = 0.0
     has_commands: bool = False
     command_delay: float = 1.5e-3  # [s] from the stamp of a command to its effect
@@ -285,7 +286,7 @@ def record(unit, errors, motion, streams, seed):
         return np.arange(first + phase, last, 1.0 / rate)
 
     t = stamps(streams.joint_rate, streams.joint_phase)
-    q = joint_angles(unit, errors, _at(motion, t))
+    q = np.stack([joint_angles(unit, errors, _at(motion, t + skew))[:, k] for k, skew in enumerate(streams.joint_skews)], axis=1)
     result = {"joints": (t, q + rng.normal(0.0, streams.joint_stddev, q.shape) if streams.joint_stddev else q)}
     t = stamps(streams.current_rate, streams.current_phase)
     I = _current_at(motion, t)

@@ -147,6 +147,17 @@ class Motion(unittest.TestCase):
             self.assertLess(abs(float(found[2]) - true), 5.0 * float(found[3]) + 0.05 * true)
             self.assertNotIn("grade: good", said)
 
+    def test_joints_that_are_not_read_at_once_are_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "motion.bag")
+            write_bag(bag, self.record(joint_skews=(0.0, 5e-5, 1e-4)), len(self.unit.coils))
+            said = self.calibrate_bags(folder, "motion", [bag]).stdout
+        found = re.search(r"joint 2 by (\S+) \+- (\S+) ms and joint 3 by (\S+) \+- (\S+) ms later", said)
+        self.assertTrue(found, said)
+        for value, stddev, true in ((found[1], found[2], 0.05), (found[3], found[4], 0.1)):
+            self.assertLess(abs(float(value) - true), 4.0 * float(stddev) + 0.001)
+        self.assertNotIn("grade: good", said)
+
     def test_one_spoilt_reading_costs_its_window_alone(self):
         recording = self.record()
         stamps, currents = recording["currents"]

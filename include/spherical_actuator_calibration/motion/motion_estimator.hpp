@@ -16,6 +16,7 @@ struct MotionEstimate {
   WindowMeansMisfit orientations;
   ResidualPace pace;
   std::vector<OtherFriction> frictions;  ///< beside that of the model
+  JointSkew skew;
   /// Windows with readings that look like the end of a sensor's range, whether they served or not.
   std::vector<WindowsLeftOut> at_end;
 };

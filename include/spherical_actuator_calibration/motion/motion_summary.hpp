@@ -64,6 +64,17 @@ struct OtherFriction {
   double stddev = 0.0;
 };
 
+/// By how much later than joint 1 the others seem to be read, and what that does to the estimate,
+/// which counts all as read at once.
+struct JointSkew {
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();       ///< of joints 2 and 3 [s]
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both; zero: nothing is told
+  std::string most_shifted;  ///< parameter, by its standard deviation
+  double shift = 0.0;        ///< of it, in its standard deviations
+
+  bool isTold() const { return covariance(0, 0) > 0.0; }
+};
+
 /// What became of a recording of motion.
 struct MotionSummary {
   double duration = 0.0;    ///< of the windows that served [s]

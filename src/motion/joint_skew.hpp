@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "motion_point.hpp"
+#include "motion_span.hpp"
+#include "window_balance.hpp"
+
+namespace sac {
+
+/// By how much later than joint 1 each of the others may be read: what all have in common the
+/// delays of currents and tracker tell.
+constexpr Eigen::Index kSkews = 2;
+
+/// Rates of the joints at a reading [rad/s], over some 10 ms.
+Eigen::Vector3d jointRates(const JointTrack& track, std::size_t reading);
+
+/// Derivatives of a window's residuals by each skew [per s].
+class SkewEvaluator {
+ public:
+  /// Keeps a reference.
+  explicit SkewEvaluator(const MotionOptions& options)
+      : balance_(options, Eigen::Vector3d::Ones()) {}
+
+  Eigen::MatrixXd evaluate(const MotionSpan& span,
+                           const MotionWindow& window,
+                           const MotionPoint& point);
+
+ private:
+  BalanceEvaluator balance_;
+  WindowBalance values_;
+};
+
+}  // namespace sac
