@@ -218,10 +218,12 @@ std::string failure(const MotionProblem& problem,
   }
   const double worst = std::max(summary.window_chi_square, summary.orientation_chi_square);
   if (worst > options.max_reduced_chi_square) {
+    const std::string skew = skewInWords(found);
     const bool is_balance = summary.window_chi_square >= summary.orientation_chi_square;
     return format("residuals of %s are %.1f times their noise; the motion does not fit the model. ",
                   is_balance ? "the momentum balance" : "the tracker",
                   std::sqrt(worst)) +
+           (skew.empty() ? skew : skew + " ") +
            (is_balance
                 ? endsInWords(found.at_end) +
                       "Check signs and channels of currents, torque curve, strengths, polarities, "

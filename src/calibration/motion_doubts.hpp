@@ -13,4 +13,7 @@ namespace sac {
 std::vector<std::string> motionDoubts(const MotionEstimate& found,
                                       const MotionRecording& recording);
 
+/// Joints that are not read at once, where the residuals tell it and a parameter feels it; "": not.
+std::string skewInWords(const MotionEstimate& found);
+
 }  // namespace sac

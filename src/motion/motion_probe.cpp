@@ -97,7 +97,7 @@ JointSkew skewOf(const ResidualProbe::Finding& finding,
   }
   skew.value = finding.value;
   skew.covariance = finding.covariance;
-  for (std::size_t n = 0; n < estimated.size(); ++n) {
+  for (std::size_t n = 0; n < estimated.size() && estimated[n] < space.effect(); ++n) {
     const double variance = covariance(estimated[n], estimated[n]);
     const double shift =
         variance > 0.0 ? finding.bias[static_cast<Eigen::Index>(n)] / std::sqrt(variance) : 0.0;

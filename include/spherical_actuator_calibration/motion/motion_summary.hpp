@@ -69,7 +69,7 @@ struct OtherFriction {
 struct JointSkew {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();       ///< of joints 2 and 3 [s]
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both; zero: nothing is told
-  std::string most_shifted;  ///< parameter, by its standard deviation
+  std::string most_shifted;  ///< of the parameters of joints, poles and coils
   double shift = 0.0;        ///< of it, in its standard deviations
 
   bool isTold() const { return covariance(0, 0) > 0.0; }
