@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -156,6 +157,27 @@ TEST_F(MotionCycleTest, DoubtsCurrentsWhoseClockJumps) {
   ASSERT_TRUE(report.success) << report.message;
   ASSERT_FALSE(report.doubts.empty()) << report.message;
   EXPECT_NE(report.doubts[0].find("check the clock"), std::string::npos) << report.doubts[0];
+}
+
+/// With the third joint read a step of 1 ms later than the others.
+MotionRecording skewed(MotionRecording recording) {
+  for (MotionStreams& streams : recording.spans) {
+    for (std::size_t n = 0; n + 1 < streams.joints.size(); ++n) {
+      streams.joints[n][2] = streams.joints[n + 1][2];
+    }
+  }
+  return recording;
+}
+
+TEST_F(MotionCycleTest, SaysThatJointsAreNotReadAtOnceWhereThatDoesNotFit) {
+  session_.setMotion(std::make_shared<const MotionRecording>(skewed(moving_.record())));
+  const CycleReport report = session_.run({Cycle::kMotion});
+  EXPECT_FALSE(report.success);
+  EXPECT_TRUE(std::regex_search(report.message,
+                                std::regex("does not fit the model. The motion fits better with "
+                                           "joints that are not read at once: joint 2 by "
+                                           "-?0[.]00.*joint 3 by (1[.]0[01]|0[.]99)")))
+      << report.message;
 }
 
 TEST_F(MotionCycleTest, DoubtsATrackerWhoseClockJumps) {

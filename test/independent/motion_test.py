@@ -147,24 +147,23 @@ class Motion(unittest.TestCase):
             self.assertLess(abs(float(found[2]) - true), 5.0 * float(found[3]) + 0.05 * true)
             self.assertNotIn("grade: good", said)
 
-    def said_of(self, **streams):
-        """By calibrate_bag, of the motion recorded that way."""
+    def test_joints_that_are_not_read_at_once_are_told(self):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "motion.bag")
-            write_bag(bag, self.record(**streams), len(self.unit.coils))
-            return self.calibrate_bags(folder, "motion", [bag]).stdout
+            write_bag(bag, self.record(joint_skews=(0.0, 5e-5, 1e-4)), len(self.unit.coils))
+            said = self.calibrate_bags(folder, "motion", [bag]).stdout
+        found = re.search(r"joint 2 by (\S+) \+- (\S+) ms and joint 3 by (\S+) \+- (\S+) ms later", said)
+        self.assertTrue(found, said)
+        for value, stddev, true in ((found[1], found[2], 0.05), (found[3], found[4], 0.1)):
+            self.assertLess(abs(float(value) - true), 4.0 * float(stddev) + 1e-3)
+        self.assertIn("grade: usable", said)
 
-    def test_joints_that_are_not_read_at_once_are_told(self):
-        # Half a millisecond is refused, for a misfit that has this reason.
-        for skews, verdict in (((0.0, 5e-5, 1e-4), "grade: usable"), ((5e-4, 0.0, 0.0), "does not fit the model. The motion fits better")):
-            said = self.said_of(joint_skews=skews)
-            found = re.search(r"joint 2 by (\S+) \+- (\S+) ms and joint 3 by (\S+) \+- (\S+) ms later", said)
-            self.assertTrue(found, said)
-            self.assertIn(verdict, said)
-            for k in (1, 2):
-                value, stddev = (float(found[2 * k - n]) for n in (1, 0))
-                self.assertLess(abs(value - 1e3 * (skews[k] - skews[0])), 4.0 * stddev + 1e-3)
-        self.assertNotIn("not read at once", self.said_of())
+    def test_joints_that_are_read_at_once_have_no_skew(self):
+        for streams in ({}, {"joint_rate": 200.0, "current_rate": 200.0}, {"joint_skews": (1e-4, 1e-4, 1e-4)}):
+            outcome = calibrate(self.record(**streams))
+            for value, stddev in (outcome.skew[:2], outcome.skew[2:]):
+                self.assertLess(abs(value), 3.5 * stddev)
+                self.assertLess(stddev, 1e-5)
 
     def test_one_spoilt_reading_costs_its_window_alone(self):
         recording = self.record()
