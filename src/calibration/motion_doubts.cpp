@@ -130,12 +130,11 @@ std::string repetitionInWords(const MotionRecording& recording) {
 }  // namespace
 
 std::string skewInWords(const MotionEstimate& found) {
-  constexpr double kSure = 1e-6;   // probability that chance makes as much
+  constexpr double kSure = 1e-6;    // probability that chance makes as much
   constexpr double kMatters = 0.5;  // standard deviations of a parameter
   const JointSkew& skew = found.skew;
-  const double variance = std::max({1.0,
-                                    std::pow(found.estimate.covariance_scale, 2),
-                                    found.summary.orientation_chi_square});
+  const double variance = std::max(
+      {1.0, std::pow(found.estimate.covariance_scale, 2), found.summary.orientation_chi_square});
   if (!skew.isTold() || std::abs(skew.shift) < kMatters ||
       skew.value.dot(skew.covariance.inverse() * skew.value) <
           variance * chiSquareLimit(2.0, kSure)) {
@@ -144,9 +143,12 @@ std::string skewInWords(const MotionEstimate& found) {
   const Eigen::Vector2d stddev = (variance * skew.covariance.diagonal()).cwiseSqrt();
   constexpr double kMilli = 1e3;
   return format(
-      "The motion fits better with joints that are not read at once: joint 2 by %.3f +- %.3f ms and "
-      "joint 3 by %.3f +- %.3f ms later than joint 1. That puts %s off by some %.1f of its standard "
-      "deviations, and others too: read all joints at one instant, or bring each to the time of its "
+      "The motion fits better with joints that are not read at once: joint 2 by %.3f +- %.3f ms "
+      "and "
+      "joint 3 by %.3f +- %.3f ms later than joint 1. That puts %s off by some %.1f of its "
+      "standard "
+      "deviations, and others too: read all joints at one instant, or bring each to the time of "
+      "its "
       "stamp by its speed.",
       kMilli * skew.value[0],
       kMilli * stddev[0],

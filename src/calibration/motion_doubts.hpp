@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "spherical_actuator_calibration/motion/motion_estimate.hpp"
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {

@@ -129,6 +129,36 @@ Hypothesis coilSwap(std::size_t first, std::size_t second) {
   return result;
 }
 
+Hypothesis coilCircle(const std::vector<std::size_t>& coils) {
+  std::string cause = "coil_circle";
+  std::string places;
+  for (std::size_t n = 0; n < coils.size(); ++n) {
+    cause += ":" + numberText(coils[n]);
+    places += (n == 0 ? "" : ", ") + numberText(coils[n]) + " in " +
+              numberText(coils[(n + 1) % coils.size()]);
+  }
+  Hypothesis result = ofCurrents(
+      cause,
+      cause,
+      "coils are exchanged in a circle, the current recorded of " + places +
+          ": exchange their leads at the amplifier, or their entries in the "
+          "description.",
+      [coils](Eigen::VectorXd& current) {
+        const Eigen::VectorXd before = current;
+        for (std::size_t n = 0; n < coils.size(); ++n) {
+          const std::size_t next = coils[(n + 1) % coils.size()];
+          current[static_cast<Eigen::Index>(next)] = before[static_cast<Eigen::Index>(coils[n])];
+        }
+      });
+  result.redescribe = [coils](Actuator& actuator, const Eigen::VectorXd& /*values*/) {
+    const std::vector<CoilAxis> before = actuator.coils;
+    for (std::size_t n = 0; n < coils.size(); ++n) {
+      actuator.coils[coils[n]] = before[coils[(n + 1) % coils.size()]];
+    }
+  };
+  return result;
+}
+
 Hypothesis coilDead(std::size_t coil) {
   return ofCurrents(
       "coil_dead:" + numberText(coil),

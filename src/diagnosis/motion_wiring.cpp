@@ -9,10 +9,10 @@
 
 #include <Eigen/Core>
 
-#include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/motion/motion_excerpt.hpp"
 #include "spherical_actuator_calibration/motion/rough_motion.hpp"
 #include "torque_hypotheses.hpp"
+#include "wiring_problem.hpp"
 
 namespace sac {
 namespace {
@@ -23,17 +23,8 @@ double misfitWithout(const CalibrationSession& session,
                      const Candidate& candidate,
                      double variance) {
   const CorrectedMotion motion = correctedMotion(session.start().actuator, excerpt, candidate);
-  const CalibrationModel model(
-      ParameterSpace(motion.actuator, withMotionEffects(session.config().effects)));
-  const ParameterSpace& space = model.space();
-  MotionProblem problem;
-  problem.model = &model;
-  problem.recording = &motion.recording;
-  problem.prior = nominalState(space, session.config().tolerance).belief;
-  for (Eigen::Index p = 0; p < space.size(); ++p) {
-    problem.free.push_back(p);
-  }
-  return roughMisfit(problem, variance);
+  const WiringProblem problem(motion.actuator, motion.recording, session.config());
+  return roughMisfit(problem.get(), variance);
 }
 
 /// Mistakes of one coil or pole, or of all currents. A factor on all of them is sought coarsely:
@@ -136,23 +127,17 @@ std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session) 
   return all;
 }
 
-Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string>& causes) {
-  std::vector<Candidate> all = singleMistakes(actuator);
+Candidate motionMistakes(const Actuator& actuator) {
+  Candidate all;
+  for (const Candidate& single : singleMistakes(actuator)) {
+    all.push_back(single.front());
+  }
   for (std::size_t first = 0; first < actuator.coils.size(); ++first) {
     for (std::size_t second = first + 1; second < actuator.coils.size(); ++second) {
-      all.push_back({coilSwap(first, second)});
+      all.push_back(coilSwap(first, second));
     }
   }
-  Candidate found;
-  for (const std::string& cause : causes) {
-    const auto named = std::find_if(all.begin(), all.end(), [&](const Candidate& candidate) {
-      return candidate.front().cause == cause;
-    });
-    if (named != all.end()) {
-      found.push_back(named->front());
-    }
-  }
-  return found;
+  return all;
 }
 
 CorrectedMotion correctedMotion(const Actuator& actuator,

@@ -22,8 +22,8 @@ struct SuspectedWiring {
 /// for. Precondition: the session has a motion.
 std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session);
 
-/// The mistakes of these causes among those that are looked for; of others none.
-Candidate motionMistakes(const Actuator& actuator, const std::vector<std::string>& causes);
+/// Those that suspectedWiring() looks for, one by one.
+Candidate motionMistakes(const Actuator& actuator);
 
 /// What would have been recorded without the mistakes of a candidate.
 struct CorrectedMotion {

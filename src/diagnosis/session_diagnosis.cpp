@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "evidence.hpp"
 #include "explanation_words.hpp"
+#include "motion_order.hpp"
 #include "motion_poses.hpp"
 #include "motion_wiring.hpp"
 #include "single_explanations.hpp"
@@ -111,37 +113,74 @@ std::vector<ParameterEstimate> valuesOf(const std::string& effect,
   return own;
 }
 
-/// A mistake of wiring that explains a misfit of the motion.
+/// Mistakes of wiring without which the cycle of the motion succeeds; otherwise none.
+std::vector<Diagnosis> confirmed(const CalibrationSession& session,
+                                 const SuspectedWiring& suspected) {
+  CorrectedMotion motion =
+      correctedMotion(session.start().actuator, *session.motion(), suspected.parts);
+  CalibrationConfig config = session.config();
+  config.estimation.max_iterations = kSoonFound;
+  CalibrationSession trial({motion.actuator}, {}, config);
+  trial.setMotion(std::make_shared<const MotionRecording>(std::move(motion.recording)));
+  const CycleReport& report = trial.run(withoutExpectedErrors({Cycle::kMotion}));
+  if (!report.success) {
+    return {};
+  }
+  std::vector<Diagnosis> diagnoses;
+  for (const Hypothesis& hypothesis : suspected.parts) {
+    Diagnosis diagnosis;
+    diagnosis.cause = hypothesis.cause;
+    diagnosis.message = hypothesis.sentence(hypothesis.start);
+    if (hypothesis.cause == "current_unit") {
+      diagnosis.message +=
+          " A motion tells only the ratio of currents and inertia: a rotor that is as much "
+          "lighter or heavier looks the same.";
+    }
+    // By what one step leaves: with the mistake a fit may find no end.
+    diagnosis.evidence =
+        0.5 * report.degrees_of_freedom * (1.0 - suspected.share_left) / suspected.share_left;
+    diagnoses.push_back(std::move(diagnosis));
+  }
+  return diagnoses;
+}
+
+/// A mistake of wiring that explains a misfit of the motion. The order of the coils is soon found,
+/// however many are beside their places; what else there is takes a step for each.
 std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session) {
+  if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
+    std::vector<Diagnosis> diagnoses = confirmed(session, *order);
+    if (!diagnoses.empty()) {
+      return diagnoses;
+    }
+  }
   for (const SuspectedWiring& suspected : suspectedWiring(session)) {
-    CorrectedMotion motion =
-        correctedMotion(session.start().actuator, *session.motion(), suspected.parts);
-    CalibrationConfig config = session.config();
-    config.estimation.max_iterations = kSoonFound;
-    CalibrationSession trial({motion.actuator}, {}, config);
-    trial.setMotion(std::make_shared<const MotionRecording>(std::move(motion.recording)));
-    const CycleReport& report = trial.run(withoutExpectedErrors({Cycle::kMotion}));
-    if (!report.success) {
-      continue;
+    std::vector<Diagnosis> diagnoses = confirmed(session, suspected);
+    if (!diagnoses.empty()) {
+      return diagnoses;
     }
-    std::vector<Diagnosis> diagnoses;
-    for (const Hypothesis& hypothesis : suspected.parts) {
-      Diagnosis diagnosis;
-      diagnosis.cause = hypothesis.cause;
-      diagnosis.message = hypothesis.sentence(hypothesis.start);
-      if (hypothesis.cause == "current_unit") {
-        diagnosis.message +=
-            " A motion tells only the ratio of currents and inertia: a rotor that is as much "
-            "lighter or heavier looks the same.";
-      }
-      // By what one step leaves: with the mistake a fit may find no end.
-      diagnosis.evidence =
-          0.5 * report.degrees_of_freedom * (1.0 - suspected.share_left) / suspected.share_left;
-      diagnoses.push_back(std::move(diagnosis));
-    }
-    return diagnoses;
   }
   return {};
+}
+
+/// The mistakes of wiring that diagnoses of a motion name; of others none.
+Candidate namedMistakes(const CalibrationSession& session,
+                        const std::vector<Diagnosis>& diagnoses) {
+  Candidate all = motionMistakes(session.start().actuator);
+  if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
+    all.insert(all.end(), order->parts.begin(), order->parts.end());
+  }
+  Candidate named;
+  for (const Diagnosis& diagnosis : diagnoses) {
+    // Shifts have one cause, and differ in what they say.
+    const auto mistake = std::find_if(all.begin(), all.end(), [&](const Hypothesis& one) {
+      return one.cause == diagnosis.cause &&
+             diagnosis.message.rfind(one.sentence(one.start), 0) == 0;
+    });
+    if (mistake != all.end()) {
+      named.push_back(*mistake);
+    }
+  }
+  return named;
 }
 
 /// Single effects that explain a misfit of the motion, the best first.
@@ -220,11 +259,7 @@ std::optional<Redescription> redescribedMotion(const CalibrationSession& session
   if (!poses.mistakes.empty() && poses.mistakes.front().cause == diagnoses.front().cause) {
     return Redescription{std::move(poses.redescribed), std::move(poses.beyond_description)};
   }
-  std::vector<std::string> causes(diagnoses.size());
-  std::transform(diagnoses.begin(), diagnoses.end(), causes.begin(), [](const Diagnosis& one) {
-    return one.cause;
-  });
-  const Candidate mistakes = motionMistakes(nominal, causes);
+  const Candidate mistakes = namedMistakes(session, diagnoses);
   if (mistakes.empty()) {
     return std::nullopt;
   }

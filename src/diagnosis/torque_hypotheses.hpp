@@ -27,6 +27,8 @@ Hypothesis currentUnit(double factor, double tolerance);
 Hypothesis coilShift(std::size_t steps);
 Hypothesis coilSign(std::size_t coil);
 Hypothesis coilSwap(std::size_t first, std::size_t second);
+/// What is recorded as one of these coils flows in the next, and of the last in the first.
+Hypothesis coilCircle(const std::vector<std::size_t>& coils);
 Hypothesis coilDead(std::size_t coil);
 Hypothesis coilGain(std::size_t coil, double gain, double tolerance);
 Hypothesis polePolarity(std::size_t pole);

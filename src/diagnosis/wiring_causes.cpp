@@ -28,6 +28,7 @@ const std::vector<std::string>& wiringCauses() {
                                                   "current_unit",
                                                   "coil_sign",
                                                   "coil_swap",
+                                                  "coil_circle",
                                                   "coil_shift",
                                                   "coil_dead",
                                                   "coil_gain",

@@ -4,14 +4,17 @@
 
 namespace sac {
 
+namespace {
+
+/// Rates of the joints at a reading [rad/s].
 Eigen::Vector3d jointRates(const JointTrack& track, std::size_t reading) {
-  constexpr double kSpan = 0.01;  // [s]
-  const std::size_t reach =
-      std::max<std::size_t>(1, static_cast<std::size_t>(kSpan / (2.0 * track.step())));
+  const std::size_t reach = std::max<std::size_t>(1, track.rateReach());
   const std::size_t from = reading - std::min(reading, reach);
   const std::size_t to = std::min(track.size() - 1, reading + reach);
   return (track.reading(to) - track.reading(from)) / (track.time(to) - track.time(from));
 }
+
+}  // namespace
 
 Eigen::MatrixXd SkewEvaluator::evaluate(const MotionSpan& span,
                                         const MotionWindow& window,

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include <Eigen/Core>
 
 #include "motion_point.hpp"
@@ -14,14 +12,12 @@ namespace sac {
 /// delays of currents and tracker tell.
 constexpr Eigen::Index kSkews = 2;
 
-/// Rates of the joints at a reading [rad/s], over some 10 ms.
-Eigen::Vector3d jointRates(const JointTrack& track, std::size_t reading);
-
 /// Derivatives of a window's residuals by each skew [per s].
 class SkewEvaluator {
  public:
   /// Keeps a reference.
   explicit SkewEvaluator(const MotionOptions& options)
+      // By one radian of a reading.
       : balance_(options, Eigen::Vector3d::Ones()) {}
 
   Eigen::MatrixXd evaluate(const MotionSpan& span,

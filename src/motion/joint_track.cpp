@@ -54,6 +54,11 @@ JointTrack::JointTrack(const MotionStreams& streams, Stamp origin)
   longest_ = longestWhole(step_, kGap);
 }
 
+std::size_t JointTrack::rateReach() const {
+  constexpr double kSpan = 0.01;  // [s]
+  return static_cast<std::size_t>(kSpan / (2.0 * step_));
+}
+
 std::optional<TrackPoint> JointTrack::at(double time) const {
   constexpr std::size_t kStencil = 4;
   const std::size_t above = times_.firstAfter(time);

@@ -33,6 +33,9 @@ class JointTrack {
   std::size_t firstFrom(double time) const { return times_.firstFrom(time); }
   /// Usual step between readings [s].
   double step() const { return step_; }
+  /// Readings on either side of one over which a rate is hardly noise: some 10 ms, and where that
+  /// is less than a step none.
+  std::size_t rateReach() const;
   /// Whether no reading is missing between n and n + 1.
   bool isWhole(std::size_t n) const { return times_[n + 1] - times_[n] <= longest_; }
 

@@ -79,7 +79,8 @@ void MotionProbe::addOrientations(const OrientationGroup& group, TrackerTerm& tr
     }
     by_coordinates.middleRows<3>(rows) = whitening * tracker.jacobian();
     for (Eigen::Index k = 0; k < kSkews; ++k) {
-      by_quantities.block<3, 1>(rows, kFrictions + k) = -whitening * tracker.byTime(static_cast<std::size_t>(k) + 1);
+      by_quantities.block<3, 1>(rows, kFrictions + k) =
+          -whitening * tracker.byTime(static_cast<std::size_t>(k) + 1);
     }
     residual.segment<3>(rows) = whitening * tracker.residual();
     rows += 3;

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "motion_terms.hpp"
-#include "spherical_actuator_calibration/motion/motion_estimator.hpp"
+#include "spherical_actuator_calibration/motion/motion_estimate.hpp"
 
 namespace sac {
 

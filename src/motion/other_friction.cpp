@@ -7,21 +7,11 @@
 #include "spherical_actuator_calibration/motion/test_functions.hpp"
 
 namespace sac {
-namespace {
-
-/// Readings on either side of one over which a rate is not noise.
-std::size_t rateReach(const JointTrack& track) {
-  constexpr double kSpan = 0.01;  // [s]
-  return std::max<std::size_t>(1, static_cast<std::size_t>(kSpan / (2.0 * track.step())));
-}
-
-}  // namespace
-
 Eigen::MatrixXd balanceByFrictions(const MotionWindow& window,
                                    const JointTrack& track,
                                    const MotionPoint& point,
                                    int functions) {
-  const std::size_t reach = rateReach(track);
+  const std::size_t reach = std::max<std::size_t>(1, track.rateReach());
   const std::size_t first = window.first;
   const std::size_t last = window.last;
   std::vector<Eigen::Matrix3d> turned;
@@ -32,7 +22,7 @@ Eigen::MatrixXd balanceByFrictions(const MotionWindow& window,
   }
   const TestFunctions tests(track.time(first), track.time(last), functions);
   TestFunctionValues test;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * functions, kFrictionLaws);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * tests.count(), kFrictionLaws);
   for (std::size_t n = first; n < last; ++n) {
     const std::size_t from = std::max(first, n - std::min(n, reach));
     const std::size_t to = std::min(last, n + 1 + reach);

@@ -16,21 +16,6 @@ constexpr Eigen::Index kCoulomb = 21;
 constexpr Eigen::Index kResidual = 24;
 constexpr Eigen::Index kBehind = 27;
 
-/// Where a part of so many begins.
-std::size_t beginOf(std::size_t total, const WindowPart& part) {
-  return total * part.index / part.count;
-}
-
-std::size_t endOf(std::size_t total, const WindowPart& part) {
-  return beginOf(total, {part.index + 1, part.count});
-}
-
-/// Readings on either side of an interval that the rate of dry friction is taken from.
-std::size_t frictionReach(const JointTrack& track) {
-  constexpr double kSpan = 0.01;  // [s]
-  return static_cast<std::size_t>(kSpan / (2.0 * track.step()));
-}
-
 }  // namespace
 
 void BalanceEvaluator::ColumnSum::start(Eigen::Index rows, Eigen::Index functions) {
@@ -75,7 +60,7 @@ void BalanceEvaluator::start(const MotionSpan& span,
   middle_.resize(readings - 1);
   bends_.resize(readings - 1);
   // Of those around its intervals alone a part asks.
-  const std::size_t reach = std::max<std::size_t>(frictionReach(span.track), 1);
+  const std::size_t reach = std::max<std::size_t>(span.track.rateReach(), 1);
   const std::size_t begin = beginOf(readings - 1, part);
   const std::size_t end = endOf(readings - 1, part) + reach + 1;
   for (std::size_t n = 0; n < readings; ++n) {
@@ -129,7 +114,7 @@ void BalanceEvaluator::setMomentumFactors(std::size_t place) {
 /// interval alone.
 BalanceEvaluator::Fading BalanceEvaluator::fadingAt(const JointTrack& track,
                                                     std::size_t place) const {
-  const std::size_t reach = frictionReach(track);
+  const std::size_t reach = track.rateReach();
   Fading fading;
   fading.first = place - std::min(place, reach);
   fading.last = std::min(turned_.size() - 1, place + 1 + reach);
@@ -211,39 +196,22 @@ void BalanceEvaluator::addImpulse(const MotionSpan& span,
                                   const MotionPoint& point,
                                   const BalanceOrder& order,
                                   const WindowPart& part) {
-  const double begin = span.track.time(window_.first);
-  const double end = span.track.time(window_.last);
-  const double delay = point.currentDelay();
-  const StampTimes& times = span.current_times;
-  const TestFunctions functions(begin, end, options_.test_functions);
-  const Eigen::Index coils = span.streams->currents.cols();
-  current_.resize(coils);
-  bend_.resize(coils);
-  const std::size_t stride = order.stride;
-  // One has neighbours on both sides.
-  const std::size_t first = std::max(times.firstAfter(begin + delay), stride);
-  const std::size_t last =
-      std::min(times.firstFrom(end + delay), std::max(times.size(), stride) - stride);
-  const std::size_t count = last > first ? (last - first + stride - 1) / stride : 0;
-  for (std::size_t m = beginOf(count, part); m < endOf(count, part); ++m) {
-    const std::size_t n = first + m * stride;
-    const double time = times[n] - delay;
-    const std::optional<TrackPoint> track = span.track.at(time);
-    if (!track) {
-      continue;
-    }
-    const double before = times[n] - times[n - stride];
-    const double after = times[n + stride] - times[n];
-    const auto row = static_cast<Eigen::Index>(n);
-    const auto step = static_cast<Eigen::Index>(stride);
-    const auto& all = span.streams->currents;
-    const auto at = [&](Eigen::Index r) { return all.row(r).transpose().cast<double>(); };
-    bend_ = 2.0 / (before + after) *
-            ((at(row + step) - at(row)) / after - (at(row) - at(row - step)) / before);
+  const TestFunctions functions(
+      span.track.time(window_.first), span.track.time(window_.last), options_.test_functions);
+  const auto& all = span.streams->currents;
+  const auto step = static_cast<Eigen::Index>(order.stride);
+  const auto at = [&](Eigen::Index row) { return all.row(row).transpose().cast<double>(); };
+  current_.resize(all.cols());
+  bend_.resize(all.cols());
+  const auto add = [&](const CurrentReading& now) {
+    const auto row = static_cast<Eigen::Index>(now.row);
+    bend_ = 2.0 / (now.before + now.after) *
+            ((at(row + step) - at(row)) / now.after - (at(row) - at(row - step)) / now.before);
     current_ = at(row) + point.currentDispersion() * bend_;
-    functions.evaluate(time, test_);
-    addCurrents(*track, point, 0.5 * (before + after), order);
-  }
+    functions.evaluate(now.time, test_);
+    addCurrents(now.track, point, now.step(), order);
+  };
+  visitCurrents(span, window_, point.currentDelay(), order.stride, part, add);
 }
 
 void BalanceEvaluator::addCurrents(const TrackPoint& track,

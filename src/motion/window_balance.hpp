@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "current_readings.hpp"
 #include "motion_point.hpp"
 #include "motion_span.hpp"
 #include "spherical_actuator_calibration/motion/test_functions.hpp"
@@ -23,12 +24,6 @@ struct BalanceOrder {
   bool covariance = false;
   /// Of so many currents one serves: quick and coarse.
   std::size_t stride = 1;
-};
-
-/// One of some parts of a window, of equally many readings each.
-struct WindowPart {
-  std::size_t index = 0;
-  std::size_t count = 1;
 };
 
 /// Evaluates windows of one recording (doc/motion.md). Storage is reused from window to window.
@@ -53,8 +48,9 @@ class BalanceEvaluator {
   void add(BalanceEvaluator& other);
   void conclude(const MotionPoint& point, WindowBalance& out);
 
-  /// Where the covariance was asked for: derivatives of the last residual by the readings in units
-  /// of their noise, 3K × 3 for each from the second before the window to the second behind it.
+  /// Where the covariance was asked for: derivatives of the last residual by the readings, each in
+  /// units of `joint_stddev`: 3K × 3 for each, with the two before the window and the two behind
+  /// it.
   const Eigen::MatrixXd& byReadings() const { return noise_; }
 
  private:

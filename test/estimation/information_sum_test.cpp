@@ -35,5 +35,16 @@ TEST(InformationSum, ExpressionsCountAsTheirValues) {
   expectToldAs(J / 3.0, r, [&](InformationSum& sum) { sum.addDense(J / 3.0, r); });
 }
 
+// As of orientations that are all outliers. Of many unknowns, where products are made of blocks.
+TEST(InformationSum, NothingIsToldByNoResiduals) {
+  InformationSum sum(Eigen::MatrixXd(Eigen::MatrixXd::Identity(100, 100)));
+  const Eigen::MatrixXd J(6, 100);
+  const Eigen::VectorXd r(6);
+  sum.addDense(J.topRows(0), r.head(0));
+  sum.addDense(Eigen::MatrixXd(0, 100), Eigen::VectorXd(0));
+  EXPECT_EQ(sum.information(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(100, 100)));
+  EXPECT_EQ(sum.gradient(), Eigen::VectorXd(Eigen::VectorXd::Zero(100)));
+}
+
 }  // namespace
 }  // namespace sac

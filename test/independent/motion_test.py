@@ -244,6 +244,22 @@ class Motion(unittest.TestCase):
         self.assertEqual(causes, ["coil_sign:5"])
         self.assertIsNone(coils)
 
+    def test_names_a_circle_of_coils_beside_others_that_are_turned(self):
+        def mistaken(currents):
+            currents[:, [2, 8, 16]] = currents[:, [8, 16, 2]]
+            currents[:, [0, 2, 20]] *= -1.0
+            return currents
+
+        _, causes = self.diagnosed(mistaken)
+        # What is recorded of coil 3 flows in coil 9.
+        self.assertEqual(causes, ["coil_circle:3:9:17", "coil_sign:1", "coil_sign:9", "coil_sign:21"])
+
+    def test_names_layers_that_are_exchanged(self):
+        coils, causes = self.diagnosed(lambda currents: np.roll(currents, 12, axis=1))
+        self.assertEqual(causes, ["coil_shift"])
+        apart = (np.array(coils) - np.roll(self.unit.coils, 12, axis=0) + np.pi) % (2.0 * np.pi) - np.pi
+        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
+
     def test_names_coils_that_are_exchanged(self):
         def exchanged(currents):
             currents[:, [2, 15]] = currents[:, [15, 2]]

@@ -89,12 +89,16 @@ class InformationSum {
   /// The same by its first `count` columns, as if there were no others.
   void addLeading(const WhitenedObservation& observation, std::size_t count, double weight);
 
-  /// n residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in units
+  /// n ≥ 0 residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in units
   /// of their noise.
   template <typename Jacobian, typename Residual>
   void addDense(const Eigen::MatrixBase<Jacobian>& jacobian,
                 const Eigen::MatrixBase<Residual>& residual,
                 double weight = 1.0) {
+    // Eigen divides by the number of rows.
+    if (residual.size() == 0) {
+      return;
+    }
     if constexpr ((Jacobian::Flags & Eigen::DirectAccessBit) == 0) {
       // Of an expression that is not evaluated, rankUpdate() would count a factor once, not twice.
       addDense(jacobian.eval(), residual, weight);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "spherical_actuator_calibration/estimation/estimate.hpp"
+#include "spherical_actuator_calibration/motion/motion_summary.hpp"
+
+namespace sac {
+
+/// What a recording of motion tells (doc/method.md).
+struct MotionEstimate {
+  /// Its residuals are those of windows: the index of their sample is that of the window. One that
+  /// is left out for the end of a range has none.
+  Estimate estimate;
+  MotionSummary summary;
+  WindowMeansMisfit orientations;
+  ResidualPace pace;
+  std::vector<OtherFriction> frictions;  ///< beside that of the model
+  JointSkew skew;
+  /// Windows with readings that look like the end of a sensor's range, whether they served or not.
+  std::vector<WindowsLeftOut> at_end;
+};
+
+}  // namespace sac
