@@ -54,6 +54,7 @@ function(add_library_of_rooms name)
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include>)
+  target_compile_features(${name} PUBLIC cxx_std_17)
   target_link_libraries(${name} PUBLIC ${arg_USES})
   # The link fails as soon as a symbol comes from a library that is not named.
   target_link_options(${name} PRIVATE -Wl,--no-undefined)

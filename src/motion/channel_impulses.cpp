@@ -32,7 +32,7 @@ class ThroughCoils {
     const TestFunctions functions(
         span.track.time(window.first), span.track.time(window.last), functions_);
     const Eigen::Index coils = span.streams->currents.cols();
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * functions_, coils * coils);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(Eigen::Index{3} * functions_, coils * coils);
     TestFunctionValues test;
     visitCurrents(span, window, point_.currentDelay(), stride, {}, [&](const CurrentReading& now) {
       const Eigen::VectorXd current =

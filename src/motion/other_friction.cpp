@@ -22,7 +22,7 @@ Eigen::MatrixXd balanceByFrictions(const MotionWindow& window,
   }
   const TestFunctions tests(track.time(first), track.time(last), functions);
   TestFunctionValues test;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * tests.count(), kFrictionLaws);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(Eigen::Index{3} * functions, kFrictionLaws);
   for (std::size_t n = first; n < last; ++n) {
     const std::size_t from = std::max(first, n - std::min(n, reach));
     const std::size_t to = std::min(last, n + 1 + reach);

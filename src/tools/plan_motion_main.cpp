@@ -113,6 +113,7 @@ void writePlan(PlanMotionOptions& options) {
   // A load that the controller does not know of.
   rehearsal.rotor.unbalance = Eigen::Vector3d(0.003, -0.004, 0.002);
   rehearsal.joint_rate = options.planner.sensors.joint_rate;
+  rehearsal.joint_noise = options.planner.sensors.joint_stddev;
   rehearsal.current_rate = options.planner.sensors.current_rate;
   const PlannedMotionResult result =
       planMotion(actuator, options.planner, [](const std::string& text) {

@@ -43,18 +43,18 @@ struct CycleReport {
   bool success = false;
   /// Refused because the samples contradict each other, the model or the drawing.
   bool contradicted = false;
-  std::string message;  ///< a sentence or two that an operator can act on
-  std::uint32_t samples_used = 0;
-  std::uint32_t samples_rejected = 0;
+  std::string message;                 ///< a sentence or two that an operator can act on
+  std::uint32_t samples_used = 0;      ///< in the final fit; of the cycle motion windows
+  std::uint32_t samples_rejected = 0;  ///< of which something is an outlier; likewise
   std::uint32_t iterations = 0;
   ErrorMeasure error_measure = ErrorMeasure::kOrientation;
-  std::vector<double> error_history;
+  std::vector<double> error_history;  ///< before the first and after each iteration, in its unit
   /// What keeps a successful cycle from being good, a sentence each.
   std::vector<std::string> doubts;
-  double reduced_chi_square = 0.0;
+  double reduced_chi_square = 0.0;  ///< of the final fit: 1 where the model and stated noise hold
   int degrees_of_freedom = 0;
-  double condition_number = 0.0;
-  double solve_time = 0.0;  ///< [s]
+  double condition_number = 0.0;  ///< of the whitened Jacobian
+  double solve_time = 0.0;        ///< [s]
   std::vector<ParameterEstimate> estimates;
   std::vector<OpenDirection> open_directions;  ///< beside single unobservable parameters
   std::vector<SampleResidual> residuals;

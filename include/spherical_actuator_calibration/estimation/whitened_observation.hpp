@@ -89,8 +89,8 @@ class InformationSum {
   /// The same by its first `count` columns, as if there were no others.
   void addLeading(const WhitenedObservation& observation, std::size_t count, double weight);
 
-  /// n ≥ 0 residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in units
-  /// of their noise.
+  /// n ≥ 0 residuals at once that may depend on all coordinates. `jacobian` n×F, `residual` n: in
+  /// units of their noise.
   template <typename Jacobian, typename Residual>
   void addDense(const Eigen::MatrixBase<Jacobian>& jacobian,
                 const Eigen::MatrixBase<Residual>& residual,

@@ -158,11 +158,13 @@ LabEmulatorOptions loadLabEmulatorOptions(const ros::NodeHandle& private_node) {
   readAmplifier(map.map("amplifier"), options);
   options.joint_sensor = readJointSensorOptions(map.map("joint_sensor"));
   options.coil_driver = readCurrentAmplifierOptions(map.map("coil_driver"));
-  for (const ModbusLinkOptions& link : {options.joint_sensor.link, options.coil_driver.link}) {
+  const auto require_tcp = [&](const char* key, const ModbusLinkOptions& link) {
     if (link.type != ModbusLinkOptions::Type::kTcp) {
-      map.fail("joint_sensor", "only links of type tcp can be emulated.");
+      map.fail(key, "only links of type tcp can be emulated.");
     }
-  }
+  };
+  require_tcp("joint_sensor", options.joint_sensor.link);
+  require_tcp("coil_driver", options.coil_driver.link);
   map.finish();
   return options;
 }
