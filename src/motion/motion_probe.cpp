@@ -19,12 +19,16 @@ class MotionProbe {
               const MotionOptions& options,
               const std::vector<Eigen::Index>& estimated,
               const Eigen::VectorXd& x)
-      : terms_(terms), options_(options), x_(x), probe_(estimated, kFrictions + kSkews) {}
+      : terms_(terms),
+        options_(options),
+        x_(x),
+        frictions_(estimated, kFrictions),
+        skews_(estimated, kSkews) {}
 
   void addWindows();
   void addOrientations();
-  ResidualProbe::Finding friction(Eigen::Index law) const { return probe_.find(law, 1); }
-  ResidualProbe::Finding skew() const { return probe_.find(kFrictions, kSkews); }
+  ResidualProbe::Finding friction(Eigen::Index law) const { return frictions_.find(law, 1); }
+  ResidualProbe::Finding skew() const { return skews_.find(0, kSkews); }
 
  private:
   void addOrientations(const OrientationGroup& group, TrackerTerm& tracker);
@@ -32,26 +36,31 @@ class MotionProbe {
   const MotionTerms& terms_;
   const MotionOptions& options_;
   const Eigen::VectorXd& x_;
-  ResidualProbe probe_;
+  ResidualProbe frictions_;
+  ResidualProbe skews_;  ///< by some windows: each has to be evaluated anew
 };
 
 void MotionProbe::addWindows() {
   const MotionPoint point = terms_.pointAt(x_);
   SkewEvaluator skews(options_);
-  // Others are kept because they stand out.
   const std::size_t stride = noiseStride(terms_.windowCount());
-  for (std::size_t n = 0; n < terms_.windowCount(); n += stride) {
+  for (std::size_t n = 0; n < terms_.windowCount(); ++n) {
     const WindowTerm& term = terms_.windows()[n];
-    if (!term.serves() || !term.isKept()) {
+    const bool is_some = n % stride == 0;
+    // Of a sum, others are kept because they stand out.
+    if (!term.serves() || !term.isKept() || (terms_.areSummed() && !is_some)) {
       continue;
     }
     const MotionSpan& span = terms_.spans()[term.window.span];
     const auto whitening = term.whitening.triangularView<Eigen::Lower>();
-    Eigen::MatrixXd by_quantities(term.residual.size(), kFrictions + kSkews);
-    by_quantities.leftCols(kFrictions) =
+    const Eigen::MatrixXd by_coordinates = whitening * term.balance.jacobian;
+    const Eigen::MatrixXd by_frictions =
         balanceByFrictions(term.window, span.track, point, options_.test_functions);
-    by_quantities.rightCols(kSkews) = skews.evaluate(span, term.window, point);
-    probe_.add(whitening * term.balance.jacobian, whitening * by_quantities, term.residual);
+    frictions_.add(by_coordinates, whitening * by_frictions, term.residual);
+    if (is_some) {
+      skews_.add(
+          by_coordinates, whitening * skews.evaluate(span, term.window, point), term.residual);
+    }
   }
 }
 
@@ -69,7 +78,7 @@ void MotionProbe::addOrientations(const OrientationGroup& group, TrackerTerm& tr
   const MotionSpan& span = terms_.spans()[group.span];
   const auto most = 3 * static_cast<Eigen::Index>(group.count);
   Eigen::MatrixXd by_coordinates(most, x_.size());
-  Eigen::MatrixXd by_quantities = Eigen::MatrixXd::Zero(most, kFrictions + kSkews);
+  Eigen::MatrixXd by_skews(most, kSkews);
   Eigen::VectorXd residual(most);
   Eigen::Index rows = 0;
   for (std::size_t n = 0; n < group.count; ++n) {
@@ -79,13 +88,12 @@ void MotionProbe::addOrientations(const OrientationGroup& group, TrackerTerm& tr
     }
     by_coordinates.middleRows<3>(rows) = whitening * tracker.jacobian();
     for (Eigen::Index k = 0; k < kSkews; ++k) {
-      by_quantities.block<3, 1>(rows, kFrictions + k) =
-          -whitening * tracker.byTime(static_cast<std::size_t>(k) + 1);
+      by_skews.block<3, 1>(rows, k) = -whitening * tracker.byTime(static_cast<std::size_t>(k) + 1);
     }
     residual.segment<3>(rows) = whitening * tracker.residual();
     rows += 3;
   }
-  probe_.add(by_coordinates.topRows(rows), by_quantities.topRows(rows), residual.head(rows));
+  skews_.add(by_coordinates.topRows(rows), by_skews.topRows(rows), residual.head(rows));
 }
 
 JointSkew skewOf(const ResidualProbe::Finding& finding,
