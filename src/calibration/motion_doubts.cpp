@@ -131,11 +131,11 @@ std::string repetitionInWords(const MotionRecording& recording) {
 
 std::string skewInWords(const MotionEstimate& found) {
   constexpr double kSure = 1e-6;    // probability that chance makes as much
-  constexpr double kMatters = 0.5;  // standard deviations of a parameter
+  constexpr double kMatters = 1.0;  // standard deviations, of all parameters together
   const JointSkew& skew = found.skew;
   const double variance = std::max(
       {1.0, std::pow(found.estimate.covariance_scale, 2), found.summary.orientation_chi_square});
-  if (!skew.isTold() || std::abs(skew.shift) < kMatters ||
+  if (!skew.isTold() || skew.distance < kMatters ||
       skew.value.dot(skew.covariance.inverse() * skew.value) <
           variance * chiSquareLimit(2.0, kSure)) {
     return {};
@@ -144,16 +144,14 @@ std::string skewInWords(const MotionEstimate& found) {
   constexpr double kMilli = 1e3;
   return format(
       "The motion fits better with joints that are not read at once: joint 2 by %.3f +- %.3f ms "
-      "and "
-      "joint 3 by %.3f +- %.3f ms later than joint 1. That puts %s off by some %.1f of its "
-      "standard "
-      "deviations, and others too: read all joints at one instant, or bring each to the time of "
-      "its "
-      "stamp by its speed.",
+      "and joint 3 by %.3f +- %.3f ms later than joint 1. That puts the parameters together off by "
+      "%.1f standard deviations, %s by %.1f of its own: read all joints at one instant, or bring "
+      "each to the time of its stamp by its speed.",
       kMilli * skew.value[0],
       kMilli * stddev[0],
       kMilli * skew.value[1],
       kMilli * stddev[1],
+      skew.distance,
       skew.most_shifted.c_str(),
       std::abs(skew.shift));
 }

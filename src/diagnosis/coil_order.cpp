@@ -150,12 +150,9 @@ std::size_t CoilOrder::mistakes() const {
   for (std::size_t channel = 0; channel < coil.size(); ++channel) {
     count += coil[channel] == (channel + shift) % coil.size() ? 0 : 1;
   }
-  const auto turned = std::count(sign.begin(), sign.end(), -1);
-  const auto others =
-      static_cast<std::ptrdiff_t>(sign.size()) - std::count(sign.begin(), sign.end(), 1);
-  // All of them are turned by one mistake.
-  const std::ptrdiff_t all = 1 + static_cast<std::ptrdiff_t>(sign.size()) - turned;
-  return count + static_cast<std::size_t>(std::min(others, all));
+  const auto turned =
+      sign.size() - static_cast<std::size_t>(std::count(sign.begin(), sign.end(), 1));
+  return count + turned;
 }
 
 CoilOrder bestCoilOrder(const ChannelImpulses& impulses) {

@@ -15,8 +15,8 @@ struct CoilOrder {
 
   /// By how many coils most channels are shifted.
   std::size_t steps() const;
-  /// Channels beside the place and the sign of most, and one for each that most differ by from what
-  /// is described.
+  /// Channels beside the place of most, and one where most are shifted; channels that are turned or
+  /// dead.
   std::size_t mistakes() const;
 };
 

@@ -14,24 +14,12 @@
 namespace sac {
 namespace {
 
-/// By how many steps all channels are shifted; 0: they are not.
-std::size_t shiftOf(const CoilOrder& order) {
-  const std::size_t coils = order.coil.size();
-  const std::size_t steps = order.coil.front();
-  for (std::size_t channel = 0; channel < coils; ++channel) {
-    if (order.coil[channel] != (channel + steps) % coils) {
-      return 0;
-    }
-  }
-  return steps;
-}
-
 /// What brings each current to its coil: exchanges of two, and circles of more.
-void addCircles(const CoilOrder& order, Candidate& candidate) {
-  std::vector<bool> is_seen(order.coil.size(), false);
-  for (std::size_t channel = 0; channel < order.coil.size(); ++channel) {
+void addCircles(const std::vector<std::size_t>& coil_of, Candidate& candidate) {
+  std::vector<bool> is_seen(coil_of.size(), false);
+  for (std::size_t channel = 0; channel < coil_of.size(); ++channel) {
     std::vector<std::size_t> circle;
-    for (std::size_t next = channel; !is_seen[next]; next = order.coil[next]) {
+    for (std::size_t next = channel; !is_seen[next]; next = coil_of[next]) {
       is_seen[next] = true;
       circle.push_back(next);
     }
@@ -43,20 +31,19 @@ void addCircles(const CoilOrder& order, Candidate& candidate) {
   }
 }
 
+/// In the order in which currents are corrected: shifted, exchanged, turned.
 Candidate mistakesOf(const CoilOrder& order) {
   Candidate candidate;
-  const std::size_t steps = shiftOf(order);
-  if (steps > 0 && order.coil.size() > 2) {
+  const std::size_t coils = order.coil.size();
+  const std::size_t steps = coils > 2 ? order.steps() : 0;
+  if (steps > 0) {
     candidate.push_back(coilShift(steps));
-  } else {
-    addCircles(order, candidate);
   }
-  const bool all_turned =
-      std::all_of(order.sign.begin(), order.sign.end(), [](int sign) { return sign < 0; });
-  if (all_turned) {
-    candidate.push_back(currentSign());
-    return candidate;
+  std::vector<std::size_t> coil_of(coils);  // of each channel once all are shifted back
+  for (std::size_t channel = 0; channel < coils; ++channel) {
+    coil_of[(channel + steps) % coils] = order.coil[channel];
   }
+  addCircles(coil_of, candidate);
   for (std::size_t channel = 0; channel < order.coil.size(); ++channel) {
     if (order.sign[channel] != 1) {
       const std::size_t coil = order.coil[channel];
@@ -72,8 +59,13 @@ std::optional<SuspectedWiring> suspectedOrder(const CalibrationSession& session)
   constexpr double kExcerpt = 30.0;  // [s]
   constexpr double kGrid = 0.01;     // [s]
   constexpr int kReach = 6;
-  // A single coil is a fifth of what is left as described, at least.
+  // A coil that is turned leaves a fifth of the misfit, an exchange of two a third at most.
   constexpr double kMostLeft = 0.75;
+  // Memory grows with their square, time by more.
+  constexpr std::size_t kMostCoils = 64;
+  if (session.start().actuator.coils.size() > kMostCoils) {
+    return std::nullopt;
+  }
   const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
   const WiringProblem problem(session.start().actuator, excerpt, session.config());
   std::optional<CoilOrder> best;

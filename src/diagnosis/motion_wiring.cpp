@@ -81,6 +81,13 @@ std::vector<Candidate> exchanges(const std::vector<Candidate>& singles, std::siz
   return pairs;
 }
 
+/// Those that are known first: they are corrected first.
+Candidate beside(const Candidate& known, const Candidate& others) {
+  Candidate all = known;
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
 /// A mistake and each of the others that is at another place.
 std::vector<Candidate> both(const Candidate& first, const std::vector<Candidate>& others) {
   std::vector<Candidate> pairs;
@@ -94,19 +101,21 @@ std::vector<Candidate> both(const Candidate& first, const std::vector<Candidate>
 
 }  // namespace
 
-std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session) {
+std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session,
+                                             const Candidate& known) {
   constexpr std::size_t kPromising = 8;
   constexpr std::size_t kMostTried = 2;
   constexpr double kExcerpt = 30.0;  // [s]
   const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
-  const double unchanged = misfitWithout(session, excerpt, {}, 0.0);
+  const double unchanged = misfitWithout(session, excerpt, known, 0.0);
   if (!(unchanged > 0.0)) {
     return {};
   }
   std::vector<SuspectedWiring> all;
   const auto rank = [&](const std::vector<Candidate>& candidates) {
     for (const Candidate& candidate : candidates) {
-      all.push_back({candidate, misfitWithout(session, excerpt, candidate, unchanged) / unchanged});
+      const double left = misfitWithout(session, excerpt, beside(known, candidate), unchanged);
+      all.push_back({candidate, left / unchanged});
     }
     std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
       return one.share_left < other.share_left;
@@ -124,6 +133,9 @@ std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session) 
   }
   all.erase(std::find_if(all.begin(), all.end(), explainsLittle), all.end());
   all.resize(std::min(kMostTried, all.size()));
+  for (SuspectedWiring& suspected : all) {
+    suspected.parts = beside(known, suspected.parts);
+  }
   return all;
 }
 
@@ -149,6 +161,7 @@ CorrectedMotion correctedMotion(const Actuator& actuator,
   for (Eigen::Index coil = 0; coil < coils; ++coil) {
     Sample sample;
     sample.current = Eigen::VectorXd::Unit(coils, coil);
+    sample.has_torque = true;  // currents of others are not corrected
     described.samples.push_back(sample);
   }
   const WiringCase undone = corrected(described, candidate, startOf(candidate));

@@ -19,8 +19,9 @@ struct SuspectedWiring {
 /// recorded with, two at the most together, the most promising first; none: as it is described, it
 /// is explained as well. By how much misfit one step from the description leaves: where all axes
 /// are off, coils that counteract each other tell so little of strengths that these cannot be asked
-/// for. Precondition: the session has a motion.
-std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session);
+/// for. `known`: mistakes that there are beside them. Precondition: the session has a motion.
+std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session,
+                                             const Candidate& known);
 
 /// Those that suspectedWiring() looks for, one by one.
 Candidate motionMistakes(const Actuator& actuator);

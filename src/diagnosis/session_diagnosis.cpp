@@ -14,6 +14,7 @@
 #include "motion_wiring.hpp"
 #include "single_explanations.hpp"
 #include "spherical_actuator_calibration/calibration/cycle_selection.hpp"
+#include "torque_hypotheses.hpp"
 
 namespace sac {
 namespace {
@@ -26,6 +27,9 @@ constexpr std::uint32_t kManyRejected = 2;
 
 /// Iterations of a motion: what explains is found soon; what does not goes on for minutes.
 constexpr int kSoonFound = 12;
+
+/// Of the misfit, by a sign of all currents: by the inertia it is all or nothing.
+constexpr double kTurnedLeft = 0.5;
 
 /// A refinement from the start with some laboratory effects.
 struct RefinedFit {
@@ -145,29 +149,50 @@ std::vector<Diagnosis> confirmed(const CalibrationSession& session,
 }
 
 /// A mistake of wiring that explains a misfit of the motion. The order of the coils is soon found,
-/// however many are beside their places; what else there is takes a step for each.
+/// however many are beside their places; what else there is, alone or beside them, takes a step for
+/// each.
 std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session) {
-  if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
-    std::vector<Diagnosis> diagnoses = confirmed(session, *order);
+  const std::optional<SuspectedWiring> order = suspectedOrder(session);
+  std::vector<Diagnosis> diagnoses;
+  if (order) {
+    diagnoses = confirmed(session, *order);
+  }
+  if (diagnoses.empty()) {
+    SuspectedWiring turned = order.value_or(SuspectedWiring{{}, kTurnedLeft});
+    turned.parts.push_back(currentSign());
+    diagnoses = confirmed(session, turned);
+  }
+  std::vector<Candidate> known;
+  if (order) {
+    known.push_back(order->parts);
+  }
+  known.emplace_back();
+  for (const Candidate& mistakes : known) {
     if (!diagnoses.empty()) {
-      return diagnoses;
+      break;
+    }
+    for (const SuspectedWiring& suspected : suspectedWiring(session, mistakes)) {
+      diagnoses = confirmed(session, suspected);
+      if (!diagnoses.empty()) {
+        break;
+      }
     }
   }
-  for (const SuspectedWiring& suspected : suspectedWiring(session)) {
-    std::vector<Diagnosis> diagnoses = confirmed(session, suspected);
-    if (!diagnoses.empty()) {
-      return diagnoses;
-    }
-  }
-  return {};
+  return diagnoses;
 }
 
 /// The mistakes of wiring that diagnoses of a motion name; of others none.
 Candidate namedMistakes(const CalibrationSession& session,
                         const std::vector<Diagnosis>& diagnoses) {
   Candidate all = motionMistakes(session.start().actuator);
-  if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
-    all.insert(all.end(), order->parts.begin(), order->parts.end());
+  const bool may_be_an_order =
+      std::any_of(diagnoses.begin(), diagnoses.end(), [](const Diagnosis& one) {
+        return one.cause == "coil_shift" || one.cause.rfind("coil_circle", 0) == 0;
+      });
+  if (may_be_an_order) {
+    if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
+      all.insert(all.end(), order->parts.begin(), order->parts.end());
+    }
   }
   Candidate named;
   for (const Diagnosis& diagnosis : diagnoses) {
@@ -264,11 +289,12 @@ std::optional<Redescription> redescribedMotion(const CalibrationSession& session
     return std::nullopt;
   }
   Redescription result{nominal, {}};
-  for (const Hypothesis& mistake : mistakes) {
-    if (mistake.redescribe) {
-      mistake.redescribe(result.actuator, mistake.start);
+  // Currents are corrected by one after the other; what they belong to, by the last one first.
+  for (auto mistake = mistakes.rbegin(); mistake != mistakes.rend(); ++mistake) {
+    if (mistake->redescribe) {
+      mistake->redescribe(result.actuator, mistake->start);
     } else {
-      result.beyond_description.push_back(mistake.cause);
+      result.beyond_description.push_back(mistake->cause);
     }
   }
   return result;

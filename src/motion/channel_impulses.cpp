@@ -81,7 +81,7 @@ void scaleRows(Eigen::Index per_window, Eigen::MatrixXd& all, Eigen::MatrixXd& b
 void takeOff(const Eigen::MatrixXd& by_movers,
              const Eigen::VectorXd& variances,
              Eigen::MatrixXd& columns) {
-  // Of the usual size of a value: what axes that are off leave.
+  // Of the usual size of a value; it matters where nothing else is known of the movers.
   constexpr double kNoise = 0.1;
   constexpr double kLeast = 1e-12;
   Eigen::MatrixXd information = by_movers.transpose() * by_movers;

@@ -6,6 +6,7 @@
 #include "joint_skew.hpp"
 #include "other_friction.hpp"
 #include "residual_probe.hpp"
+#include "spherical_actuator_calibration/base/cholesky.hpp"
 
 namespace sac {
 namespace {
@@ -96,6 +97,12 @@ void MotionProbe::addOrientations(const OrientationGroup& group, TrackerTerm& tr
   skews_.add(by_coordinates.topRows(rows), by_skews.topRows(rows), residual.head(rows));
 }
 
+/// Of what geometry tells, by its covariance.
+double distanceOf(const Eigen::VectorXd& bias, const Eigen::MatrixXd& covariance) {
+  const Cholesky factor(covariance);
+  return factor.isPositive() ? factor.half(bias).norm() : 0.0;
+}
+
 JointSkew skewOf(const ResidualProbe::Finding& finding,
                  const std::vector<Eigen::Index>& estimated,
                  const ParameterSpace& space,
@@ -106,7 +113,9 @@ JointSkew skewOf(const ResidualProbe::Finding& finding,
   }
   skew.value = finding.value;
   skew.covariance = finding.covariance;
+  std::vector<Eigen::Index> geometry;
   for (std::size_t n = 0; n < estimated.size() && estimated[n] < space.effect(); ++n) {
+    geometry.push_back(estimated[n]);
     const double variance = covariance(estimated[n], estimated[n]);
     const double shift =
         variance > 0.0 ? finding.bias[static_cast<Eigen::Index>(n)] / std::sqrt(variance) : 0.0;
@@ -115,6 +124,8 @@ JointSkew skewOf(const ResidualProbe::Finding& finding,
       skew.most_shifted = space.name(estimated[n]);
     }
   }
+  const auto count = static_cast<Eigen::Index>(geometry.size());
+  skew.distance = distanceOf(finding.bias.head(count), covariance(geometry, geometry));
   return skew;
 }
 

@@ -154,13 +154,14 @@ void calibrate(const Actuator& nominal,
               summary.held_out.probability);
   if (found.skew.isTold()) {
     const Eigen::Vector2d stddev = found.skew.covariance.diagonal().cwiseSqrt();
-    std::printf("skew %.6g %.3g %.6g %.3g shift %.3g %s\n",
+    std::printf("skew %.6g %.3g %.6g %.3g shift %.3g %s of %.3g\n",
                 found.skew.value[0],
                 stddev[0],
                 found.skew.value[1],
                 stddev[1],
                 found.skew.shift,
-                found.skew.most_shifted.c_str());
+                found.skew.most_shifted.c_str(),
+                found.skew.distance);
   }
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());

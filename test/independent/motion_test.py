@@ -254,6 +254,26 @@ class Motion(unittest.TestCase):
         # What is recorded of coil 3 flows in coil 9.
         self.assertEqual(causes, ["coil_circle:3:9:17", "coil_sign:1", "coil_sign:9", "coil_sign:21"])
 
+    def test_names_a_sign_of_all_beside_coils_that_are_exchanged(self):
+        def mistaken(currents):
+            currents[:, [2, 10]] = currents[:, [10, 2]]
+            return -currents
+
+        _, causes = self.diagnosed(mistaken)
+        self.assertEqual(causes, ["coil_swap:3:11", "current_sign"])
+
+    def test_names_a_shift_beside_coils_that_are_exchanged(self):
+        def mistaken(currents):
+            currents[:, [2, 10]] = currents[:, [10, 2]]
+            return np.roll(currents, -1, axis=1)  # what is recorded of coil 1 flows in coil 2
+
+        coils, causes = self.diagnosed(mistaken)
+        self.assertEqual(causes, ["coil_shift", "coil_swap:3:11"])
+        expected = self.unit.coils.copy()
+        expected[[2, 10]] = expected[[10, 2]]
+        apart = (np.array(coils) - np.roll(expected, -1, axis=0) + np.pi) % (2.0 * np.pi) - np.pi
+        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
+
     def test_names_layers_that_are_exchanged(self):
         coils, causes = self.diagnosed(lambda currents: np.roll(currents, 12, axis=1))
         self.assertEqual(causes, ["coil_shift"])

@@ -10,10 +10,11 @@ namespace sac {
 
 /// A motion as if it were not known through which coil the current of each channel flows: momentum
 /// balance of some 40 windows at the nominal axes, each value in units of its usual size. What
-/// inertia, loads and friction may explain is taken off.
+/// inertia, loads and friction may explain is taken off: where little is known of inertia, hardly
+/// any momentum is left, and the signs of all channels at once are not told.
 struct ChannelImpulses {
   std::size_t coils = 0;
-  Eigen::VectorXd momentum;  ///< that no current explains; N values, none: windows are too few
+  Eigen::VectorXd momentum;  ///< for currents to explain; N values, none: windows are too few
   /// N × coils², column channel · coils + coil: what the current of a channel explains if it flows
   /// through that coil.
   Eigen::MatrixXd through;

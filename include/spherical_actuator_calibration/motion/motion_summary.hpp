@@ -71,6 +71,8 @@ struct JointSkew {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both; zero: nothing is told
   std::string most_shifted;  ///< of the parameters of joints, poles and coils
   double shift = 0.0;        ///< of it, in its standard deviations
+  /// Of all of these together, in standard deviations, by their common covariance.
+  double distance = 0.0;
 
   bool isTold() const { return covariance(0, 0) > 0.0; }
 };
