@@ -112,6 +112,21 @@ void printParameters(const ParameterSpace& space, const Estimate& estimate) {
   }
 }
 
+void printSkew(const JointSkew& skew) {
+  if (!skew.isTold()) {
+    return;
+  }
+  const Eigen::Vector2d stddev = skew.covariance.diagonal().cwiseSqrt();
+  std::printf("skew %.6g %.3g %.6g %.3g shift %.3g %s of %.3g\n",
+              skew.value[0],
+              stddev[0],
+              skew.value[1],
+              stddev[1],
+              skew.shift,
+              skew.most_shifted.c_str(),
+              skew.distance);
+}
+
 void calibrate(const Actuator& nominal,
                const EffectSelection& effects,
                bool is_live,
@@ -152,17 +167,7 @@ void calibrate(const Actuator& nominal,
               summary.held_out.windows,
               summary.held_out.reduced_chi_square,
               summary.held_out.probability);
-  if (found.skew.isTold()) {
-    const Eigen::Vector2d stddev = found.skew.covariance.diagonal().cwiseSqrt();
-    std::printf("skew %.6g %.3g %.6g %.3g shift %.3g %s of %.3g\n",
-                found.skew.value[0],
-                stddev[0],
-                found.skew.value[1],
-                stddev[1],
-                found.skew.shift,
-                found.skew.most_shifted.c_str(),
-                found.skew.distance);
-  }
+  printSkew(found.skew);
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
   }
