@@ -10,6 +10,9 @@
 namespace sac {
 namespace {
 
+/// What motions have made; they are estimated from windows.
+constexpr char kMotionOrigin[] = "motion";
+
 std::string folderOf(const std::string& path) {
   const std::size_t end = path.find_last_of('/');
   if (end == std::string::npos || end == 0) {
@@ -34,7 +37,7 @@ std::string errorInWords(const msg::Revision& revision) {
   const ShownUnit unit = shownIn(revision.error_unit);
   return number("%.4g", unit.factor * revision.error_before) + " → " +
          withUnit("%.4g", unit.factor * revision.error_after, unit.name) + ", " +
-         counted(revision.samples_used, "sample");
+         counted(revision.samples_used, revision.origin == kMotionOrigin ? "window" : "sample");
 }
 
 }  // namespace

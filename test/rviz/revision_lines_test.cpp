@@ -34,6 +34,16 @@ TEST(RevisionLines, TellErrorsInTheUnitsOfTheOtherTables) {
   EXPECT_EQ(lines[0].date, "2026-03-01 10:20:30");
 }
 
+TEST(RevisionLines, CountWindowsOfAMotion) {
+  msg::Revision motion = revision(3, true);
+  motion.origin = "motion";
+  motion.error_before = 4.0;
+  motion.error_after = 1.0;
+  motion.error_unit = "1";
+  motion.samples_used = 591;
+  EXPECT_EQ(revisionLines({motion}, 3)[0].error, "4 → 1, 591 windows");
+}
+
 TEST(RevisionLines, BeginWithTheNewestAndNameOtherSessions) {
   msg::Revision old = revision(2, false);
   old.drift = "furthest";

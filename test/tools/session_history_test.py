@@ -30,7 +30,7 @@ class History(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def session(self, name, date, offset, serial="unit-7"):
+    def session(self, name, date, offset, serial="unit-7", origin="joint"):
         """A session that identified one offset [rad], known to 1 mrad."""
         path = self.folder / name
         with contextlib.closing(sqlite3.connect(path)) as database:
@@ -48,7 +48,7 @@ class History(unittest.TestCase):
                     [position, parameter, value, stddev, observable],
                 )
             database.execute("INSERT INTO revisions VALUES (0, ?, '', 'nominal', 'start', NULL, 0, NULL)", [date])
-            database.execute("INSERT INTO revisions VALUES (1, ?, '', 'identified', 'joint', 0, 0, 1)", [date])
+            database.execute("INSERT INTO revisions VALUES (1, ?, '', 'identified', ?, 0, 0, 1)", [date, origin])
             database.commit()
         return path
 
@@ -72,6 +72,10 @@ class History(unittest.TestCase):
         self.assertEqual(lines[1].split(), ["0", "2026-01-02T03:04:05Z", "start"])
         self.assertIn("joint", lines[2])
         self.assertIn("50 \u2192 2 mrad, 40 samples", lines[2])
+
+    def test_counts_windows_of_a_motion(self):
+        lines = self.lines([self.session("a.db", "2026-01-02T03:04:05Z", 0.1, origin="motion")])
+        self.assertIn("50 \u2192 2 mrad, 40 windows", lines[2])
 
     def test_tells_the_drift_in_the_order_of_dates(self):
         later = self.session("later.db", "2026-03-01T00:00:00Z", 0.1 + 5e-3)

@@ -47,7 +47,8 @@ def line_of(row):
     if row["before"] is None or row["after"] is None:
         return text.rstrip()
     unit = ERROR_UNITS.get(row["error_measure"], row["error_measure"] or "")
-    return f"{text}  {change_of(row['before'], row['after'], unit)}, {row['samples_used']} samples"
+    used = "windows" if row["origin"] == "motion" else "samples"  # a motion is estimated from windows
+    return f"{text}  {change_of(row['before'], row['after'], unit)}, {row['samples_used']} {used}"
 
 
 @dataclasses.dataclass(frozen=True)
