@@ -7,14 +7,13 @@
 namespace sac {
 namespace {
 
-/// A smaller step back is a late measurement, not another round.
-constexpr double kStepBack = 1.0;  // [s]
-
 Stamp stampOf(const AnyMeasurement& measurement) {
   return std::visit([](const auto& any) { return any.stamp; }, measurement);
 }
 
 }  // namespace
+
+StreamMerger::StreamMerger(double clock_reset) : clock_reset_(clock_reset) {}
 
 void StreamMerger::add(AnyMeasurement measurement, double now) {
   advance(now);
@@ -22,7 +21,7 @@ void StreamMerger::add(AnyMeasurement measurement, double now) {
   const Stamp stamp = stampOf(measurement);
   // An unstamped measurement tells nothing about its stream.
   if (stamp > 0) {
-    if (stream.last_arrival && secondsBetween(stamp, stream.last_stamp) > kStepBack) {
+    if (stream.last_arrival && secondsBetween(stamp, stream.last_stamp) >= clock_reset_) {
       ++stream.round;
     }
     stream.last_stamp = stamp;

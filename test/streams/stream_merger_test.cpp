@@ -12,6 +12,7 @@ namespace {
 
 constexpr Stamp kMillisecond = kSecond / 1000;
 constexpr Stamp kBegin = kNow;
+constexpr double kClockReset = 1.0;  // [s]
 
 JointMeasurement joint(Stamp stamp) {
   JointMeasurement measurement;
@@ -47,8 +48,8 @@ std::vector<Stamp> takenUntil(StreamMerger& merger, double begin, double end) {
 }
 
 /// Both streams came at the begin, so that both are waited for.
-StreamMerger mergerOfTwoStreams() {
-  StreamMerger merger;
+StreamMerger mergerOfTwoStreams(double clock_reset = kClockReset) {
+  StreamMerger merger(clock_reset);
   merger.add(joint(kBegin), 0.0);
   merger.add(torque(kBegin), 0.0);
   while (merger.nextAtOnce()) {
@@ -57,7 +58,7 @@ StreamMerger mergerOfTwoStreams() {
 }
 
 TEST(StreamMerger, WaitsForNoStreamThatNeverCame) {
-  StreamMerger merger;
+  StreamMerger merger(kClockReset);
   merger.add(joint(kBegin), 0.0);
   EXPECT_EQ(taken(merger, 0.0), (std::vector<Stamp>{0}));
 }
@@ -103,6 +104,20 @@ TEST(StreamMerger, KeepsTheRoundsOfALoopApart) {
   merger.add(torque(kBegin + 1 * kMillisecond), 0.03);
   merger.add(torque(kBegin + 3 * kMillisecond), 0.03);
   EXPECT_EQ(taken(merger, 0.03), (std::vector<Stamp>{5000, 5001, 1, 1, 2}));
+}
+
+TEST(StreamMerger, ARoundBeginsWhereTheClockCountsAsReset) {
+  for (const double clock_reset : {0.2, kClockReset}) {
+    StreamMerger merger = mergerOfTwoStreams(clock_reset);
+    merger.add(joint(kBegin + 500 * kMillisecond), 0.01);
+    merger.add(joint(kBegin + 1 * kMillisecond), 0.02);
+    merger.add(torque(kBegin + 502 * kMillisecond), 0.03);
+    merger.add(torque(kBegin + 2 * kMillisecond), 0.03);
+    const bool is_reset = clock_reset < 0.5;
+    EXPECT_EQ(taken(merger, 0.03),
+              is_reset ? (std::vector<Stamp>{500, 502, 1}) : (std::vector<Stamp>{500, 1}))
+        << clock_reset;
+  }
 }
 
 TEST(StreamMerger, OneStreamThatWasSetBackAloneDelaysNobodyForLong) {

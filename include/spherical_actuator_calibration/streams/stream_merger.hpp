@@ -29,6 +29,10 @@ class StreamMerger {
   static constexpr double kSilence = 1.0;
   static constexpr double kLongestStep = 0.05;  ///< [s]
 
+  /// A step back of stamps by `clock_reset` [s] or more begins another round; a smaller one is a
+  /// late measurement: as in SampleBuilderOptions.
+  explicit StreamMerger(double clock_reset);
+
   void add(AnyMeasurement measurement, double now);
 
   /// The next measurement in order; nothing while an older one may still arrive.
@@ -58,6 +62,7 @@ class StreamMerger {
   bool patienceIsOver() const;
   void forgetRounds();
 
+  double clock_reset_;
   std::array<Stream, std::variant_size_v<AnyMeasurement>> streams_;
   std::optional<double> last_now_;
   double clock_ = 0.0;  ///< time in which measurements could arrive [s]

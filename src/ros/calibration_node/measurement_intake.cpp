@@ -35,6 +35,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
     : has_joints_(nominal.has_joints),
+      merger_(config.samples.clock_reset),
       builder_(config.samples, modelledCoils(nominal), nominal.has_joints),
       motion_(modelledCoils(nominal)),
       slicer_(modelledCoils(nominal), MotionOptions()),
