@@ -120,8 +120,7 @@ std::string verdict(const HeldOutValidation& validation) {
                    validation.unjudged_torques);
   }
   if (validation.repeated > 0) {
-    text += format(" %zu measurements that repeat others bit for bit are not judged,",
-                   validation.repeated);
+    text += format(" %zu measurements that repeat others are not judged,", validation.repeated);
   }
   if (validation.outliers > 0) {
     text += format(" %zu outliers, no more than among the others, are not judged,",

@@ -243,12 +243,13 @@ std::string repeatedInWords(const std::vector<Sample>& samples,
       }
     }
     if (count > 0) {
-      text += format(" %zu of %zu %s repeat an earlier sample bit for bit (sample %s%s).",
-                     count,
-                     countOf(observations, quantity),
-                     nameOf(quantity),
-                     pairs.c_str(),
-                     count > kMostNamed ? ", …" : "");
+      text += format(
+          " %zu of %zu %s repeat an earlier sample, to a thousandth of the noise (sample %s%s).",
+          count,
+          countOf(observations, quantity),
+          nameOf(quantity),
+          pairs.c_str(),
+          count > kMostNamed ? ", …" : "");
     }
   }
   return text.empty() ? text
@@ -277,7 +278,7 @@ std::vector<std::string> stillSensorsInWords(const std::vector<Sample>& samples,
     const std::size_t all = countOf(observations, quantity);
     if (still >= kLeast && kPart * still > all) {
       words.push_back(
-          format("%zu of %zu %s are those of another pose or current, bit for bit: their sensor "
+          format("%zu of %zu %s are those of another pose or current: their sensor "
                  "stood still; look at its driver and its link, and measure again.",
                  still,
                  all,

@@ -182,7 +182,7 @@ KINDS = {
     "outliers_5": (outliers, 0.05),
     "outliers_10": (outliers, 0.1),
 }
-WORDS = ("bit for bit", "not modelled")
+WORDS = ("repeat an earlier sample", "not modelled")
 
 
 def session(unit, kind, seed):

@@ -23,7 +23,7 @@ class SmallEffects(unittest.TestCase):
         self.assertEqual(result.found, len(SESSIONS), result.grades)
         self.assertGreaterEqual(result.good, len(SESSIONS) - 2, result.blamed)
         self.assertGreater(result.coverage(), 0.90)
-        self.assertTrue(all("bit for bit" in line for line in result.blamed), result.blamed)
+        self.assertTrue(all("repeat an earlier sample" in line for line in result.blamed), result.blamed)
 
     def test_sound_sessions_are_not_blamed(self):
         result = self.study("sound")

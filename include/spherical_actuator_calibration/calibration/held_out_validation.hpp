@@ -45,8 +45,8 @@ struct HeldOutValidation {
   /// Torques of coils that are not identified, or to more than 10 mrad only: too far from linear
   /// in such uncertainties to be judged.
   std::size_t unjudged_torques = 0;
-  /// That repeat another measurement bit for bit, in use or held out: they tell nothing, and have
-  /// no residual.
+  /// That repeat another measurement, in use or held out, to a thousandth of the noise: they tell
+  /// nothing, and have no residual.
   std::size_t repeated = 0;
   /// That stand out by themselves, where they are no more than among the samples in use: they have
   /// a residual that is `rejected`, and no part in the test.
