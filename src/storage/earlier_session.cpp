@@ -12,6 +12,7 @@
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Exception.h>
 
+#include "busy_timeout.hpp"
 #include "files_beside.hpp"
 #include "row_access.hpp"
 #include "sample_table.hpp"
@@ -36,7 +37,6 @@ constexpr std::size_t kMostPoses = 10'000;
 
 /// One state of the file, in memory: who works with it waits for no more than this.
 void copy(const std::string& path, SQLite::Database& memory) {
-  constexpr int kBusyTimeoutMilliseconds = 2000;
   try {
     SQLite::Database file(path, SQLite::OPEN_READONLY, kBusyTimeoutMilliseconds);
     requireFilesBeside(path, sqlite3_db_filename(file.getHandle(), "main"), kEarlierNotRead);

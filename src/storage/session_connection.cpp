@@ -5,6 +5,7 @@
 
 #include <SQLiteCpp/Transaction.h>
 
+#include "busy_timeout.hpp"
 #include "files_beside.hpp"
 #include "row_access.hpp"
 #include "session_schema.hpp"
@@ -15,9 +16,6 @@
 
 namespace sac {
 namespace {
-
-/// How long another program, such as the sqlite3 shell, may hold up a transaction.
-constexpr int kBusyTimeoutMilliseconds = 2000;
 
 constexpr char kOpenFailure[] = "the session database cannot be opened";
 
