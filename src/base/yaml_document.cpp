@@ -14,11 +14,9 @@
 namespace sac {
 namespace {
 
-constexpr std::size_t kDeepest = 64;
-constexpr std::size_t kMostNodes = 1'000'000;
 constexpr std::size_t kMostKeys = 100'000;
 constexpr std::size_t kMostOpen = 1000;
-constexpr std::size_t kMostSigns = 2 * kMostNodes;
+constexpr std::size_t kMostSigns = 2 * kMostYamlNodes;
 
 /// Listens to the parser and counts, so that nothing is built of a text that is refused.
 class Census : public YAML::EventHandler {
@@ -78,9 +76,9 @@ class Census : public YAML::EventHandler {
   void begin(const YAML::Mark& mark, YAML::anchor_t anchor, bool is_map) {
     countKey(mark);
     open_.push_back({anchor, nodes_, is_map});
-    if (open_.size() > kDeepest) {
+    if (open_.size() > kDeepestYaml) {
       throw YamlDefect(mark.line + 1,
-                       "maps and lists stand more than " + std::to_string(kDeepest) +
+                       "maps and lists stand more than " + std::to_string(kDeepestYaml) +
                            " deep within each other.");
     }
     countNodes(mark, 1);
@@ -114,9 +112,9 @@ class Census : public YAML::EventHandler {
       throw YamlDefect(mark.line + 1, "only one YAML document is allowed in a file.");
     }
     nodes_ += nodes;
-    if (nodes_ > kMostNodes) {
+    if (nodes_ > kMostYamlNodes) {
       throw YamlDefect(mark.line + 1,
-                       "more than " + std::to_string(kMostNodes) +
+                       "more than " + std::to_string(kMostYamlNodes) +
                            " values, those of aliases included, are not read.");
     }
   }

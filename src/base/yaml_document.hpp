@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -14,9 +15,13 @@ struct YamlDefect : std::runtime_error {
   int line;  ///< counts from 1
 };
 
-/// The one document of a text; null when there is none. Its size is known before it is built: maps
-/// and lists within each other are at most 64 deep, and it has at most a million nodes, where an
-/// alias counts as much as what it stands for. Throws YamlDefect.
+/// Maps and lists within each other, at most.
+inline constexpr std::size_t kDeepestYaml = 64;
+/// Of a document, at most; an alias counts as much as what it stands for.
+inline constexpr std::size_t kMostYamlNodes = 1'000'000;
+
+/// The one document of a text; null when there is none. Its size is known before it is built.
+/// Throws YamlDefect.
 YAML::Node parseSingleDocument(const std::string& text);
 
 }  // namespace sac

@@ -12,10 +12,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "announced_lengths.hpp"
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
 #include "spherical_actuator_calibration/actuator/usual_currents.hpp"
+#include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -24,6 +26,7 @@
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "spherical_actuator_calibration/study/model_error.hpp"
+#include "yaml_document.hpp"
 
 namespace sac {
 namespace {
@@ -213,6 +216,20 @@ void tellDefaults() {
   tell("usual_current", kUsualTotalCurrent, std::string("total"));
 }
 
+/// Of what comes from outside.
+void tellLimits() {
+  const auto say = [](const char* name, std::size_t most) {
+    tell("limit", static_cast<double>(most), std::string(name));
+  };
+  say("file", kLargestTextFile);
+  say("description", kLargestDescription);
+  say("configuration", kLargestConfiguration);
+  say("depth", kDeepestYaml);
+  say("nodes", kMostYamlNodes);
+  say("message", kLongestMessage);
+  say("header", kLongestHeader);
+}
+
 }  // namespace
 }  // namespace sac
 
@@ -227,5 +244,6 @@ int main(int argc, char** argv) {
   sac::tellNames();
   sac::tellDrawings(argv[1]);
   sac::tellDefaults();
+  sac::tellLimits();
   return 0;
 }

@@ -1,17 +1,19 @@
 #!/usr/bin/python3
 """Rules that programs in Python have beside the core: each answers as the core does (shared_rules_main.cpp)."""
 
+import dataclasses
 import importlib.machinery
 import importlib.util
 import json
 import os
 import pathlib
+import re
 import subprocess
 import unittest
 
 import numpy
 import yaml
-from spherical_actuator_calibration import rotor_readings
+from spherical_actuator_calibration import bounded_links, rotor_readings, text_files
 from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
 from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
 from spherical_actuator_calibration.session_guide.progress import Pose, are_carried, excited_coils
@@ -92,6 +94,30 @@ class SharedRules(unittest.TestCase):
 
     def test_defaults(self):
         self.hold("default", lambda name: Options().excitation if name == "current" else getattr(Options(), name))
+
+    def test_limits_of_what_comes_from_outside(self):
+        limits = {
+            "file": text_files.LARGEST,
+            "description": text_files.LARGEST_DESCRIPTION,
+            "configuration": text_files.LARGEST_CONFIGURATION,
+            "depth": text_files.DEEPEST,
+            "nodes": text_files.MOST_NODES,
+            "message": bounded_links.LONGEST_MESSAGE,
+            "header": bounded_links.LONGEST_HEADER,
+        }
+        self.hold("limit", limits.get)
+
+    def test_actions_name_the_defaults_of_the_options(self):
+        named = {}
+        for action, of_field in {"Session": {}, "Plan": {}, "Capture": {"duration": "dwell"}}.items():
+            goal = (SOURCE / "action" / f"{action}.action").read_text().split("---")[0]
+            for field, told in re.findall(r"^\w+ (\w+) .*\b0: ([\d.]+)", goal, re.MULTILINE):
+                named[action, field] = (float(told), of_field.get(field, field))
+        self.assertEqual(len(named), 13, named)
+        for (action, field), (told, option) in named.items():
+            default = Options(drive_fixture=True)
+            values = {**dataclasses.asdict(default), "current": default.excitation, "settling": default.rest}
+            self.assertEqual(told, values[option], f"{field} of {action}.action")
 
     def test_usual_currents(self):
         controller = yaml.safe_load((SOURCE / "config" / "orientation_controller.yaml").read_text())

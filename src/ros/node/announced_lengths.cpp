@@ -7,6 +7,8 @@
 ///
 /// Linked into every node, which must export them (ENABLE_EXPORTS).
 
+#include "announced_lengths.hpp"
+
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,10 +24,6 @@
 #include <dlfcn.h>
 
 namespace {
-
-/// The longest message of a laboratory, a report of 400 coils, has less than 1 MB.
-constexpr std::uint32_t kLongestMessage = 16U << 20U;  // [byte]
-constexpr std::uint32_t kLongestHeader = 1U << 20U;    // [byte]
 
 constexpr double kWarningPeriod = 2.0;  // [s]
 
@@ -81,7 +79,7 @@ void Connection::onHeaderLengthRead(const ConnectionPtr& connection,
                                     std::uint32_t size,
                                     bool success) {
   static const auto next = original<Connection>(&Connection::onHeaderLengthRead);
-  if (success && isTooLong(buffer, 0, kLongestHeader, "header")) {
+  if (success && isTooLong(buffer, 0, sac::kLongestHeader, "header")) {
     drop(HeaderError);
     return;
   }
@@ -94,7 +92,7 @@ void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
                                              bool success) {
   static const auto next =
       original<TransportPublisherLink>(&TransportPublisherLink::onMessageLength);
-  if (success && isTooLong(buffer, 0, kLongestMessage, "message")) {
+  if (success && isTooLong(buffer, 0, sac::kLongestMessage, "message")) {
     drop();
     return;
   }
@@ -106,7 +104,7 @@ void ServiceClientLink::onRequestLength(const ConnectionPtr& connection,
                                         std::uint32_t size,
                                         bool success) {
   static const auto next = original<ServiceClientLink>(&ServiceClientLink::onRequestLength);
-  if (success && isTooLong(buffer, 0, kLongestMessage, "request")) {
+  if (success && isTooLong(buffer, 0, sac::kLongestMessage, "request")) {
     connection->drop(Connection::Destructing);
     return;
   }
@@ -119,7 +117,7 @@ void ServiceServerLink::onResponseOkAndLength(const ConnectionPtr& connection,
                                               bool success) {
   static const auto next = original<ServiceServerLink>(&ServiceServerLink::onResponseOkAndLength);
   // The first byte says whether the service has failed.
-  if (success && isTooLong(buffer, 1, kLongestMessage, "response")) {
+  if (success && isTooLong(buffer, 1, sac::kLongestMessage, "response")) {
     connection->drop(Connection::Destructing);
     return;
   }
