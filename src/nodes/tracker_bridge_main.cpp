@@ -1,4 +1,5 @@
 #include "spherical_actuator_calibration/ros/conversion/description_parameter.hpp"
+#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/devices/tracker_bridge_node.hpp"
 #include "spherical_actuator_calibration/ros/node/node_main.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
@@ -12,7 +13,7 @@ int main(int argc, char** argv) {
                             node,
                             private_node,
                             sac::loadDescriptionParameter(node).actuator,
-                            sac::loadTrackerBridgeOptions(private_node));
+                            sac::readTrackerBridgeOptions(sac::privateParameters(private_node)));
                         sac::spinUntilTermination();
                       });
 }

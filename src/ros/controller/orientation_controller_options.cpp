@@ -1,8 +1,6 @@
 #include "spherical_actuator_calibration/ros/controller/orientation_controller_options.hpp"
 
 #include "spherical_actuator_calibration/actuator/rotor_mass.hpp"
-#include "spherical_actuator_calibration/base/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
@@ -47,9 +45,8 @@ double readSquareCurrentLimit(const YamlMap& power) {
 
 }  // namespace
 
-OrientationControllerNodeOptions loadOrientationControllerOptions(
-    const ros::NodeHandle& private_node, const Actuator& design) {
-  const YamlMap map = privateParameters(private_node);
+OrientationControllerNodeOptions readOrientationControllerOptions(const YamlMap& map,
+                                                                  const Actuator& design) {
   OrientationControllerNodeOptions options;
   OrientationControllerOptions& controller = options.controller;
   const auto positive = [](const YamlMap& from, const char* key, const char* unit, double& value) {

@@ -1,7 +1,5 @@
 #include "spherical_actuator_calibration/ros/devices/tracker_bridge_options.hpp"
 
-#include "spherical_actuator_calibration/base/yaml_reader.hpp"
-#include "spherical_actuator_calibration/ros/conversion/parameter_map.hpp"
 #include "spherical_actuator_calibration/ros/node/node_diagnostics.hpp"
 
 namespace sac {
@@ -49,8 +47,7 @@ StreamLimits readLimits(const YamlMap& map, StreamLimits limits) {
 
 }  // namespace
 
-TrackerBridgeOptions loadTrackerBridgeOptions(const ros::NodeHandle& private_node) {
-  const YamlMap map = privateParameters(private_node);
+TrackerBridgeOptions readTrackerBridgeOptions(const YamlMap& map) {
   TrackerBridgeOptions options;
   if (map.has("frames")) {
     options.frames = readFrames(map.map("frames"));

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <ros/node_handle.h>
-
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/control/orientation_controller.hpp"
 
 namespace sac {
@@ -18,7 +17,7 @@ struct OrientationControllerNodeOptions {
 /// `dimensions` of config/actuator_dimensions.yaml). Where they have no inertia, it is that of the
 /// described rotor of these dimensions. Throws ConfigError that names the key for anything unknown,
 /// of the wrong type or out of range.
-OrientationControllerNodeOptions loadOrientationControllerOptions(
-    const ros::NodeHandle& private_node, const Actuator& design);
+OrientationControllerNodeOptions readOrientationControllerOptions(const YamlMap& map,
+                                                                  const Actuator& design);
 
 }  // namespace sac

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <ros/node_handle.h>
-
+#include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/ros/node/stream_monitor.hpp"
 #include "spherical_actuator_calibration/streams/measurement_bridge.hpp"
 
@@ -29,6 +28,6 @@ struct TrackerBridgeOptions {
 
 /// Reads the private parameters of a node. Throws ConfigError that names the key for anything
 /// unknown, of the wrong type or out of range.
-TrackerBridgeOptions loadTrackerBridgeOptions(const ros::NodeHandle& private_node);
+TrackerBridgeOptions readTrackerBridgeOptions(const YamlMap& map);
 
 }  // namespace sac
