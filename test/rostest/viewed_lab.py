@@ -14,6 +14,7 @@ from launch_client import launch_file
 
 SIZE = (1280, 720)
 FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
+FIRST_DISPLAY, DISPLAYS = 1000, 50_000
 PAUSE = 1.0  # [s] between two presses of a key that did nothing: buttons are disabled while a service runs
 
 
@@ -21,15 +22,17 @@ class Screen:
     """A virtual display, and pictures of it."""
 
     def __init__(self):
+        # Two servers that look for a free number at once may both find the same, and one of them ends.
+        number = FIRST_DISPLAY + os.getpid() % DISPLAYS
         read, write = os.pipe()
         self._server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
+            ["Xvfb", f":{number}", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
             pass_fds=(write,),
             stderr=subprocess.DEVNULL,
         )
         os.close(write)
-        with os.fdopen(read) as number:
-            self.display = ":" + number.readline().strip()
+        with os.fdopen(read) as ready:
+            self.display = ":" + ready.readline().strip()
 
     def pixels(self):
         """Red, green and blue of every pixel."""
