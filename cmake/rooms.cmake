@@ -147,7 +147,7 @@ endfunction()
 # Tests of a room, in one program: add_room_tests(<room> SOURCES files of test/<room>... LIBRARIES libraries...)
 # Internal headers of the room are found by their name, shipped files by support/source_dir.hpp.
 # NUMERIC: the tests of this filter run a second time, with the mathematics that the C library has for processors
-# without fused multiply-add: last digits differ there. Trials by the hundred need not.
+# without fused multiply-add: last digits differ there. Trials by the hundred need not, nor what tells gross mistakes.
 function(add_room_tests room)
   if(NOT CATKIN_ENABLE_TESTING)
     return()

@@ -2,27 +2,19 @@
 """What calibrate_by_motion plans, carries out and calibrates, and with which options; the programs it starts are told
 only."""
 
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import tempfile
 import unittest
 from unittest import mock
 
+from program_module import loaded
+
 LOST = 3  # status of run_motion
 COIL = {"polar": 0.2, "azimuth": 0.0}
 DRAWING = {"actuator": {"joints": [], "coils": [COIL]}}
 CALIBRATED = {"actuator": {"joints": [], "coils": [{**COIL, "stddev": {"polar": 1e-5, "azimuth": 1e-5}}]}}
 SOURCE = pathlib.Path(os.environ["SOURCE"])
-
-
-def loaded():
-    """The program as a module."""
-    loader = importlib.machinery.SourceFileLoader("calibrate_by_motion", str(SOURCE / "scripts" / "calibrate_by_motion"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
-    loader.exec_module(module)
-    return module
 
 
 class Recording:
@@ -63,7 +55,7 @@ class CalibrateByMotion(unittest.TestCase):
         self.is_sound = True
         self.tells_nothing = False  # the recordings, of the parameters
         self.gives_parameters = True  # beside a report
-        self.module = loaded()
+        self.module = loaded("calibrate_by_motion")
         self.recording = self.module.Recording
         for name, fake in (("program", str), ("status_of", self.status_of), ("Recording", Recording)):
             patch = mock.patch.object(self.module, name, fake)

@@ -12,11 +12,13 @@ import unittest
 import unittest.mock
 
 import yaml
+from program_module import loaded
 from report_page_case import HOSTILE, SOURCE, actuator_file, calibrated, program, read, run
 
 
 # Style, place, turn and content of a text in an SVG of matplotlib.
 TEXT = re.compile(r'<text style="([^"]*)" x="([0-9.-]+)" y="([0-9.-]+)" transform="rotate\((-?\d+)[^"]*"[^>]*>([^<]*)')
+RENDER_REPORT = loaded("render_report")
 CHARACTER = 0.55  # of its size is what a character is wide on average
 
 
@@ -80,9 +82,9 @@ class ReportPage(unittest.TestCase):
         path = os.path.join(self.folder.name, name)
         with open(path + ".yaml", "w", encoding="utf-8") as file:
             yaml.safe_dump({"calibration_report": figures}, file, allow_unicode=True)
-        outcome = run(program("render_report"), path + ".yaml", path + ".html")
-        self.assertEqual(outcome.returncode, 0, outcome.stderr)
-        return Page(read(path + ".html"))
+        previous = RENDER_REPORT.previous_report(path + ".yaml")
+        reports = [RENDER_REPORT.read_report(file) if file else None for file in (path + ".yaml", previous)]
+        return Page(RENDER_REPORT.render(*reports))
 
     def test_calibrate_bag_names_it(self):
         self.assertIn(self.outcome.returncode, (0, 1), self.outcome.stderr)

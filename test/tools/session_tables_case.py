@@ -1,7 +1,6 @@
 """Folders of tables and recordings for the tests of import_csv and export_session."""
 
 import contextlib
-import importlib.machinery
 import io
 import os
 import pathlib
@@ -15,6 +14,7 @@ from unittest import mock
 
 import rosbag
 import yaml
+from program_module import loaded
 
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 CALIBRATE_BAG = os.path.join(os.environ["PROGRAMS"], "calibrate_bag")
@@ -28,9 +28,7 @@ def run(program, *arguments):
 
 def call(program, *arguments):
     """The same within this process, which is quicker."""
-    loader = importlib.machinery.SourceFileLoader(program, str(SOURCE / "scripts" / program))
-    module = types.ModuleType(program)
-    loader.exec_module(module)
+    module = loaded(program)
     out, errors = io.StringIO(), io.StringIO()
     with mock.patch.object(sys, "argv", [program, *map(str, arguments)]):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):

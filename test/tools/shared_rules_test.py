@@ -2,8 +2,6 @@
 """Rules that programs in Python have beside the core: each answers as the core does (shared_rules_main.cpp)."""
 
 import dataclasses
-import importlib.machinery
-import importlib.util
 import json
 import os
 import pathlib
@@ -13,6 +11,7 @@ import unittest
 
 import numpy
 import yaml
+from program_module import loaded
 from spherical_actuator_calibration import bounded_links, rotor_readings, text_files
 from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
 from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
@@ -23,15 +22,6 @@ from spherical_actuator_calibration.unit_quaternion import normalised
 
 EXACT = 1e-12
 SOURCE = pathlib.Path(os.environ["SOURCE"])
-
-
-def program(name):
-    """A program of scripts/ as a module."""
-    path = SOURCE / "scripts" / name
-    loader = importlib.machinery.SourceFileLoader(name, str(path))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
-    loader.exec_module(module)
-    return module
 
 
 class SharedRules(unittest.TestCase):
@@ -88,7 +78,7 @@ class SharedRules(unittest.TestCase):
         self.hold("error_unit", ERROR_UNITS.get)
 
     def test_what_is_a_drawing(self):
-        is_as_drawn = program("calibrate_by_motion").is_as_drawn
+        is_as_drawn = loaded("calibrate_by_motion").is_as_drawn
         self.hold("is_as_drawn", lambda text: is_as_drawn(yaml.safe_load(text)))
         self.assertIn(False, [answer for _, answer in self.cases["is_as_drawn"]])
 
