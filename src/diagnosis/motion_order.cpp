@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coil_order.hpp"
+#include "spherical_actuator_calibration/motion/delay_range.hpp"
 #include "spherical_actuator_calibration/motion/motion_excerpt.hpp"
 #include "torque_hypotheses.hpp"
 #include "wiring_problem.hpp"
@@ -55,10 +56,8 @@ Candidate mistakesOf(const CoilOrder& order) {
 
 }  // namespace
 
-std::optional<SuspectedWiring> suspectedOrder(const CalibrationSession& session) {
+std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
   constexpr double kExcerpt = 30.0;  // [s]
-  constexpr double kGrid = 0.01;     // [s]
-  constexpr int kReach = 6;
   // A coil that is turned leaves a fifth of the misfit, an exchange of two a third at most.
   constexpr double kMostLeft = 0.75;
   // Memory grows with their square, time by more.
@@ -70,8 +69,9 @@ std::optional<SuspectedWiring> suspectedOrder(const CalibrationSession& session)
   const WiringProblem problem(session.start().actuator, excerpt, session.config());
   std::optional<CoilOrder> best;
   double described = std::numeric_limits<double>::infinity();
-  for (int n = -kReach; n <= kReach; ++n) {
-    const ChannelImpulses impulses = channelImpulses(problem.get(), kGrid * n);
+  MotionOrder result;
+  for (const double delay : DelayRange().delays()) {
+    const ChannelImpulses impulses = channelImpulses(problem.get(), delay);
     if (impulses.momentum.size() == 0) {
       return std::nullopt;
     }
@@ -79,12 +79,13 @@ std::optional<SuspectedWiring> suspectedOrder(const CalibrationSession& session)
     CoilOrder order = bestCoilOrder(impulses);
     if (!best || order.left < best->left) {
       best = std::move(order);
+      result.current_delay = delay;
     }
   }
-  if (best->mistakes() == 0 || !(best->left < kMostLeft * described)) {
-    return std::nullopt;
+  if (best->mistakes() > 0 && best->left < kMostLeft * described) {
+    result.mistakes = SuspectedWiring{mistakesOf(*best), best->left / described};
   }
-  return SuspectedWiring{mistakesOf(*best), best->left / described};
+  return result;
 }
 
 }  // namespace sac

@@ -6,11 +6,18 @@
 
 namespace sac {
 
-/// The order and signs of coils, and those that are dead, that explain the motion of a session
-/// best, however many are not as described; nothing: as it is described, it is explained as well,
-/// or there are more than 64 coils. Where inertia is free, all signs at once are told by its sign
-/// alone: those that are found are against that of most. By one evaluation of the motion for each
-/// of some delays of the currents. Precondition: the session has a motion.
-std::optional<SuspectedWiring> suspectedOrder(const CalibrationSession& session);
+/// What explains a motion best of all that currents may do through coils.
+struct MotionOrder {
+  /// The order and signs of coils, and those that are dead, however many are not as described;
+  /// nothing: as it is described, the motion is explained as well.
+  std::optional<SuspectedWiring> mistakes;
+  double current_delay = 0.0;  ///< with which, to 10 ms [s]
+};
+
+/// Of the motion of a session; nothing where it has too few windows, or more than 64 coils. Where
+/// inertia is free, all signs at once are told by its sign alone: those that are found are against
+/// that of most. By one evaluation of the motion for each of some delays of the currents.
+/// Precondition: the session has a motion.
+std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session);
 
 }  // namespace sac

@@ -21,10 +21,11 @@ namespace {
 double misfitWithout(const CalibrationSession& session,
                      const MotionRecording& excerpt,
                      const Candidate& candidate,
-                     double variance) {
+                     double variance,
+                     const DelayRange& delays) {
   const CorrectedMotion motion = correctedMotion(session.start().actuator, excerpt, candidate);
   const WiringProblem problem(motion.actuator, motion.recording, session.config());
-  return roughMisfit(problem.get(), variance);
+  return roughMisfit(problem.get(), variance, delays);
 }
 
 /// Mistakes of one coil or pole, or of all currents. A factor on all of them is sought coarsely:
@@ -102,19 +103,21 @@ std::vector<Candidate> both(const Candidate& first, const std::vector<Candidate>
 }  // namespace
 
 std::vector<SuspectedWiring> suspectedWiring(const CalibrationSession& session,
-                                             const Candidate& known) {
+                                             const Candidate& known,
+                                             const DelayRange& delays) {
   constexpr std::size_t kPromising = 8;
   constexpr std::size_t kMostTried = 2;
   constexpr double kExcerpt = 30.0;  // [s]
   const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
-  const double unchanged = misfitWithout(session, excerpt, known, 0.0);
+  const double unchanged = misfitWithout(session, excerpt, known, 0.0, delays);
   if (!(unchanged > 0.0)) {
     return {};
   }
   std::vector<SuspectedWiring> all;
   const auto rank = [&](const std::vector<Candidate>& candidates) {
     for (const Candidate& candidate : candidates) {
-      const double left = misfitWithout(session, excerpt, beside(known, candidate), unchanged);
+      const double left =
+          misfitWithout(session, excerpt, beside(known, candidate), unchanged, delays);
       all.push_back({candidate, left / unchanged});
     }
     std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {

@@ -152,7 +152,8 @@ std::vector<Diagnosis> confirmed(const CalibrationSession& session,
 /// however many are beside their places; what else there is, alone or beside them, takes a step for
 /// each.
 std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& session) {
-  const std::optional<SuspectedWiring> order = suspectedOrder(session);
+  const std::optional<MotionOrder> found = orderOfMotion(session);
+  const std::optional<SuspectedWiring> order = found ? found->mistakes : std::nullopt;
   std::vector<Diagnosis> diagnoses;
   if (order) {
     diagnoses = confirmed(session, *order);
@@ -167,11 +168,13 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
     known.push_back(order->parts);
   }
   known.emplace_back();
+  const DelayRange delays =
+      found ? DelayRange{found->current_delay, DelayRange::kStep} : DelayRange();
   for (const Candidate& mistakes : known) {
     if (!diagnoses.empty()) {
       break;
     }
-    for (const SuspectedWiring& suspected : suspectedWiring(session, mistakes)) {
+    for (const SuspectedWiring& suspected : suspectedWiring(session, mistakes, delays)) {
       diagnoses = confirmed(session, suspected);
       if (!diagnoses.empty()) {
         break;
@@ -190,8 +193,9 @@ Candidate namedMistakes(const CalibrationSession& session,
         return one.cause == "coil_shift" || one.cause.rfind("coil_circle", 0) == 0;
       });
   if (may_be_an_order) {
-    if (const std::optional<SuspectedWiring> order = suspectedOrder(session)) {
-      all.insert(all.end(), order->parts.begin(), order->parts.end());
+    const std::optional<MotionOrder> order = orderOfMotion(session);
+    if (order && order->mistakes) {
+      all.insert(all.end(), order->mistakes->parts.begin(), order->mistakes->parts.end());
     }
   }
   Candidate named;

@@ -1,7 +1,6 @@
 #include "delay_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -10,10 +9,9 @@
 namespace sac {
 
 DelayedStep searchDelay(const MotionProblem& problem,
-                        const MotionOptions& options,
+                        const DelayRange& range,
                         const Eigen::VectorXd& loose,
                         MotionTerms& terms) {
-  constexpr double kGrid = 0.01;  // [s]
   constexpr std::size_t kEnoughWindows = 30;
   const Eigen::Index place = terms.places().current_delay;
   const ParameterSpace& space = problem.model->space();
@@ -26,12 +24,10 @@ DelayedStep searchDelay(const MotionProblem& problem,
   const Eigen::VectorXd held = loose(others).cwiseAbs2().cwiseInverse();
   DelayedStep best{0.0, problem.prior.x};
   double least = std::numeric_limits<double>::infinity();
-  const int reach =
-      place < 0 ? 0 : static_cast<int>(std::floor(options.largest_delay / kGrid + 1e-9));
-  for (int n = -reach; n <= reach; ++n) {
+  for (const double delay : place < 0 ? std::vector<double>{0.0} : range.delays()) {
     Eigen::VectorXd x = problem.prior.x;
     if (place >= 0) {
-      x[place] = kGrid * n / space.effects().scale(place - space.effect());
+      x[place] = delay / space.effects().scale(place - space.effect());
     }
     terms.linearize(x, sparse);
     const InformationSum sum = terms.balance(x);

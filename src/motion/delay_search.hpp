@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "motion_terms.hpp"
-#include "spherical_actuator_calibration/motion/motion_options.hpp"
+#include "spherical_actuator_calibration/motion/delay_range.hpp"
 #include "spherical_actuator_calibration/motion/motion_problem.hpp"
 
 namespace sac {
@@ -19,7 +19,7 @@ struct DelayedStep {
 /// misfit after one step, by some 30 of the windows and without the tracker. `loose`: how far each
 /// coordinate may go, P standard deviations. Of a model without that delay: at the prior's.
 DelayedStep searchDelay(const MotionProblem& problem,
-                        const MotionOptions& options,
+                        const DelayRange& range,
                         const Eigen::VectorXd& loose,
                         MotionTerms& terms);
 

@@ -231,7 +231,8 @@ void MotionDescent::solveCoarsely() {
   order.balance.stride = terms_.coarseStride();
   if (terms_.places().current_delay >= 0) {
     const Eigen::VectorXd loose = Eigen::VectorXd::Constant(x_.size(), kLoose);
-    x_[terms_.places().current_delay] = searchDelay(problem_, options_, loose, terms_).delay;
+    x_[terms_.places().current_delay] =
+        searchDelay(problem_, {0.0, options_.largest_delay}, loose, terms_).delay;
   }
   order.every = std::max<std::size_t>(1, terms_.windowCount() / kEnough);
   linearizeAt(x_, order);

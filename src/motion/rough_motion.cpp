@@ -6,7 +6,7 @@
 
 namespace sac {
 
-double roughMisfit(const MotionProblem& problem, double variance) {
+double roughMisfit(const MotionProblem& problem, double variance, const DelayRange& range) {
   constexpr double kNoOutliers = 1e12;
   constexpr int kMostScalings = 3;
   MotionOptions options;
@@ -26,7 +26,7 @@ double roughMisfit(const MotionProblem& problem, double variance) {
   double used = variance > 0.0 ? variance : 1e4;
   double left = 0.0;
   for (int n = 0; n < (variance > 0.0 ? 1 : kMostScalings); ++n) {
-    left = searchDelay(problem, options, loose / std::sqrt(used), terms).left / values;
+    left = searchDelay(problem, range, loose / std::sqrt(used), terms).left / values;
     used = left;
   }
   return left;
