@@ -137,7 +137,8 @@ ChannelImpulses channelImpulses(const MotionProblem& problem, double current_del
     by_movers.middleRows(n * values, values) = term.balance.jacobian(Eigen::all, movers);
   }
   scaleRows(values, all, by_movers);
-  takeOff(by_movers, problem.prior.covariance.diagonal()(movers), all);
+  const Eigen::VectorXd variances = problem.prior.covariance.diagonal();
+  takeOff(by_movers, variances(movers), all);
   result.momentum = all.col(pairs);
   result.through = all.leftCols(pairs);
   return result;
