@@ -54,6 +54,47 @@ Candidate mistakesOf(const CoilOrder& order) {
   return candidate;
 }
 
+/// An order of the coils, and mistakes of poles beside it.
+struct Arrangement {
+  CoilOrder order;
+  Candidate poles;
+
+  std::size_t mistakes() const { return order.mistakes() + poles.size(); }
+};
+
+/// The best order without mistakes of poles; nothing where the motion has too few windows.
+std::optional<Arrangement> arrangementWith(const Candidate& poles,
+                                           const CalibrationSession& session,
+                                           const MotionRecording& excerpt,
+                                           double current_delay) {
+  const CorrectedMotion motion = correctedMotion(session.start().actuator, excerpt, poles);
+  const WiringProblem problem(motion.actuator, excerpt, session.config());
+  const ChannelImpulses impulses = channelImpulses(problem.get(), current_delay);
+  if (impulses.momentum.size() == 0) {
+    return std::nullopt;
+  }
+  return Arrangement{bestCoilOrder(impulses), poles};
+}
+
+/// The best of those with a mistake of one more pole.
+Arrangement withOneMorePole(const Arrangement& present,
+                            const CalibrationSession& session,
+                            const MotionRecording& excerpt,
+                            double current_delay) {
+  Arrangement best = present;
+  for (std::size_t pole = 0; pole < session.start().actuator.poles.size(); ++pole) {
+    for (const Hypothesis& mistake : {polePolarity(pole), poleMissing(pole)}) {
+      Candidate poles = present.poles;
+      poles.push_back(mistake);
+      std::optional<Arrangement> one = arrangementWith(poles, session, excerpt, current_delay);
+      if (one && one->order.left < best.order.left) {
+        best = std::move(*one);
+      }
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
@@ -62,12 +103,13 @@ std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
   constexpr double kMostLeft = 0.75;
   // Memory grows with their square, time by more.
   constexpr std::size_t kMostCoils = 64;
+  constexpr std::size_t kMostPoles = 2;
   if (session.start().actuator.coils.size() > kMostCoils) {
     return std::nullopt;
   }
   const MotionRecording excerpt = motionExcerpt(*session.motion(), kExcerpt);
   const WiringProblem problem(session.start().actuator, excerpt, session.config());
-  std::optional<CoilOrder> best;
+  std::optional<Arrangement> best;
   double described = std::numeric_limits<double>::infinity();
   MotionOrder result;
   for (const double delay : DelayRange().delays()) {
@@ -77,13 +119,22 @@ std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
     }
     described = std::min(described, leftAsDescribed(impulses));
     CoilOrder order = bestCoilOrder(impulses);
-    if (!best || order.left < best->left) {
-      best = std::move(order);
+    if (!best || order.left < best->order.left) {
+      best = Arrangement{std::move(order), {}};
       result.current_delay = delay;
     }
   }
-  if (best->mistakes() > 0 && best->left < kMostLeft * described) {
-    result.mistakes = SuspectedWiring{mistakesOf(*best), best->left / described};
+  while (best->poles.size() < kMostPoles) {
+    Arrangement next = withOneMorePole(*best, session, excerpt, result.current_delay);
+    if (!(next.order.left < kMostLeft * best->order.left)) {
+      break;
+    }
+    best = std::move(next);
+  }
+  if (best->mistakes() > 0 && best->order.left < kMostLeft * described) {
+    Candidate parts = mistakesOf(best->order);
+    parts.insert(parts.end(), best->poles.begin(), best->poles.end());
+    result.mistakes = SuspectedWiring{std::move(parts), best->order.left / described};
   }
   return result;
 }

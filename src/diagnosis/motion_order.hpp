@@ -8,8 +8,9 @@ namespace sac {
 
 /// What explains a motion best of all that currents may do through coils.
 struct MotionOrder {
-  /// The order and signs of coils, and those that are dead, however many are not as described;
-  /// nothing: as it is described, the motion is explained as well.
+  /// The order and signs of coils, and those that are dead, however many are not as described, and
+  /// up to two poles that are turned or missing; nothing: as it is described, the motion is
+  /// explained as well.
   std::optional<SuspectedWiring> mistakes;
   double current_delay = 0.0;  ///< with which, to 10 ms [s]
 };

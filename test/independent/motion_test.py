@@ -24,6 +24,16 @@ def run(program, *arguments):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
 
 
+def read_yaml(path):
+    with open(path, encoding="utf-8") as file:
+        return yaml.safe_load(file)
+
+
+def write_yaml(path, content):
+    with open(path, "w", encoding="utf-8") as file:
+        yaml.safe_dump(content, file, default_flow_style=None)
+
+
 class Motion(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -102,14 +112,12 @@ class Motion(unittest.TestCase):
         self.check_current_delay(outcome, 0.0, 1.5e-3)
 
     def test_a_wrong_torque_curve_is_told(self):
-        with open(NOMINAL, encoding="utf-8") as file:
-            description = yaml.safe_load(file)
+        description = read_yaml(NOMINAL)
         curve = description["actuator"]["torque_curve"]
         curve["coefficients"] = [c / 1.01**n for n, c in enumerate(curve["coefficients"])]
         with tempfile.TemporaryDirectory() as folder:
             stretched = os.path.join(folder, "stretched.yaml")
-            with open(stretched, "w", encoding="utf-8") as file:
-                yaml.safe_dump(description, file, default_flow_style=None)
+            write_yaml(stretched, description)
             recording = self.record()
             outcome = calibrate(recording, stretched)
             self.assertGreater(outcome.chi_square, 20.0)
@@ -205,8 +213,7 @@ class Motion(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stdout)
             self.assertIn("grade: usable", result.stdout)
             self.assertIn("held-out", result.stdout)
-            with open(output, encoding="utf-8") as file:
-                calibrated = yaml.safe_load(file)["actuator"]
+            calibrated = read_yaml(output)["actuator"]
             both = self.calibrate_bags(folder, "motion,refine", [bag])
         self.assertEqual(both.returncode, 0, both.stdout)
         self.assertIn("no sample was recorded", both.stdout)
@@ -214,7 +221,7 @@ class Motion(unittest.TestCase):
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
 
-    def diagnosed(self, change, stream="currents", status=1):
+    def diagnosed(self, change, stream="currents", status=1, description=NOMINAL):
         """What is said of the first seconds of the motion with another stream recorded, and the coils of the description
         that corrects it, where there is one."""
         recording = {name: [(t, value) for t, value in zip(*stream) if t < 7.0] for name, stream in self.record().items()}
@@ -225,11 +232,10 @@ class Motion(unittest.TestCase):
             bag = os.path.join(folder, "wired.bag")
             write_bag(bag, recording, len(self.unit.coils))
             corrected = os.path.join(folder, "corrected.yaml")
-            result = self.calibrate_bags(folder, "motion", [bag], "--apply-diagnosis", corrected)
+            result = self.calibrate_bags(folder, "motion", [bag], "--apply-diagnosis", corrected, actuator=description)
             coils = None
             if os.path.exists(corrected):
-                with open(corrected, encoding="utf-8") as file:
-                    self.corrected = yaml.safe_load(file)["actuator"]
+                self.corrected = read_yaml(corrected)["actuator"]
                 coils = [[coil["polar"], coil["azimuth"]] for coil in self.corrected["coils"]]
         self.assertEqual(result.returncode, status, result.stdout)
         self.said = result.stdout
@@ -253,6 +259,21 @@ class Motion(unittest.TestCase):
         _, causes = self.diagnosed(mistaken)
         # What is recorded of coil 3 flows in coil 9.
         self.assertEqual(causes, ["coil_circle:3:9:17", "coil_sign:1", "coil_sign:9", "coil_sign:21"])
+
+    def test_names_a_pole_that_is_turned_beside_coils_that_are_exchanged(self):
+        def mistaken(currents):
+            currents[:, [2, 8]] = currents[:, [8, 2]]
+            return currents
+
+        with tempfile.TemporaryDirectory() as folder:
+            turned = os.path.join(folder, "turned.yaml")
+            description = read_yaml(NOMINAL)
+            description["actuator"]["poles"][3]["polarity"] *= -1
+            write_yaml(turned, description)
+            _, causes = self.diagnosed(mistaken, description=turned)
+        self.assertEqual(causes, ["coil_swap:3:9", "pole_polarity:4"])
+        polarities = [pole["polarity"] for pole in self.corrected["poles"]]
+        self.assertEqual(polarities, [pole["polarity"] for pole in read_yaml(NOMINAL)["actuator"]["poles"]])
 
     def test_names_a_sign_of_all_beside_coils_that_are_exchanged(self):
         def mistaken(currents):
@@ -337,16 +358,16 @@ class Motion(unittest.TestCase):
         return dwell_bag, motion_bag
 
     @staticmethod
-    def calibrate_bags(folder, cycles, bags, *options):
+    def calibrate_bags(folder, cycles, bags, *options, actuator=NOMINAL):
         output = os.path.join(folder, cycles + ".yaml")
-        return run("calibrate_bag", "--actuator", NOMINAL, "--cycles", cycles, "--output", output, *options, *bags)
+        return run("calibrate_bag", "--actuator", actuator, "--cycles", cycles, "--output", output, *options, *bags)
 
     def errors_and_stddevs(self, folder, cycles, *bags):
         report = os.path.join(folder, cycles)
         result = self.calibrate_bags(folder, cycles, bags, "--report", report, "--no-page")
         self.assertEqual(result.returncode, 0, result.stdout)
-        with open(os.path.join(report, "report.yaml"), encoding="utf-8") as file:
-            rows = {row["name"]: row for row in yaml.safe_load(file)["calibration_report"]["parameters"]}
+        parameters = read_yaml(os.path.join(report, "report.yaml"))["calibration_report"]["parameters"]
+        rows = {row["name"]: row for row in parameters}
         rows = [rows[name] for name in self.unit.names()]
         apart = np.array([row["value"] for row in rows]) - self.unit.values(self.errors)
         apart = (apart + np.pi) % (2.0 * np.pi) - np.pi
