@@ -104,6 +104,8 @@ std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
   // Memory grows with their square, time by more.
   constexpr std::size_t kMostCoils = 64;
   constexpr std::size_t kMostPoles = 2;
+  // Of the momentum. Axes that are 30 mrad off leave a twentieth.
+  constexpr double kExplained = 0.1;
   if (session.start().actuator.coils.size() > kMostCoils) {
     return std::nullopt;
   }
@@ -111,7 +113,7 @@ std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
   const WiringProblem problem(session.start().actuator, excerpt, session.config());
   std::optional<Arrangement> best;
   double described = std::numeric_limits<double>::infinity();
-  MotionOrder result;
+  double best_delay = 0.0;
   for (const double delay : DelayRange().delays()) {
     const ChannelImpulses impulses = channelImpulses(problem.get(), delay);
     if (impulses.momentum.size() == 0) {
@@ -121,15 +123,19 @@ std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session) {
     CoilOrder order = bestCoilOrder(impulses);
     if (!best || order.left < best->order.left) {
       best = Arrangement{std::move(order), {}};
-      result.current_delay = delay;
+      best_delay = delay;
     }
   }
   while (best->poles.size() < kMostPoles) {
-    Arrangement next = withOneMorePole(*best, session, excerpt, result.current_delay);
+    Arrangement next = withOneMorePole(*best, session, excerpt, best_delay);
     if (!(next.order.left < kMostLeft * best->order.left)) {
       break;
     }
     best = std::move(next);
+  }
+  MotionOrder result;
+  if (best->order.left < kExplained) {
+    result.current_delay = best_delay;
   }
   if (best->mistakes() > 0 && best->order.left < kMostLeft * described) {
     Candidate parts = mistakesOf(best->order);

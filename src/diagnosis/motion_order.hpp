@@ -12,7 +12,9 @@ struct MotionOrder {
   /// up to two poles that are turned or missing; nothing: as it is described, the motion is
   /// explained as well.
   std::optional<SuspectedWiring> mistakes;
-  double current_delay = 0.0;  ///< with which, to 10 ms [s]
+  /// With which, to 10 ms [s]; nothing where even the best order leaves much: what is wrong is
+  /// something else, and the best delay may be, too.
+  std::optional<double> current_delay;
 };
 
 /// Of the motion of a session; nothing where it has too few windows, or more than 64 coils. Where

@@ -169,7 +169,7 @@ std::vector<Diagnosis> wiringThatExplainsMotion(const CalibrationSession& sessio
   }
   known.emplace_back();
   const DelayRange delays =
-      found ? DelayRange{found->current_delay, DelayRange::kStep} : DelayRange();
+      found && found->current_delay ? DelayRange().about(*found->current_delay) : DelayRange();
   for (const Candidate& mistakes : known) {
     if (!diagnoses.empty()) {
       break;

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/motion/delay_range.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sac {
@@ -11,6 +12,11 @@ std::vector<double> DelayRange::delays() const {
     all.push_back(middle + kStep * n);
   }
   return all;
+}
+
+DelayRange DelayRange::about(double delay) const {
+  const double farthest = std::max(0.0, reach - kStep);
+  return {std::clamp(delay, middle - farthest, middle + farthest), kStep};
 }
 
 }  // namespace sac

@@ -32,7 +32,10 @@ class Screen:
         )
         os.close(write)
         with os.fdopen(read) as ready:
-            self.display = ":" + ready.readline().strip()
+            shown = ready.readline().strip()
+        if not shown:
+            raise RuntimeError(f"Xvfb has no screen of number {number}.")
+        self.display = ":" + shown
 
     def pixels(self):
         """Red, green and blue of every pixel."""

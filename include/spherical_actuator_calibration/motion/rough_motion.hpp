@@ -13,8 +13,6 @@ namespace sac {
 /// `variance`: what one step cannot follow counts as noise of so many times that of the streams; by
 /// it the prior weighs. 0: it is found. Negative where there are too few windows.
 /// Precondition: the model has a torque model.
-double roughMisfit(const MotionProblem& problem,
-                   double variance,
-                   const DelayRange& range = DelayRange());
+double roughMisfit(const MotionProblem& problem, double variance, const DelayRange& range);
 
 }  // namespace sac

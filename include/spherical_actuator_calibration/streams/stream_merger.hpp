@@ -29,8 +29,9 @@ class StreamMerger {
   static constexpr double kSilence = 1.0;
   static constexpr double kLongestStep = 0.05;  ///< [s]
 
-  /// A step back of stamps by `clock_reset` [s] or more begins another round; a smaller one is a
-  /// late measurement: as in SampleBuilderOptions.
+  /// A step back of stamps by `clock_reset` [s] or more begins another round, a smaller one is a
+  /// late measurement, as of SampleBuilderOptions, but at the first stamp: what waits is soon let
+  /// go.
   explicit StreamMerger(double clock_reset);
 
   void add(AnyMeasurement measurement, double now);

@@ -36,7 +36,7 @@ std::vector<double> controllerNumbers(const OrientationControllerOptions& option
           options.reference.largest_gap};
 }
 
-TEST(OrientationControllerOptions, TheShippedFileHasEveryKeyWithItsDefault) {
+TEST(OrientationControllerOptions, TheShippedFileTellsDefaults) {
   const Actuator design = loadDescription(SOURCE_DIR "/config/pm_spherical_8x24.yaml").actuator;
   const OrientationControllerNodeOptions defaults =
       readOrientationControllerOptions(YamlMap::parse("{}", "c.yaml"), design);

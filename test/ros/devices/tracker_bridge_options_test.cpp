@@ -32,7 +32,7 @@ std::vector<double> bridgeNumbers(const TrackerBridgeOptions& options) {
           options.ft_sensor_limits.largest_age};
 }
 
-TEST(TrackerBridgeOptions, TheShippedFileHasEveryKeyWithItsDefault) {
+TEST(TrackerBridgeOptions, TheShippedFileTellsDefaults) {
   const TrackerBridgeOptions defaults = readTrackerBridgeOptions(YamlMap::parse("{}", "b.yaml"));
   const TrackerBridgeOptions shipped =
       readTrackerBridgeOptions(YamlMap::load(SOURCE_DIR "/config/tracker_bridge.yaml"));
