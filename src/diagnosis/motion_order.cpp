@@ -62,7 +62,7 @@ struct Arrangement {
   std::size_t mistakes() const { return order.mistakes() + poles.size(); }
 };
 
-/// The best order without mistakes of poles; nothing where the motion has too few windows.
+/// The best order once mistakes of poles are undone; nothing where the motion has too few windows.
 std::optional<Arrangement> arrangementWith(const Candidate& poles,
                                            const CalibrationSession& session,
                                            const MotionRecording& excerpt,

@@ -19,8 +19,8 @@ struct MotionOrder {
 
 /// Of the motion of a session; nothing where it has too few windows, or more than 64 coils. Where
 /// inertia is free, all signs at once are told by its sign alone: those that are found are against
-/// that of most. By one evaluation of the motion for each of some delays of the currents.
-/// Precondition: the session has a motion.
+/// that of most. By one evaluation of the motion for each of some delays of the currents, and at
+/// the best of them for each pole. Precondition: the session has a motion.
 std::optional<MotionOrder> orderOfMotion(const CalibrationSession& session);
 
 }  // namespace sac

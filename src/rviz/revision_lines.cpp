@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "shown_unit.hpp"
+#include "spherical_actuator_calibration/CalibrationReport.h"
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 
 namespace sac {
 namespace {
-
-/// What motions have made; they are estimated from windows.
-constexpr char kMotionOrigin[] = "motion";
 
 std::string folderOf(const std::string& path) {
   const std::size_t end = path.find_last_of('/');
@@ -37,7 +35,8 @@ std::string errorInWords(const msg::Revision& revision) {
   const ShownUnit unit = shownIn(revision.error_unit);
   return number("%.4g", unit.factor * revision.error_before) + " → " +
          withUnit("%.4g", unit.factor * revision.error_after, unit.name) + ", " +
-         counted(revision.samples_used, revision.origin == kMotionOrigin ? "window" : "sample");
+         counted(revision.samples_used,
+                 revision.origin == msg::CalibrationReport::MOTION ? "window" : "sample");
 }
 
 }  // namespace
