@@ -3,49 +3,18 @@
 
 import os
 import re
-import subprocess
 import tempfile
 import unittest
-from unittest import mock
 
 import free_motion
 import laboratory
 import numpy as np
-import yaml
 from motion_bag import write_bag
 from motion_cases import NOMINAL, calibrate
-
-SECONDS = 12.0
-SEED = 5
+from recorded_motion import RecordedMotion, read_yaml, run, write_yaml
 
 
-def run(program, *arguments):
-    command = [os.path.join(os.environ["PROGRAMS"], program), *arguments]
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-
-
-def read_yaml(path):
-    with open(path, encoding="utf-8") as file:
-        return yaml.safe_load(file)
-
-
-def write_yaml(path, content):
-    with open(path, "w", encoding="utf-8") as file:
-        yaml.safe_dump(content, file, default_flow_style=None)
-
-
-class Motion(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.unit = laboratory.paper_unit()
-        rng = np.random.default_rng(SEED)
-        cls.errors = rng.uniform(-0.03, 0.03, cls.unit.size())
-        cls.machine = free_motion.Machine(push=(6.0, 6.2, (0.0, 0.0, 4e-3)))
-        cls.motion = free_motion.simulate(cls.unit, cls.errors, cls.machine, SECONDS, SEED)
-
-    def record(self, **streams):
-        return free_motion.record(self.unit, self.errors, self.motion, free_motion.Streams(**streams), SEED)
-
+class Motion(RecordedMotion):
     def check(self, outcome, rms):
         self.assertTrue(outcome.converged and outcome.moves)
         apart, stddevs, identified = outcome.judged(self.unit, self.errors)
@@ -66,15 +35,15 @@ class Motion(unittest.TestCase):
     def test_finds_all_parameters_and_what_else_moves_the_rotor(self):
         outcome = calibrate(self.record(current_delay=-0.04, tracker_delay=0.05))
         self.check(outcome, 1e-4)
-        inertia = self.machine.inertia
+        inertia = self.MACHINE.inertia
         self.assertAlmostEqual(outcome.value("rotor_inertia/xx"), inertia[0, 0], delta=2e-6)
         self.assertAlmostEqual(outcome.value("rotor_inertia/xy"), inertia[0, 1], delta=1e-6)
-        self.assertAlmostEqual(outcome.value("rotor_unbalance/z"), self.machine.unbalance[2], delta=6e-5)
-        self.assertAlmostEqual(outcome.value("viscous_friction"), self.machine.viscous, delta=4e-5)
-        self.assertAlmostEqual(outcome.value("coulomb_friction"), self.machine.coulomb, delta=8e-5)
+        self.assertAlmostEqual(outcome.value("rotor_unbalance/z"), self.MACHINE.unbalance[2], delta=6e-5)
+        self.assertAlmostEqual(outcome.value("viscous_friction"), self.MACHINE.viscous, delta=4e-5)
+        self.assertAlmostEqual(outcome.value("coulomb_friction"), self.MACHINE.coulomb, delta=8e-5)
         self.assertAlmostEqual(outcome.value("tracker_delay"), 0.05, delta=2e-5)
         # Currents that step at the instants of the samples and lag seem to be later by h^2 / (12 lag).
-        quadrature = 1e-6 / (12.0 * self.machine.lag)
+        quadrature = 1e-6 / (12.0 * self.MACHINE.lag)
         self.assertAlmostEqual(outcome.value("current_delay"), -0.04 + quadrature, delta=2e-5)
         self.check_current_delay(outcome, -0.04, 6e-5)
         # A hand touched the rotor for a fifth of a second.
@@ -88,11 +57,11 @@ class Motion(unittest.TestCase):
                 self.record(current_delay=-0.04, current_rate=rate, joint_rate=rate, current_phase=phase, has_commands=True)
             )
             self.check(outcome, 1.6e-4)
-            self.assertAlmostEqual(outcome.response[1], self.machine.lag, delta=5e-5)
+            self.assertAlmostEqual(outcome.response[1], self.MACHINE.lag, delta=5e-5)
             value, stddev, _ = outcome.parameters["current_delay"]
             self.assertAlmostEqual(value, -0.04, delta=2.0 * largest)
             self.assertLess(abs(value + 0.04), 3.0 * stddev)
-            if rate > 1.0 / self.machine.step:
+            if rate > 1.0 / self.MACHINE.step:
                 self.assertLess(stddev, largest)
 
     def test_windows_as_they_come_tell_what_all_at_once_do(self):
@@ -125,11 +94,11 @@ class Motion(unittest.TestCase):
     def told_with_chatter(self, **machine):
         """What is said of currents that step like noise with their readings."""
         machine = free_motion.Machine(chatter=0.03, **machine)
-        motion = free_motion.simulate(self.unit, self.errors, machine, SECONDS, SEED)
+        motion = free_motion.simulate(self.unit, self.errors, machine, self.SECONDS, self.SEED)
         streams = free_motion.Streams(joint_rate=200.0, current_rate=200.0)
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "motion.bag")
-            write_bag(bag, free_motion.record(self.unit, self.errors, motion, streams, SEED), len(self.unit.coils))
+            write_bag(bag, free_motion.record(self.unit, self.errors, motion, streams, self.SEED), len(self.unit.coils))
             return self.calibrate_bags(folder, "motion", [bag]).stdout
 
     def test_what_passes_for_noise_of_currents_is_told(self):
@@ -143,10 +112,10 @@ class Motion(unittest.TestCase):
 
     def test_frictions_of_another_law_are_told(self):
         for law, machine in (("that grows with the square of the speed", {"drag": 3e-4}), ("about the rotor's axis z", {"spin_viscous": 2e-4})):
-            motion = free_motion.simulate(self.unit, self.errors, free_motion.Machine(**machine), SECONDS, SEED)
+            motion = free_motion.simulate(self.unit, self.errors, free_motion.Machine(**machine), self.SECONDS, self.SEED)
             with tempfile.TemporaryDirectory() as folder:
                 bag = os.path.join(folder, "motion.bag")
-                write_bag(bag, free_motion.record(self.unit, self.errors, motion, free_motion.Streams(), SEED), len(self.unit.coils))
+                write_bag(bag, free_motion.record(self.unit, self.errors, motion, free_motion.Streams(), self.SEED), len(self.unit.coils))
                 said = self.calibrate_bags(folder, "motion", [bag]).stdout
             found = re.search(r"fits better with a friction (.*), by (\S+) \+- (\S+) N\.m\.s", said)
             self.assertTrue(found, said)
@@ -197,10 +166,10 @@ class Motion(unittest.TestCase):
 
     def test_setpoints_at_a_limit_are_sound(self):
         machine = free_motion.Machine(coil_limit=0.4, lag=0.0, push=(6.0, 6.2, (0.0, 0.0, 4e-3)))
-        motion = free_motion.simulate(self.unit, self.errors, machine, SECONDS, SEED)
+        motion = free_motion.simulate(self.unit, self.errors, machine, self.SECONDS, self.SEED)
         self.assertGreater(np.mean(np.abs(motion.setpoint).max(axis=1) == 0.4), 0.2)
         streams = free_motion.Streams(joint_rate=200.0, current_rate=200.0, current_stddev=0.0)
-        outcome = calibrate(free_motion.record(self.unit, self.errors, motion, streams, SEED))
+        outcome = calibrate(free_motion.record(self.unit, self.errors, motion, streams, self.SEED))
         self.assertTrue(outcome.converged)
         self.assertEqual([reason for reason in outcome.left_out if "end of its sensor" in reason], [])
         self.assertLessEqual(sum(outcome.left_out.values()), 3)
@@ -221,134 +190,9 @@ class Motion(unittest.TestCase):
         found = np.array([pole["polar"] for pole in calibrated["poles"]])
         np.testing.assert_allclose(found, poles[:, 0], atol=2e-4)
 
-    def diagnosed(self, change, stream="currents", status=1, description=NOMINAL):
-        """What is said of the first seconds of the motion with another stream recorded, and the coils of the description
-        that corrects it, where there is one."""
-        recording = {name: [(t, value) for t, value in zip(*stream) if t < 7.0] for name, stream in self.record().items()}
-        recording = {name: tuple(zip(*stream)) for name, stream in recording.items()}
-        stamps, values = recording[stream]
-        recording[stream] = stamps, change(np.array(values))
-        with tempfile.TemporaryDirectory() as folder:
-            bag = os.path.join(folder, "wired.bag")
-            write_bag(bag, recording, len(self.unit.coils))
-            corrected = os.path.join(folder, "corrected.yaml")
-            result = self.calibrate_bags(folder, "motion", [bag], "--apply-diagnosis", corrected, actuator=description)
-            coils = None
-            if os.path.exists(corrected):
-                self.corrected = read_yaml(corrected)["actuator"]
-                coils = [[coil["polar"], coil["azimuth"]] for coil in self.corrected["coils"]]
-        self.assertEqual(result.returncode, status, result.stdout)
-        self.said = result.stdout
-        return coils, [line.split()[1].rstrip(":") for line in result.stdout.splitlines() if line.startswith("diagnosis:")]
-
-    def test_names_a_coil_that_counts_the_wrong_way_round(self):
-        def turned(currents):
-            currents[:, 4] *= -1.0
-            return currents
-
-        coils, causes = self.diagnosed(turned)
-        self.assertEqual(causes, ["coil_sign:5"])
-        self.assertIsNone(coils)
-
-    def test_names_a_circle_of_coils_beside_others_that_are_turned(self):
-        def mistaken(currents):
-            currents[:, [2, 8, 16]] = currents[:, [8, 16, 2]]
-            currents[:, [0, 2, 20]] *= -1.0
-            return currents
-
-        _, causes = self.diagnosed(mistaken)
-        # What is recorded of coil 3 flows in coil 9.
-        self.assertEqual(causes, ["coil_circle:3:9:17", "coil_sign:1", "coil_sign:9", "coil_sign:21"])
-
-    def test_names_a_pole_that_is_turned_beside_coils_that_are_exchanged(self):
-        def mistaken(currents):
-            currents[:, [2, 8]] = currents[:, [8, 2]]
-            return currents
-
-        with tempfile.TemporaryDirectory() as folder:
-            turned = os.path.join(folder, "turned.yaml")
-            description = read_yaml(NOMINAL)
-            description["actuator"]["poles"][3]["polarity"] *= -1
-            write_yaml(turned, description)
-            _, causes = self.diagnosed(mistaken, description=turned)
-        self.assertEqual(causes, ["coil_swap:3:9", "pole_polarity:4"])
-        polarities = [pole["polarity"] for pole in self.corrected["poles"]]
-        self.assertEqual(polarities, [pole["polarity"] for pole in read_yaml(NOMINAL)["actuator"]["poles"]])
-
-    def test_names_a_sign_of_all_beside_coils_that_are_exchanged(self):
-        def mistaken(currents):
-            currents[:, [2, 10]] = currents[:, [10, 2]]
-            return -currents
-
-        _, causes = self.diagnosed(mistaken)
-        self.assertEqual(causes, ["coil_swap:3:11", "current_sign"])
-
-    def test_names_a_shift_beside_coils_that_are_exchanged(self):
-        def mistaken(currents):
-            currents[:, [2, 10]] = currents[:, [10, 2]]
-            return np.roll(currents, -1, axis=1)  # what is recorded of coil 1 flows in coil 2
-
-        coils, causes = self.diagnosed(mistaken)
-        self.assertEqual(causes, ["coil_shift", "coil_swap:3:11"])
-        expected = self.unit.coils.copy()
-        expected[[2, 10]] = expected[[10, 2]]
-        apart = (np.array(coils) - np.roll(expected, -1, axis=0) + np.pi) % (2.0 * np.pi) - np.pi
-        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
-
-    def test_names_layers_that_are_exchanged(self):
-        coils, causes = self.diagnosed(lambda currents: np.roll(currents, 12, axis=1))
-        self.assertEqual(causes, ["coil_shift"])
-        apart = (np.array(coils) - np.roll(self.unit.coils, 12, axis=0) + np.pi) % (2.0 * np.pi) - np.pi
-        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
-
-    def test_names_coils_that_are_exchanged(self):
-        def exchanged(currents):
-            currents[:, [2, 15]] = currents[:, [15, 2]]
-            return currents
-
-        coils, causes = self.diagnosed(exchanged)
-        self.assertEqual(causes, ["coil_swap:3:16"])
-        expected = self.unit.coils.copy()
-        expected[[2, 15]] = expected[[15, 2]]
-        apart = (np.array(coils) - expected + np.pi) % (2.0 * np.pi) - np.pi
-        np.testing.assert_allclose(apart, 0.0, atol=1e-9)
-
-    def test_names_currents_in_milliamperes(self):
-        self.assertEqual(self.diagnosed(lambda currents: 1e3 * currents)[1], ["current_unit"])
-
-    def test_tells_that_currents_are_ten_times_too_large(self):
-        self.assertEqual(self.diagnosed(lambda currents: 10.0 * currents, status=0)[1], [])
-        self.assertIn("moments of inertia are 10.5 times those of the rotor that a motion begins with", self.said)
-        self.assertIn("the torques of the recorded currents are 10.5 times the real ones", self.said)
-
-    def test_names_a_joint_that_counts_the_wrong_way_round(self):
-        def turned(joints):
-            joints[:, 2] *= -1.0
-            return joints
-
-        self.assertEqual(self.diagnosed(turned, "joints")[1], ["joint_sign:3"])
-        np.testing.assert_allclose(self.corrected["joints"][2]["axis"], [0.0, 0.0, -1.0], atol=1e-12)
-
-    def test_names_an_index_and_corrects_what_a_description_can_hold(self):
-        def turned(joints):
-            joints[:, 0] += 0.5
-            return joints
-
-        self.assertEqual(self.diagnosed(turned, "joints")[1][0], "joint_index:1")
-        self.assertAlmostEqual(self.corrected["joints"][0]["offset"], -0.5, delta=0.03)
-
-    def test_a_late_tracker_is_no_mistake_of_wiring(self):
-        def reversed_coil(currents):
-            currents[:, 4] *= -1.0
-            return currents
-
-        late = self.record(tracker_delay=0.055)
-        with mock.patch.object(self, "record", lambda: late):
-            self.assertEqual(self.diagnosed(reversed_coil)[1], ["coil_sign:5"])
-
     def dwells_and_motion(self, folder, errors):
         """Bags of both: dwells of a unit with these errors."""
-        sensors, rng = laboratory.Laboratory(), np.random.default_rng(SEED)
+        sensors, rng = laboratory.Laboratory(), np.random.default_rng(self.SEED)
         poses = laboratory.random_poses(16, 0.4, rng)
         dwells, _ = laboratory.measured_session(self.unit, errors, sensors, poses, 9, rng)
         samples, dwell_bag, motion_bag = (os.path.join(folder, name) for name in ("s.yaml", "dwells.bag", "motion.bag"))
@@ -356,11 +200,6 @@ class Motion(unittest.TestCase):
         run("samples_to_bag", "--actuator", NOMINAL, "--samples", samples, "--output", dwell_bag)
         write_bag(motion_bag, self.record(), len(self.unit.coils))
         return dwell_bag, motion_bag
-
-    @staticmethod
-    def calibrate_bags(folder, cycles, bags, *options, actuator=NOMINAL):
-        output = os.path.join(folder, cycles + ".yaml")
-        return run("calibrate_bag", "--actuator", actuator, "--cycles", cycles, "--output", output, *options, *bags)
 
     def errors_and_stddevs(self, folder, cycles, *bags):
         report = os.path.join(folder, cycles)
