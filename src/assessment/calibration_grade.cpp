@@ -397,4 +397,14 @@ GradedCalibration gradeCalibration(const CalibrationSession& session) {
   return CalibrationGrader(session).grade();
 }
 
+CalibratedDescription gradedDescription(const CalibrationSession& session,
+                                        const CalibrationOrigin& origin,
+                                        Grade grade) {
+  CalibratedDescription result = session.description(origin);
+  if (grade == Grade::kContradicted && result.calibration->validation) {
+    result.calibration->validation->contradicted = true;
+  }
+  return result;
+}
+
 }  // namespace sac

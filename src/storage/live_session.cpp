@@ -247,7 +247,7 @@ void LiveSession::searchLinearityAnew() {
 }
 
 CalibratedDescription LiveSession::description(const std::string& date) const {
-  return session_.description(origin(date));
+  return gradedDescription(session_, origin(date), grade().grade);
 }
 
 CalibrationOrigin LiveSession::origin(const std::string& date) const {

@@ -296,7 +296,8 @@ void writeResult(const CalibrationSession& session,
     std::cout << "Nothing is written: --output OUT.yaml keeps the result.\n";
     return;
   }
-  const CalibratedDescription result = session.description(origin);
+  const CalibratedDescription result =
+      gradedDescription(session, origin, gradeCalibration(session).grade);
   saveDescription(files.description, result, policy);
   std::cout << "Calibrated description: " << files.description << "\n";
   if (!files.covariance.empty()) {

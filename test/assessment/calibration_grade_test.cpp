@@ -95,9 +95,15 @@ TEST(CalibrationGrade, IsLostWhereTheNewestHeldOutSamplesContradict) {
   for (std::size_t n = samples.size() - 24; n < samples.size(); ++n) {
     samples[n].R_stator_rotor = rotationExp({1e-3, 0.0, 0.0}) * samples[n].R_stator_rotor;
   }
-  const GradedCalibration graded = gradeOf(samples, {{Cycle::kJoint}});
+  CalibrationSession session({scenarios::paperNominal()}, samples, registered());
+  ASSERT_TRUE(session.run({Cycle::kJoint}).success);
+  const GradedCalibration graded = gradeCalibration(session);
   EXPECT_EQ(graded.grade, Grade::kContradicted) << graded.reason;
   EXPECT_TRUE(tells(graded, "newest held-out samples contradict")) << graded.reason;
+  // The file that is kept says it, too.
+  const CalibrationOrigin origin = {"2026-11-28T12:00:00Z", {}, "test"};
+  EXPECT_TRUE(isContradicted(gradedDescription(session, origin, graded.grade)));
+  EXPECT_FALSE(isContradicted(gradedDescription(session, origin, Grade::kUsable)));
 }
 
 TEST(CalibrationGrade, UsableWherePartsAreMissing) {

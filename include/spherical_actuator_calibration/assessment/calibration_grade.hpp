@@ -32,7 +32,13 @@ struct GradedCalibration {
 /// say. A cycle that failed changed nothing, and does not count.
 GradedCalibration gradeCalibration(const CalibrationSession& session);
 
-/// The same of a session whose samples come one after the other, in the time that a new one takes:
+/// The calibrated description of a session, as it is kept: where it is graded `contradicted`, what
+/// was held out is recorded to contradict it, the newest alone, too.
+CalibratedDescription gradedDescription(const CalibrationSession& session,
+                                        const CalibrationOrigin& origin,
+                                        Grade grade);
+
+/// Grades a session whose samples come one after the other, in the time that a new one takes:
 /// what the parameters in force say by themselves is found once.
 class CalibrationGrader {
  public:

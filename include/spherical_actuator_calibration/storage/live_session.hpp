@@ -91,7 +91,7 @@ class LiveSession {
   /// Of the samples in use.
   const std::optional<TorqueLinearity>& linearity() const { return linearity_; }
 
-  /// The calibrated description, with its record.
+  /// The calibrated description, with its record; what contradicts it is told there, too.
   CalibratedDescription description(const std::string& date) const;
   /// Where a description or report of the parameters in force comes from.
   CalibrationOrigin origin(const std::string& date) const;
