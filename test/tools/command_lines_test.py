@@ -103,6 +103,20 @@ class CommandLines(unittest.TestCase):
                 self.assertNotIn("set -euo", result.stdout)
                 self.assertEqual(os.listdir(folder), [])
 
+    def test_programs_for_maintainers_do_nothing_where_they_are_asked_for_help(self):
+        programs = [path for path in sorted((SOURCE / "dev").iterdir()) if path.is_file() and not path.suffix]
+        self.assertGreater(len(programs), 20)
+        for path in programs:
+            with self.subTest(path.name), tempfile.TemporaryDirectory() as folder:
+                places = {**os.environ, "BUILD_DIR": folder, "KEPT": folder}
+                result = subprocess.run(
+                    [path, "--help"], capture_output=True, text=True, check=False, cwd=folder, env=places, timeout=20
+                )
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertRegex(result.stdout, r"^\w.*\w.*")
+                self.assertNotIn("set -euo", result.stdout)
+                self.assertEqual(os.listdir(folder), [])
+
     def test_demonstrations_take_a_description_of_the_callers_folder(self):
         with tempfile.TemporaryDirectory() as folder:
             command = [SOURCE / "scripts" / "demo", "--actuator", "./own.yaml"]
