@@ -123,8 +123,7 @@ class CalibrationGrader::Examiner {
 
   /// Torques judge everything, orientations the joint only.
   bool isValidated() const {
-    return hasVerdict() &&
-           (!isTorqueIdentified() || validation_->torques > validation_->unjudged_torques);
+    return hasVerdict() && (!isTorqueIdentified() || validation_->judgesCoils());
   }
 
   bool isTorqueIdentified() const {
@@ -265,6 +264,17 @@ class CalibrationGrader::Examiner {
     if (wanted.orientation > 0.0 && session_.expectedErrors().orientation > wanted.orientation) {
       return format(", but the expected orientation error is above the wanted %.2g mrad",
                     1e3 * wanted.orientation);
+    }
+    // Registrations that are hardly known leave it so, however well all fits.
+    const ManufacturingTolerance& tolerance = session_.config().tolerance;
+    const double drawn = std::max(tolerance.joint_axis, tolerance.joint_offset);
+    if (!(wanted.orientation > 0.0) && drawn > 0.0 &&
+        session_.expectedErrors().orientation > drawn) {
+      return format(
+          ", but the expected orientation error is no better than that of the drawing, whose "
+          "tolerance "
+          "is %.2g mrad: find the registrations better (register_frames)",
+          1e3 * drawn);
     }
     if (wanted.torque > 0.0 && session_.expectedErrors().torque > wanted.torque) {
       return format(", but the expected torque error is above the wanted %.2g mN.m per ampere",

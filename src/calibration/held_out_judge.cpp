@@ -308,6 +308,7 @@ class HeldOutJudge::Judgement {
       torque_squares_ = 0.0;
       result_.orientations = 0;
       result_.torques = 0;
+      result_.told_coils.clear();
     }
     for (; added_ < judged_.size(); ++added_) {
       if (!result_.residuals[added_].rejected) {
@@ -325,11 +326,27 @@ class HeldOutJudge::Judgement {
     if (!one.counts) {
       return;
     }
+    noteTold(one);
     if (one.dwell != added_dwell_) {
       update_->beginDwell();
       added_dwell_ = one.dwell;
     }
     update_->observe(one.misfit, one.loading);
+  }
+
+  /// Coils of which the largest error that is judged would show in a torque.
+  void noteTold(const HeldOutMeasurement& one) {
+    const std::vector<Eigen::Index>& columns = one.misfit.columns;
+    for (const std::size_t coil : one.coils) {
+      const Eigen::Index first = problem_.model->space().coil(coil);
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const bool is_of_coil = columns[k] == first || columns[k] == first + 1;
+        const auto column = one.misfit.jacobian.col(static_cast<Eigen::Index>(k));
+        if (is_of_coil && kLinearRange * column.norm() > 1.0) {
+          result_.told_coils.insert(coil);
+        }
+      }
+    }
   }
 
   const EstimationOptions options_;

@@ -140,6 +140,10 @@ std::string verdict(const HeldOutValidation& validation) {
            "then calibrate again.";
   }
   text += "they agree with the parameters within the stated uncertainties.";
+  if (validation.torques > validation.unjudged_torques && !validation.judgesCoils()) {
+    text +=
+        " No torque says anything of poles and coils: hold out others, with poles near the coil.";
+  }
   if (!validation.undecided_coils.empty()) {
     text += " Torques of " + coilsInWords(validation.undecided_coils) +
             " are outliers alone: hold out others.";

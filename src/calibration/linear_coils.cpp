@@ -9,8 +9,7 @@ namespace sac {
 std::vector<bool> linearCoils(const ParameterSpace& space,
                               const ParameterBelief& belief,
                               const std::vector<bool>& identified) {
-  constexpr double kMostStddev = 0.01;  // [rad]
-  constexpr double kRounding = 1e-12;   // of a variance
+  constexpr double kRounding = 1e-12;  // of a variance
   std::vector<Eigen::Index> common;
   for (Eigen::Index p = 0; p < space.size(); ++p) {
     const bool is_magnetic = p >= space.joint(space.joints()) && p < space.effect();
@@ -32,7 +31,8 @@ std::vector<bool> linearCoils(const ParameterSpace& space,
     const auto first = static_cast<std::size_t>(coil);
     const double variance =
         belief.covariance.block<2, 2>(coil, coil).trace() - due.segment<2>(coil).sum();
-    linear[j] = identified[first] && identified[first + 1] && variance < kMostStddev * kMostStddev;
+    linear[j] =
+        identified[first] && identified[first + 1] && variance < kLinearRange * kLinearRange;
   }
   return linear;
 }

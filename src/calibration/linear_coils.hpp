@@ -7,9 +7,12 @@
 
 namespace sac {
 
+/// Errors of an axis that are a small part of the width of the torque curve's peak [rad].
+inline constexpr double kLinearRange = 0.01;
+
 /// For each coil, whether a torque is close to linear over the uncertainty of its axis: its angles
-/// are identified, and known to a small part of the width of the torque curve's peak, where joints
-/// and effects are known. What turns with them, as all axes do with a tracker, changes no torque.
+/// are identified, and known to kLinearRange, where joints and effects are known. What turns with
+/// them, as all axes do with a tracker, changes no torque.
 std::vector<bool> linearCoils(const ParameterSpace& space,
                               const ParameterBelief& belief,
                               const std::vector<bool>& identified);

@@ -67,21 +67,12 @@ std::vector<Sample> judgedSamples(const CalibrationSession& session, CheckedSamp
   return judged;
 }
 
-/// None where samples with torques tell of every coil, or torques are not modelled.
-std::vector<std::size_t> coilsNotSeen(const Actuator& actuator,
-                                      const std::vector<Sample>& samples,
-                                      double current_threshold) {
-  std::set<std::size_t> seen;
-  for (const Sample& sample : samples) {
-    for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
-      if (sample.has_torque) {
-        seen.insert(excitation.coil);
-      }
-    }
-  }
+/// None where every coil is judged, or torques are not modelled.
+std::vector<std::size_t> coilsNotJudged(const Actuator& actuator,
+                                        const HeldOutValidation& validation) {
   std::vector<std::size_t> others;
   for (std::size_t coil = 0; coil < actuator.coils.size() && actuator.torque_curve; ++coil) {
-    if (seen.count(coil) == 0) {
+    if (validation.told_coils.count(coil) == 0) {
       others.push_back(coil);
     }
   }
@@ -171,7 +162,6 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
 
 ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples checked) {
   ValidityCheck check;
-  const double threshold = session.config().estimation.current_threshold;
   const std::vector<Sample> judged = judgedSamples(session, checked);
   const std::vector<Sample> held_out = heldOutOf(judged);
   const HeldOutValidation validation = validateHeldOut(
@@ -204,7 +194,7 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
                                   .c_str()
                             : "") +
                     fewPosesInWords(held_out) +
-                    unseenInWords(coilsNotSeen(actuator, held_out, threshold), held_out);
+                    unseenInWords(coilsNotJudged(actuator, validation), held_out);
     return check;
   }
   check.message = changed.empty() ? format(

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/actuator/description_file.hpp"
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/scenarios.hpp"
 
@@ -78,6 +80,46 @@ TEST(CalibrationGrade, OrientationsAloneDoNotJudgePolesAndCoils) {
   EXPECT_TRUE(tells(graded, "no held-out torque judges poles and coils")) << graded.reason;
 }
 
+/// The held-out torques are of coils that no pole is near, with such a torque each.
+std::vector<Sample> withBlindTorques(std::vector<Sample> samples, const Eigen::Vector3d& torque) {
+  const Actuator truth = scenarios::paperTruth();
+  const TorqueCurve curve(*truth.torque_curve);
+  scenarios::Generator generator(3);
+  for (Sample& sample : samples) {
+    if (!sample.validation || !sample.has_torque) {
+      continue;
+    }
+    Eigen::Index coil = 0;
+    double least = 1.0;
+    while (least > 0.0) {
+      sample.joint_position = scenarios::randomPoses(1, 0.3, generator).front();
+      least = torquePerAmpere(curve,
+                              torqueGeometry(truth),
+                              rotorOrientation(jointGeometry(truth), sample.joint_position))
+                  .colwise()
+                  .norm()
+                  .minCoeff(&coil);
+    }
+    sample.has_orientation = false;
+    sample.current = 2.0 * Eigen::VectorXd::Unit(sample.current.size(), coil);
+    sample.torque = torque;
+  }
+  return samples;
+}
+
+// They are the same wherever axes are.
+TEST(CalibrationGrade, TorquesWhereNoPoleIsNearDoNotJudgePolesAndCoils) {
+  const std::vector<Sample> blind =
+      withBlindTorques(scenarios::heldOutSession(), {1e-4, -2e-4, 1e-4});
+  const GradedCalibration graded = gradeOf(blind, wholeCalibration());
+  EXPECT_EQ(graded.grade, Grade::kNotValidated) << graded.reason;
+  EXPECT_TRUE(tells(graded, "no held-out torque judges poles and coils")) << graded.reason;
+  // Two coils whose wires are exchanged show there, too.
+  const std::vector<Sample> exchanged =
+      withBlindTorques(scenarios::heldOutSession(), {0.1, 0.0, 0.0});
+  EXPECT_EQ(gradeOf(exchanged, wholeCalibration()).grade, Grade::kContradicted);
+}
+
 TEST(CalibrationGrade, IsLostWhereTheNewestHeldOutSamplesContradict) {
   constexpr double kNoise = 1e-3;  // [rad]
   scenarios::Generator generator(5);
@@ -104,6 +146,17 @@ TEST(CalibrationGrade, IsLostWhereTheNewestHeldOutSamplesContradict) {
   const CalibrationOrigin origin = {"2026-11-28T12:00:00Z", {}, "test"};
   EXPECT_TRUE(isContradicted(gradedDescription(session, origin, graded.grade)));
   EXPECT_FALSE(isContradicted(gradedDescription(session, origin, Grade::kUsable)));
+}
+
+// All agrees within the registrations, which leave more open than the drawing does.
+TEST(CalibrationGrade, UsableWhereNothingIsBetterKnownThanByTheDrawing) {
+  CalibrationConfig config;
+  stateRegistration(config, {0.03, 0.03, 0.0});
+  const GradedCalibration graded = gradeOf(scenarios::heldOutSession(), wholeCalibration(), config);
+  EXPECT_EQ(graded.grade, Grade::kUsable) << graded.reason;
+  EXPECT_TRUE(tells(graded, "no better than that of the drawing")) << graded.reason;
+  config.wanted.orientation = 0.1;
+  EXPECT_EQ(gradeOf(scenarios::heldOutSession(), wholeCalibration(), config).grade, Grade::kGood);
 }
 
 TEST(CalibrationGrade, UsableWherePartsAreMissing) {

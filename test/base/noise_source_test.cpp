@@ -17,6 +17,7 @@ constexpr std::array kPurposes = {
     RandomPurpose::kManufacturingErrors,
     RandomPurpose::kSessionPlan,
     RandomPurpose::kSampleNoise,
+    RandomPurpose::kValidationPoses,
     RandomPurpose::kJointNoise,
     RandomPurpose::kTrackerNoise,
     RandomPurpose::kTrackerBadDwells,
@@ -39,6 +40,7 @@ constexpr bool isKnown(RandomPurpose purpose) {
     case RandomPurpose::kManufacturingErrors:
     case RandomPurpose::kSessionPlan:
     case RandomPurpose::kSampleNoise:
+    case RandomPurpose::kValidationPoses:
     case RandomPurpose::kJointNoise:
     case RandomPurpose::kTrackerNoise:
     case RandomPurpose::kTrackerBadDwells:

@@ -121,6 +121,15 @@ class Planning(unittest.TestCase):
         self.assertIn("tilt_limit", answer.message)
         self.assertEqual(len(self.client.latest("plan_progress").poses), 3)
 
+    def test_draws_poses_to_judge_by(self):
+        answer = self.client.call("draw_validation_poses", poses=3, coils_per_pose=2, seed=4)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual([(len(pose.patterns), pose.validation) for pose in answer.poses], [(2, True)] * 3)
+        self.assertTrue(self.client.call("missing_patterns", poses=answer.poses).success)
+        answer = self.client.call("draw_validation_poses", poses=2**32 - 1)
+        self.assertFalse(answer.success)
+        self.assertIn("validation poses", answer.message)
+
     def test_follows_a_plan_of_a_file(self):
         path = pathlib.Path(self.folder) / "plan.yaml"
         description = pathlib.Path(rospy.get_param("~config")) / "pm_spherical_8x24.yaml"

@@ -2,6 +2,7 @@
 """Which poses a guided session goes on with that was interrupted."""
 
 import unittest
+from types import SimpleNamespace
 
 from spherical_actuator_calibration.msg import CoilPattern, PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
@@ -9,8 +10,6 @@ from spherical_actuator_calibration.session_guide.options import OptionError, Op
 from spherical_actuator_calibration.session_guide.progress import Measured, Pose
 from spherical_actuator_calibration.session_guide.session import Session
 from spherical_actuator_calibration.session_guide.task import Task
-
-ACTUATOR = {"workspace": {"tilt_limit": 0.5}, "coils": [{}] * 4}
 
 
 class Bench:
@@ -23,6 +22,10 @@ class Bench:
 
     def measured(self):
         return self.held
+
+    @staticmethod
+    def parameters():
+        return SimpleNamespace(coils=[1, 2])
 
     @staticmethod
     def pose_tolerance():
@@ -58,7 +61,7 @@ class Bench:
 class SessionsOfAPlan(unittest.TestCase):
     @staticmethod
     def session(**options):
-        return Session(Bench(), None, ACTUATOR, Options(validation_poses=0, plan="plan.yaml", **options), Task(), Account())
+        return Session(Bench(), None, Options(validation_poses=0, plan="plan.yaml", **options), Task(), Account())
 
     def test_take_its_current(self):
         for options in ({}, {"current": 1.5}):
@@ -73,7 +76,7 @@ class SessionsOfAPlan(unittest.TestCase):
 class SamplesThatAreForgottenMeanwhile(unittest.TestCase):
     def test_are_measured_again(self):
         bench, account, led_to = Bench(), Account(), []
-        session = Session(bench, None, ACTUATOR, Options(skip_linearity=True), Task(), account)
+        session = Session(bench, None, Options(skip_linearity=True), Task(), account)
         session._look_at_the_joint = lambda: None
         session._course.excite = lambda pattern: None
         session._linearity.captures = lambda pose: 0
@@ -97,7 +100,7 @@ class InterruptedSessions(unittest.TestCase):
 
     def wanted(self, **options):
         options = Options(poses=4, validation_poses=0, **options)
-        return Session(self.bench, None, ACTUATOR, options, Task(), self.account)._wanted_poses()
+        return Session(self.bench, None, options, Task(), self.account)._wanted_poses()
 
     def test_complete_the_pose_that_was_begun(self):
         first, second, *_ = self.wanted()
@@ -121,12 +124,21 @@ class InterruptedSessions(unittest.TestCase):
     def test_forget_what_does_not_fit_any_more(self):
         for pose in self.wanted():
             self.bench.capture(pose, ())
-        self.bench.in_force = [Pose(pose.joints, ((1, -2),)) for pose in self.bench.in_force]
-        self.assertEqual(self.wanted(total_current=3.0), [])
-        self.assertEqual(len(self.wanted(total_current=4.0)), 4)
+        together = [Pose(pose.joints, ((1, -2),)) for pose in self.bench.in_force]
+        self.bench.in_force = together
+        self.assertEqual(self.wanted(total_current=4.0), together)
+        self.assertEqual(self.bench.asked, [4])
+        others = self.wanted(total_current=3.0)
+        self.assertEqual(len(others), 4)
+        self.assertEqual(self.bench.asked, [4, 4])
         self.bench.held.clear()
         self.assertEqual(len(self.wanted()), 4)
-        self.assertEqual(self.bench.asked, [4, 4])
+
+    def test_do_not_count_what_the_joint_was_calibrated_by(self):
+        for n in range(12):
+            self.bench.capture(Pose((0.03, 0.2 * n, 1.0), ()), ())
+        self.assertEqual(len(self.wanted()), 4)
+        self.assertEqual(self.bench.asked, [4])
 
 
 if __name__ == "__main__":

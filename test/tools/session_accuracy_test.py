@@ -20,8 +20,7 @@ class Rehearsal(Session):
         self.said = []
         self.poses = 0
         account = SimpleNamespace(say=self.said.append, set=lambda **fields: None)
-        actuator = {"workspace": {"tilt_limit": 0.3}}
-        super().__init__(self, None, actuator, Options(validation_poses=0, **options), None, account)
+        super().__init__(self, None, Options(validation_poses=0, **options), None, account)
 
     # What it asks its calibration node.
     def begun(self):
@@ -39,7 +38,7 @@ class Rehearsal(Session):
     def _measure(self, poses):
         self.poses += len(poses)
 
-    def _training_poses(self):
+    def _training_poses(self, _interrupted=()):
         return self.poses
 
     def _estimate(self):
@@ -80,7 +79,7 @@ class WantedAccuracy(unittest.TestCase):
 
     def test_ends_where_poses_fall_on_earlier_ones(self):
         class Repeated(Rehearsal):
-            def _training_poses(self):
+            def _training_poses(self, _interrupted=()):
                 return 1
 
         session = Repeated(poses=5, wanted_stddev=1e-6)

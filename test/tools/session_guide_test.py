@@ -153,21 +153,6 @@ class PosesOf(unittest.TestCase):
         self.assertEqual([p.validation for p in places], [False, False, True])
 
 
-class ValidationPoses(unittest.TestCase):
-    def test_lie_inside_the_workspace_and_are_the_same_for_a_seed(self):
-        poses = progress.validation_poses(50, 3, 24, 0.5, 7)
-        self.assertEqual(poses, progress.validation_poses(50, 3, 24, 0.5, 7))
-        self.assertNotEqual(poses, progress.validation_poses(50, 3, 24, 0.5, 8))
-        for pose in poses:
-            self.assertTrue(pose.validation)
-            self.assertLessEqual(max(abs(pose.joints[0]), abs(pose.joints[1])), 0.5)
-            self.assertEqual(len(set(pose.excitations)), 3)
-            self.assertTrue(all(1 <= coil <= 24 for (coil,) in pose.excitations))
-
-    def test_no_more_coils_than_there_are(self):
-        self.assertEqual(progress.validation_poses(1, 5, 2, 0.5, 1)[0].excitations, ((1,), (2,)))
-
-
 class Cycles(unittest.TestCase):
     def test_each_has_its_service(self):
         self.assertEqual(progress.service_of("joint"), ("calibrate_joint", 0))

@@ -13,6 +13,7 @@ enum class RandomPurpose : std::uint32_t {
   kManufacturingErrors = 100,
   kSessionPlan = 200,
   kSampleNoise = 210,
+  kValidationPoses = 220,
   kJointNoise = 300,
   kTrackerNoise = 301,
   kTrackerBadDwells = 302,

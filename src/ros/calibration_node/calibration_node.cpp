@@ -86,6 +86,7 @@ void CalibrationNode::advertiseServices() {
   advertise("diagnose", &CalibrationNode::explainSamples);
   advertise("check", &CalibrationNode::checkParameters);
   advertise("plan_poses", &CalibrationNode::planPoses);
+  advertise("draw_validation_poses", &CalibrationNode::drawValidationPoses);
   advertise("load_plan", &CalibrationNode::loadPlan);
   advertise("missing_patterns", &CalibrationNode::missingPatterns);
   advertise("reset", &CalibrationNode::reset);
@@ -362,8 +363,11 @@ void CalibrationNode::publishStatus() {
 
 void CalibrationNode::diagnose(DiagnosticStatus& status) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
+  const GradedCalibration& graded = session_.grade();
   if (waiting_.empty() && waiting_windows_.empty()) {
-    status.summary(DiagnosticStatus::OK, "good");
+    const bool is_contradicted = graded.grade == Grade::kContradicted;
+    status.summary(is_contradicted ? DiagnosticStatus::WARN : DiagnosticStatus::OK,
+                   is_contradicted ? printable(graded.reason) : "samples and windows are stored");
   } else {
     status.summaryf(DiagnosticStatus::ERROR,
                     "%zu samples and %zu windows of a motion wait to be stored: %s",
@@ -371,6 +375,7 @@ void CalibrationNode::diagnose(DiagnosticStatus& status) {
                     waiting_windows_.size(),
                     last_error_.c_str());
   }
+  status.add("grade", gradeName(graded.grade));
   status.add("revision", session_.revision().number);
   status.add("samples in use", session_.calibration().samples().size());
   status.add("automatic capture", auto_capture_ ? "on" : "off");

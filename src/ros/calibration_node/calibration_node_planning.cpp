@@ -15,6 +15,7 @@
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/measurement/validation_poses.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -223,6 +224,22 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     adopt(poses);
   } catch (const std::exception& error) {
     response.success = 0;
+    response.message = printable(error.what());
+  }
+  return true;
+}
+
+// The model never changes while the node runs.
+bool CalibrationNode::drawValidationPoses(msg::DrawValidationPoses::Request& request,
+                                          msg::DrawValidationPoses::Response& response) {
+  try {
+    const Actuator& nominal = session_.calibration().model().space().nominal();
+    const ValidationPoseOptions wanted = {request.poses, request.coils_per_pose, request.seed};
+    for (const PoseToMeasure& pose : sac::drawValidationPoses(nominal, wanted)) {
+      response.poses.push_back(poseToRos(pose));
+    }
+    response.success = 1;
+  } catch (const std::exception& error) {
     response.message = printable(error.what());
   }
   return true;

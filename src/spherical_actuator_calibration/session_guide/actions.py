@@ -63,16 +63,15 @@ class SessionAction(_AtTheBench):
     name = "session"
     type = msg.SessionAction
 
-    def __init__(self, ns, calibration, laboratory, actuator):
+    def __init__(self, ns, calibration, laboratory):
         super().__init__(ns, calibration, laboratory)
-        self._actuator = actuator
         self._wanted_pose = WantedPose(ns, laboratory.readings.names)
 
     def work(self, goal, task, account):
         self._take(task, account)
         try:
             options = options_of(goal, self._ns)
-            session = Session(self._calibration, self._laboratory, self._actuator, options, task, account)
+            session = Session(self._calibration, self._laboratory, options, task, account)
             is_complete = session.run()
         except (OptionError, PlanError) as error:
             return False, self._result(SessionResult.UNUSABLE, str(error), account)
@@ -119,7 +118,11 @@ class CaptureAction(_AtTheBench):
         else:
             self._measure(course, pose_of_capture(goal), account)
         count = len(course.samples)
-        message = f"The pose is measured: {count} sample{'' if count == 1 else 's'}."
+        samples = f"{count} sample{'' if count == 1 else 's'}"
+        message = f"The pose is measured: {samples}."
+        if goal.here:
+            others = " It is none of the planned poses, which wait as before." if self._calibration.has_open_poses() else ""
+            message = f"Captured without current where the rotor rests: {samples}.{others}"
         return True, msg.CaptureResult(success=True, message=message, samples=course.samples)
 
     def _measure(self, course, pose, account):

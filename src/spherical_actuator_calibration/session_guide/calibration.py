@@ -14,6 +14,7 @@ from spherical_actuator_calibration.srv import (
     Calibrate,
     Capture,
     CapturePlanned,
+    DrawValidationPoses,
     ListSamples,
     LoadPlan,
     MissingPatterns,
@@ -30,6 +31,7 @@ SERVICES = {
     "calibrate_poles": Calibrate,
     "capture": Capture,
     "capture_planned": CapturePlanned,
+    "draw_validation_poses": DrawValidationPoses,
     "list_samples": ListSamples,
     "load_plan": LoadPlan,
     "missing_patterns": MissingPatterns,
@@ -190,6 +192,11 @@ class Calibration:
         """Joint angles that differ by no more than this from a pose are at it [rad]."""
         return self._latest[CalibrationStatus].pose_tolerance
 
+    def has_open_poses(self):
+        """Whether a plan is followed, and poses of it are not measured."""
+        progress = self._latest[PlanProgress]
+        return progress is not None and not all(there.is_measured for there in progress.poses)
+
     def begun(self):
         """Poses of the plan in force, in their order, that have samples, and lack others."""
         poses = [pose_of(there.pose) for there in self._latest[PlanProgress].poses]
@@ -214,6 +221,13 @@ class Calibration:
         if not answer.success:
             raise RuntimeError("No plan: " + answer.message)
         return poses_from(answer.poses), answer.message
+
+    def draw_validation(self, poses, coils_each, seed):
+        """Poses that judge the result, with so many coils each; the same for the same seed."""
+        answer = self.call("draw_validation_poses", poses=poses, coils_per_pose=coils_each, seed=seed % 2**32)
+        if not answer.success:
+            raise RuntimeError("No poses to judge: " + answer.message)
+        return [pose_of(pose) for pose in answer.poses]
 
     def load_plan(self, path):
         """Poses of a plan of plan_session, or of an earlier session in its session.db, which the node follows then, and

@@ -98,7 +98,7 @@ class Engine:
         actions = (
             (CaptureAction(ns, bench, self._laboratory, coils), at_the_bench),
             (ExciteAction(ns, bench, self._laboratory, coils), at_the_bench),
-            (SessionAction(ns, bench, self._laboratory, actuator), at_the_bench),
+            (SessionAction(ns, bench, self._laboratory), at_the_bench),
             (PlanAction(Calibration(ns, console, topics)), planning),
             (SaveAction(Calibration(ns, console, topics)), saving),
         )

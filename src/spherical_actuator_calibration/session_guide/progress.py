@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import random
 
 
 @dataclasses.dataclass(frozen=True)
@@ -106,21 +105,6 @@ def patterns_to_capture(there):
     """In their order, by the PoseProgress of a pose; first that without current: its torque is taken off the others of
     the same rest, and a new visit is a new rest. None where the pose is measured."""
     return [] if there.is_measured else [(), *(tuple(pattern.coils) for pattern in there.missing)]
-
-
-def validation_poses(count, coils_each, coils, tilt, seed):
-    """Random poses inside the workspace that judge the result, the same for the same seed."""
-    generator = random.Random(seed)
-    poses = []
-    for _ in range(count):
-        joints = (
-            generator.uniform(-tilt, tilt),
-            generator.uniform(-tilt, tilt),
-            generator.uniform(-3.0, 3.0),
-        )
-        excited = sorted(generator.sample(range(1, coils + 1), min(coils_each, coils)))
-        poses.append(Pose(joints, tuple((coil,) for coil in excited), validation=True))
-    return poses
 
 
 def service_of(cycle):

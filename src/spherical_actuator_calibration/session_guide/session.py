@@ -16,15 +16,13 @@ class Session:
     """Leads through one session; everything measured is with the calibration node. Raises PlanError for a file that
     gives no poses, RuntimeError with a sentence where a person has to see to something, and Cancelled of its task."""
 
-    def __init__(self, calibration, laboratory, actuator, options, task, account):
+    def __init__(self, calibration, laboratory, options, task, account):
         self._options = options
-        self._actuator = actuator
         self._task = task
         self._account = account
         self._calibration = calibration
         self._course = PoseCourse(calibration, laboratory, options, task, account)
         self._linearity = LinearityTest(calibration, self._course, account, not options.skip_linearity)
-        self._coils = len(actuator.get("coils", []))
         self._progress = None
 
     def run(self):
@@ -53,8 +51,8 @@ class Session:
 
     def _wanted_poses(self):
         """Poses of this session, those that the node holds samples of left out or complete."""
-        training = self._training_poses()
         interrupted = [] if self._asks_for_files() else self._interrupted()
+        training = self._training_poses(interrupted)
         if training:
             measured = "1 pose is" if training == 1 else f"{training} poses are"
             partly = f", {len(interrupted)} of them in part" if interrupted else ""
@@ -62,14 +60,11 @@ class Session:
         planned = self._poses_of_files() or interrupted
         if not self._asks_for_files() and training < self._options.poses:
             planned = self._plan(self._options.poses - training, self._options.wanted_stddev, interrupted)
-        if any(pose.validation for pose in planned):
+        options = self._options
+        if not options.validation_poses or any(pose.validation for pose in planned):
             return planned
-        return planned + progress.validation_poses(
-            self._options.validation_poses,
-            self._options.coils_per_validation_pose,
-            self._coils,
-            0.8 * self._actuator["workspace"]["tilt_limit"],
-            self._options.seed,
+        return planned + self._calibration.draw_validation(
+            options.validation_poses, options.coils_per_validation_pose, options.seed
         )
 
     def _asks_for_files(self):
@@ -82,10 +77,15 @@ class Session:
         self._measure(poses[:1])
         return self._wanted_poses()
 
-    def _training_poses(self):
-        """How many are measured that are not held out."""
-        done = progress.poses_of(self._calibration.measured(), self._calibration.pose_tolerance())
-        return sum(not pose.validation for pose in done)
+    def _training_poses(self, interrupted=()):
+        """How many are measured that are not held out, with those that a session has begun. What was captured without
+        current tells nothing of poles and coils: a calibration of the joint is no part of the session."""
+        excites = bool(self._calibration.parameters().coils)
+        measured = [one for one in self._calibration.measured() if not one.validation and (one.pattern or not excites)]
+        tolerance = self._calibration.pose_tolerance()
+        done = progress.poses_of(measured, tolerance)
+        begun = [pose for pose in interrupted if not any(one.is_at(pose.joints, tolerance) for one in done)]
+        return len(done) + len(begun)
 
     def _poses_of_files(self):
         source = self._options.plan or self._options.repeat

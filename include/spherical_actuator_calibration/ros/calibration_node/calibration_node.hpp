@@ -15,6 +15,7 @@
 #include <spherical_actuator_calibration/Capture.h>
 #include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
+#include <spherical_actuator_calibration/DrawValidationPoses.h>
 #include <spherical_actuator_calibration/ListSamples.h>
 #include <spherical_actuator_calibration/LoadPlan.h>
 #include <spherical_actuator_calibration/MissingPatterns.h>
@@ -79,6 +80,8 @@ class CalibrationNode {
   bool refine(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool validate(msg::Calibrate::Request& request, msg::Calibrate::Response& response);
   bool planPoses(msg::PlanPoses::Request& request, msg::PlanPoses::Response& response);
+  bool drawValidationPoses(msg::DrawValidationPoses::Request& request,
+                           msg::DrawValidationPoses::Response& response);
   bool loadPlan(msg::LoadPlan::Request& request, msg::LoadPlan::Response& response);
   /// Keeps a plan and follows it; the caller holds the session.
   void adopt(const std::vector<PoseToMeasure>& poses);
