@@ -223,6 +223,13 @@ CalibrationRecord readCalibration(const YamlMap& map) {
   return record;
 }
 
+TorqueCurveStddev readCurveStddev(const YamlMap& map) {
+  TorqueCurveStddev stddev;
+  stddev.angles = map.numbers("angles", ValueRange::nonNegative());
+  stddev.torques = map.numbers("torques", ValueRange::nonNegative("N*m/A"), stddev.angles.size());
+  return stddev;
+}
+
 /// What moves the rotor beside its coils.
 void readDynamics(const YamlMap& map, CalibratedDescription& description) {
   Actuator& actuator = description.actuator;
@@ -275,6 +282,9 @@ CalibratedDescription readDescription(const YamlMap& file) {
   }
   if (map.has("torque_curve")) {
     actuator.torque_curve = readTorqueCurve(map);
+  }
+  if (map.has("torque_curve_stddev")) {
+    description.stddevs.torque_curve = readCurveStddev(map.map("torque_curve_stddev"));
   }
   actuator.workspace = readWorkspace(map);
   readDynamics(map, description);

@@ -189,6 +189,13 @@ std::string inertiaLine(const Eigen::Matrix3d& J) {
   return line.text();
 }
 
+std::string curveStddevLine(const TorqueCurveStddev& stddev) {
+  return YamlLine()
+      .add("angles", yamlNumbers(stddev.angles))
+      .add("torques", yamlNumbers(stddev.torques))
+      .text();
+}
+
 void writeDynamics(YamlWriter& writer, const Actuator& actuator, const ParameterStddevs& stddevs) {
   if (stddevs.unbalance || !actuator.unbalance.isZero(0.0)) {
     writer.entry(1, "rotor_unbalance", yamlNumbers(actuator.unbalance));
@@ -226,6 +233,9 @@ std::string renderDescription(const CalibratedDescription& description, const st
   writeAxes(writer, "coils", actuator.coils, description.stddevs.coils, coilLine);
   if (actuator.torque_curve) {
     writer.entry(1, "torque_curve", torqueCurveLine(*actuator.torque_curve));
+  }
+  if (description.stddevs.torque_curve) {
+    writer.entry(1, "torque_curve_stddev", curveStddevLine(*description.stddevs.torque_curve));
   }
   YamlLine workspace;
   workspace.add("tilt_limit", yamlNumber(actuator.workspace.tilt_limit));

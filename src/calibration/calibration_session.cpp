@@ -278,6 +278,9 @@ ParameterStddevs CalibrationSession::stddevs() const {
   if (!stddevs.unbalance) {
     stddevs.unbalance = start_.stddevs.unbalance;
   }
+  if (!stddevs.torque_curve) {
+    stddevs.torque_curve = start_.stddevs.torque_curve;
+  }
   return stddevs;
 }
 

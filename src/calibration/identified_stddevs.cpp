@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 
 namespace sac {
@@ -98,6 +100,49 @@ std::optional<Eigen::Vector3d> unbalanceStddev(const ParameterSpace& space,
   return stddevs;
 }
 
+/// At angles over the support, likewise: the curve is linear in the coordinates of its change.
+std::optional<TorqueCurveStddev> curveStddev(const ParameterSpace& space,
+                                             const CalibrationState& state) {
+  constexpr Eigen::Index kIntervals = 30;
+  const Actuator at = space.actuatorAt(state.belief.x);
+  if (!at.torque_curve) {
+    return std::nullopt;
+  }
+  const TorqueCurve curve(*at.torque_curve);
+  const Eigen::VectorXd angles =
+      Eigen::VectorXd::LinSpaced(kIntervals + 1, 0.0, curve.supportEnd());
+  const auto changeOf = [&](const TorqueCurve& moved) {
+    return angles.unaryExpr([&](double angle) { return moved.value(angle) - curve.value(angle); })
+        .eval();
+  };
+  std::vector<Eigen::Index> coordinates;
+  Eigen::MatrixXd derivatives(angles.size(), space.size());
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    const Actuator moved =
+        space.actuatorAt(state.belief.x + Eigen::VectorXd::Unit(space.size(), p));
+    const Eigen::VectorXd change = changeOf(TorqueCurve(*moved.torque_curve));
+    if (change.isZero(0.0)) {
+      continue;
+    }
+    if (!state.identified[static_cast<std::size_t>(p)]) {
+      return std::nullopt;
+    }
+    derivatives.col(static_cast<Eigen::Index>(coordinates.size())) = change;
+    coordinates.push_back(p);
+  }
+  if (coordinates.empty()) {
+    return std::nullopt;
+  }
+  const Eigen::MatrixXd D = derivatives.leftCols(static_cast<Eigen::Index>(coordinates.size()));
+  const Eigen::MatrixXd covariance = state.belief.covariance(coordinates, coordinates);
+  const Eigen::VectorXd stddevs =
+      (D * covariance).cwiseProduct(D).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
+  const double unit = at.torque_curve->angle_unit == AngleUnit::kDegree ? kOneDegree : 1.0;
+  const Eigen::VectorXd described = angles / unit;
+  return TorqueCurveStddev{{described.data(), described.data() + described.size()},
+                           {stddevs.data(), stddevs.data() + stddevs.size()}};
+}
+
 std::optional<double> gainStddev(const CalibrationState& state, const Gradient& gradient) {
   const bool is_identified =
       !gradient.empty() && std::all_of(gradient.begin(), gradient.end(), [&](const auto& term) {
@@ -131,6 +176,7 @@ ParameterStddevs identifiedStddevs(const ParameterSpace& space, const Calibratio
   }
   enterCorrections(space, state, result.joints);
   result.unbalance = unbalanceStddev(space, state);
+  result.torque_curve = curveStddev(space, state);
   for (std::size_t i = 0; i < space.poles(); ++i) {
     const Eigen::Index pole = space.pole(i);
     result.poles.push_back({at(pole), at(pole + 1), gainStddev(state, gains.poles[i])});

@@ -87,6 +87,7 @@ CalibratedDescription CalibrationSession::description(const CalibrationOrigin& o
   result.actuator.torque_curve = calibrated.torque_curve;
   result.actuator.unbalance = calibrated.unbalance;
   result.stddevs.unbalance = identified.unbalance;
+  result.stddevs.torque_curve = identified.torque_curve;
   result.actuator.inertia = calibrated.inertia;
   result.actuator.friction = calibrated.friction;
   result.actuator.orientation_map = calibrated.orientation_map;

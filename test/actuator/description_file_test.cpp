@@ -37,6 +37,7 @@ CalibratedDescription fullDescription() {
   stddevs.joints[2].offset = 5e-324;
   stddevs.poles[1] = {1e-5, 2e-5};
   stddevs.coils[0].azimuth = 3e-5;
+  stddevs.torque_curve = TorqueCurveStddev{{0.0, 1.0 / 3.0, 30.0}, {0.0, 1e-4 / 3.0, 0.0}};
   CalibrationRecord& record = *description.calibration;
   record.source.push_back({"/data/Prüfstand 2.bag", "sha256:1f"});
   record.cycles.push_back({"coil", 7, 30, 0, 0.004, 3.2e-6, "N·m", 0.97});
@@ -125,6 +126,11 @@ void expectIdentical(const CalibratedDescription& a, const CalibratedDescription
     EXPECT_EQ(left.coefficients, right.coefficients);
     EXPECT_EQ(std::tie(left.blend_start, left.support_begin, left.support_end),
               std::tie(right.blend_start, right.support_begin, right.support_end));
+  }
+  ASSERT_EQ(a.stddevs.torque_curve.has_value(), b.stddevs.torque_curve.has_value());
+  if (a.stddevs.torque_curve) {
+    EXPECT_EQ(a.stddevs.torque_curve->angles, b.stddevs.torque_curve->angles);
+    EXPECT_EQ(a.stddevs.torque_curve->torques, b.stddevs.torque_curve->torques);
   }
   EXPECT_EQ(a.actuator.workspace.tilt_limit, b.actuator.workspace.tilt_limit);
   ASSERT_EQ(a.calibration.has_value(), b.calibration.has_value());

@@ -2,11 +2,14 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/torque_curve.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -81,6 +84,41 @@ TEST(IdentifiedStddevs, TellOfTheUnbalance) {
   const auto unbalance = identifiedStddevs(space, state).unbalance;
   ASSERT_TRUE(unbalance);
   EXPECT_TRUE(unbalance->isApprox(stddevs.segment<3>(first), 1e-9));
+}
+
+TEST(IdentifiedStddevs, TellOfTheTorqueCurveAtAnyAngle) {
+  const ParameterSpace space = spaceWith({"torque_curve"});
+  CalibrationState state = nominalState(space, {});
+  const Eigen::Index first = space.effect() + space.effects().first("torque_curve");
+  const Eigen::Index shapes = space.size() - first;
+  for (Eigen::Index n = 0; n < shapes; ++n) {
+    EXPECT_FALSE(identifiedStddevs(space, state).torque_curve) << "not all of it";
+    identify(state, first + n, 1e-3 * static_cast<double>(n + 1));
+  }
+  state.belief.covariance(first, first + 2) = state.belief.covariance(first + 2, first) = 1e-6;
+  const auto stddev = identifiedStddevs(space, state).torque_curve;
+  ASSERT_TRUE(stddev);
+  // By many curves drawn from the belief; angles in degrees, as the curve has them.
+  const Eigen::MatrixXd L =
+      state.belief.covariance.bottomRightCorner(shapes, shapes).llt().matrixL();
+  const TorqueCurve mean(*space.nominal().torque_curve);
+  std::vector<double> squares(stddev->angles.size(), 0.0);
+  scenarios::Generator generator(7);
+  std::normal_distribution<double> normal;
+  constexpr int kDraws = 4000;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Eigen::VectorXd x = state.belief.x;
+    x.tail(shapes) += L * Eigen::VectorXd::NullaryExpr(shapes, [&] { return normal(generator); });
+    const TorqueCurve curve(*space.actuatorAt(x).torque_curve);
+    for (std::size_t n = 0; n < squares.size(); ++n) {
+      const double angle = stddev->angles[n] * kOneDegree;
+      squares[n] += std::pow(curve.value(angle) - mean.value(angle), 2) / kDraws;
+    }
+  }
+  EXPECT_NEAR(stddev->angles.back() * kOneDegree, mean.supportEnd(), 1e-12);
+  for (std::size_t n = 0; n < squares.size(); ++n) {
+    EXPECT_NEAR(std::sqrt(squares[n]), stddev->torques[n], 0.05 * stddev->torques[n] + 1e-12) << n;
+  }
 }
 
 TEST(IdentifiedStddevs, AGainNeedsAllThatItIsMadeOf) {

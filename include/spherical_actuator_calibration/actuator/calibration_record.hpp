@@ -30,12 +30,19 @@ struct AxisStddev {
   std::optional<double> gain = std::nullopt;  ///< [1]
 };
 
+/// How well a torque curve is known: its standard deviation at some angles.
+struct TorqueCurveStddev {
+  std::vector<double> angles;   ///< ascending, in the angle_unit of the curve
+  std::vector<double> torques;  ///< [N·m/A]
+};
+
 /// Standard deviations of an actuator's parameters, entry by entry as in the Actuator.
 struct ParameterStddevs {
   std::array<JointStddev, kJoints> joints;
   std::vector<AxisStddev> poles;
   std::vector<AxisStddev> coils;
   std::optional<Eigen::Vector3d> unbalance = std::nullopt;  ///< [N·m]
+  std::optional<TorqueCurveStddev> torque_curve = std::nullopt;
 };
 
 /// A recording that a calibration rests on.

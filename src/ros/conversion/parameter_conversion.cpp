@@ -41,7 +41,9 @@ void fillCorrection(const ReadingCorrection& correction,
   fillStddevs(stddev.harmonics, item.harmonics_stddev);
 }
 
-msg::TorqueCurve curveToRos(const TorqueCurveDescription& curve) {
+/// `stddev`: of a curve that is identified; else a table may state its own.
+msg::TorqueCurve curveToRos(const TorqueCurveDescription& curve,
+                            const std::optional<TorqueCurveStddev>& stddev) {
   msg::TorqueCurve message;
   message.in_degrees = static_cast<std::uint8_t>(curve.angle_unit == AngleUnit::kDegree);
   message.coefficients = curve.coefficients;
@@ -49,6 +51,13 @@ msg::TorqueCurve curveToRos(const TorqueCurveDescription& curve) {
   message.table_torques = curve.table.torques;
   message.blend_start = curve.blend_start;
   message.support = {curve.support_begin, curve.support_end};
+  if (stddev) {
+    message.stddev_angles = stddev->angles;
+    message.stddevs = stddev->torques;
+  } else if (!curve.table.stddevs.empty()) {
+    message.stddev_angles = curve.table.angles;
+    message.stddevs = curve.table.stddevs;
+  }
   return message;
 }
 
@@ -121,7 +130,7 @@ msg::ActuatorParameters parametersToRos(const Actuator& actuator, const Paramete
     fillCorrection(actuator.joints[k].correction, stddev, message.joints[k]);
   }
   if (actuator.torque_curve) {
-    message.torque_curve = curveToRos(*actuator.torque_curve);
+    message.torque_curve = curveToRos(*actuator.torque_curve, stddevs.torque_curve);
   }
   message.unbalance = vectorToRos(actuator.unbalance);
   message.unbalance_stddev =

@@ -187,6 +187,20 @@ TEST(MsgConversion, ParametersTellHowWellEachIsIdentified) {
   EXPECT_TRUE(std::isinf(parametersToRos(scenarios::paperNominal()).unbalance_stddev.y));
 }
 
+TEST(MsgConversion, ParametersTellHowWellTheTorqueCurveIsKnown) {
+  Actuator actuator = scenarios::paperNominal();
+  EXPECT_TRUE(parametersToRos(actuator).torque_curve.stddevs.empty());
+  // A table that was measured states it, until the curve is identified.
+  actuator.torque_curve->table = {
+      {0.0, 5.0, 20.0, 30.0}, {0.0, 0.2, 0.3, 0.0}, {1e-4, 2e-4, 2e-4, 1e-4}};
+  EXPECT_EQ(parametersToRos(actuator).torque_curve.stddev_angles[1], 5.0);
+  EXPECT_EQ(parametersToRos(actuator).torque_curve.stddevs[1], 2e-4);
+  ParameterStddevs stddevs;
+  stddevs.torque_curve = TorqueCurveStddev{{0.0, 10.0}, {0.0, 3e-5}};
+  EXPECT_EQ(parametersToRos(actuator, stddevs).torque_curve.stddev_angles[1], 10.0);
+  EXPECT_EQ(parametersToRos(actuator, stddevs).torque_curve.stddevs[1], 3e-5);
+}
+
 /// The paper's unit with everything that can be identified of one.
 Actuator identifiedActuator() {
   Actuator actuator = scenarios::paperTruth();
