@@ -11,6 +11,7 @@
 #include "material_value.hpp"
 #include "predicted_torques.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "torque_screen.hpp"
 
 namespace sac {
@@ -50,12 +51,18 @@ Hypothesis torqueAxis(Eigen::Index axis, double factor, double tolerance) {
 constexpr double kNear = 3.0;
 constexpr double kFinest = 1e-4;
 
+/// Torques without current are a bias, or the rotor's weight: alike, and far from any range.
+bool mayReachRange(const Sample& sample, double current_threshold) {
+  return sample.has_torque && !excitedCoils(sample, current_threshold).empty();
+}
+
 struct Rails {
+  double current_threshold = 0.0;                  ///< [A]
   Eigen::Vector3d most = Eigen::Vector3d::Zero();  ///< of each channel [N·m]
 
   bool isReached(const Sample& sample) const {
     const double least = kNear * sample.torque_stddev;
-    return sample.has_torque &&
+    return mayReachRange(sample, current_threshold) &&
            ((most - sample.torque.cwiseAbs()).array() <= least && most.array() > 2.0 * least).any();
   }
   /// To the last digit, as no noise is: nothing was taken off it afterwards.
@@ -105,10 +112,11 @@ Hypothesis torqueClipped(const Rails& rails, const std::vector<Sample>& samples)
   return result;
 }
 
-Rails railsOf(const std::vector<Sample>& samples) {
+Rails railsOf(const std::vector<Sample>& samples, double current_threshold) {
   Rails rails;
+  rails.current_threshold = current_threshold;
   for (const Sample& sample : samples) {
-    if (sample.has_torque) {
+    if (mayReachRange(sample, current_threshold)) {
       rails.most = rails.most.cwiseMax(sample.torque.cwiseAbs());
     }
   }
@@ -145,7 +153,7 @@ std::vector<ScreenedCandidate> screenTorqueSensor(const WiringCase& described,
       all.push_back(torqueAxis(axis, factor, config.tolerance.effect));
     }
   }
-  const Rails rails = railsOf(described.samples);
+  const Rails rails = railsOf(described.samples, config.estimation.current_threshold);
   const auto reached = static_cast<std::size_t>(std::count_if(
       described.samples.begin(), described.samples.end(), [&rails](const Sample& sample) {
         return rails.isReached(sample);
