@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/diagnosis/validity_check.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
+#include "unstated_registration.hpp"
 
 namespace sac {
 /// Collects what speaks for and against one session.
@@ -150,7 +151,11 @@ class CalibrationGrader::Examiner {
              "run refine";
     }
     const std::string confounded = confoundedRegistration(parameters);
-    return confounded.empty() ? unstatedRegistration() : confounded;
+    const bool used_torques = isTorqueIdentified() &&
+                              (last_success_ == nullptr || last_success_->cycle != Cycle::kMotion);
+    return confounded.empty()
+               ? unstatedRegistrationInWords(session_.config().registration, used_torques)
+               : confounded;
   }
 
   /// Of what held-out samples should judge, and do not.
@@ -229,31 +234,6 @@ class CalibrationGrader::Examiner {
       }
     }
     return {};
-  }
-
-  /// Registrations that count as exact because nothing is stated of them.
-  std::string unstatedRegistration() const {
-    const RegistrationUncertainty& registration = session_.config().registration;
-    std::string names;
-    const auto add = [&names](const char* name) {
-      names += std::string(names.empty() ? "" : ", ") + name;
-    };
-    if (!registration.stator_tracker) {
-      add("stator_tracker");
-    }
-    if (!registration.rotor_marker) {
-      add("rotor_marker");
-    }
-    const bool used_torques = isTorqueIdentified() &&
-                              (last_success_ == nullptr || last_success_->cycle != Cycle::kMotion);
-    if (used_torques && !registration.rotor_ft_sensor) {
-      add("rotor_ft_sensor");
-    }
-    const bool are_several = names.find(',') != std::string::npos;
-    return names.empty() ? names
-                         : ", but their uncertainty is relative to the registrations, which count "
-                           "as exact because registration." +
-                               names + (are_several ? " are not stated" : " is not stated");
   }
 
   std::string missedAccuracy() const {

@@ -17,6 +17,7 @@
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
 #include "spherical_actuator_calibration/estimation/sequential_update.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "told_coils.hpp"
 
 namespace sac {
 namespace {
@@ -204,7 +205,8 @@ class HeldOutJudge::Judgement {
     if (one.quantity == Quantity::kTorque) {
       one.coils = coilsOn(sample, options_.current_threshold);
     }
-    one.counts = isJudged(one);
+    one.counts = std::all_of(
+        one.coils.begin(), one.coils.end(), [this](std::size_t j) { return linear_coils_[j]; });
     one.dwell = dwells_;
     one.squared_norm = linear_.residual.squaredNorm();
     if (one.counts) {
@@ -222,12 +224,6 @@ class HeldOutJudge::Judgement {
       ++dwells_;
       dwell_ = shares ? std::optional<Sample>(sample) : std::nullopt;
     }
-  }
-
-  /// Whether the test counts a measurement.
-  bool isJudged(const HeldOutMeasurement& one) const {
-    return std::all_of(
-        one.coils.begin(), one.coils.end(), [this](std::size_t j) { return linear_coils_[j]; });
   }
 
   void whitenJudged(const ObservationEvaluator& evaluator, HeldOutMeasurement& one) const {
@@ -326,27 +322,13 @@ class HeldOutJudge::Judgement {
     if (!one.counts) {
       return;
     }
-    noteTold(one);
+    const std::vector<std::size_t> told = toldCoils(one, problem_.model->space());
+    result_.told_coils.insert(told.begin(), told.end());
     if (one.dwell != added_dwell_) {
       update_->beginDwell();
       added_dwell_ = one.dwell;
     }
     update_->observe(one.misfit, one.loading);
-  }
-
-  /// Coils of which the largest error that is judged would show in a torque.
-  void noteTold(const HeldOutMeasurement& one) {
-    const std::vector<Eigen::Index>& columns = one.misfit.columns;
-    for (const std::size_t coil : one.coils) {
-      const Eigen::Index first = problem_.model->space().coil(coil);
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        const bool is_of_coil = columns[k] == first || columns[k] == first + 1;
-        const auto column = one.misfit.jacobian.col(static_cast<Eigen::Index>(k));
-        if (is_of_coil && kLinearRange * column.norm() > 1.0) {
-          result_.told_coils.insert(coil);
-        }
-      }
-    }
   }
 
   const EstimationOptions options_;

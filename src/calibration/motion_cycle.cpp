@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "ambiguous_motion.hpp"
 #include "cycle_checks.hpp"
 #include "cycle_conclusion.hpp"
 #include "motion_doubts.hpp"
@@ -235,33 +236,6 @@ std::string failure(const MotionProblem& problem,
   return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;
 }
 
-/// Why other axes may explain a motion as well; empty: they do not. Poles and coils that hardly
-/// move the rotor have several minima between the drawing and where they are: motions without
-/// excitation, which told axes to 3 to 11 mrad, ended 5 to 67 standard deviations off, and fitted;
-/// those that told all to 2.4 mrad were right.
-std::string ambiguity(const MotionProblem& problem, const Estimate& estimate) {
-  constexpr double kMostStddev = 2.5e-3;  // [rad]
-  const ParameterSpace& space = problem.model->space();
-  const Eigen::Index first = space.joint(space.joints());
-  double worst = 0.0;
-  for (const Eigen::Index p : problem.free) {
-    const bool is_open = std::find(estimate.unobservable.begin(), estimate.unobservable.end(), p) !=
-                         estimate.unobservable.end();
-    if (p >= first && p < space.effect() && !is_open) {
-      worst = std::max(worst, estimate.belief.covariance(p, p));
-    }
-  }
-  if (worst <= kMostStddev * kMostStddev) {
-    return {};
-  }
-  return format(
-      "%sa pole or coil is told to %.2g mrad only, so that other axes may explain it as well: "
-      "excite the coils while the "
-      "rotor moves (plan_motion), with more current, or record longer.",
-      kBegin,
-      1e3 * std::sqrt(worst));
-}
-
 void fillReport(const MotionEstimate& found, CycleReport& report) {
   const Estimate& estimate = found.estimate;
   report.motion = found.summary;
@@ -308,18 +282,6 @@ std::string successInWords(const MotionSummary& summary, std::size_t unobservabl
   return words;
 }
 
-/// "", or a sentence: of strength and inertia one is found, the other is that of the drawing.
-std::string exactInertiaInWords(const ParameterSpace& space) {
-  const std::vector<PlacedEffect>& effects = space.effects().effects();
-  const bool finds_strength =
-      std::any_of(effects.begin(), effects.end(), [](const PlacedEffect& placed) {
-        return placed.name == effect_name::kStrengthScale;
-      });
-  return finds_strength ? " Strength, unbalance and friction are relative to the inertia of the "
-                          "drawing, which counts as exact: by how much it is off, they are, too."
-                        : "";
-}
-
 HasOrientations orientationsIn(const MotionRecording& recording) {
   const bool has_any =
       std::any_of(recording.spans.begin(), recording.spans.end(), [](const MotionStreams& streams) {
@@ -356,8 +318,9 @@ CycleOutcome runWithMotion(const CalibrationModel& model,
     return outcome;
   }
   fillReport(found, report);
-  report.message = ambiguity(problem, found.estimate);
-  if (!report.message.empty()) {
+  const std::string ambiguous = ambiguityInWords(problem, found.estimate);
+  if (!ambiguous.empty()) {
+    report.message = kBegin + ambiguous;
     return outcome;
   }
   report.doubts = motionDoubts(found, recording);

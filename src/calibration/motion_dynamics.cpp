@@ -90,4 +90,15 @@ std::string strangeInertiaInWords(const CycleReport& motion, const Actuator& des
       factor);
 }
 
+std::string exactInertiaInWords(const ParameterSpace& space) {
+  const std::vector<PlacedEffect>& effects = space.effects().effects();
+  const bool finds_strength =
+      std::any_of(effects.begin(), effects.end(), [](const PlacedEffect& placed) {
+        return placed.name == effect_name::kStrengthScale;
+      });
+  return finds_strength ? " Strength, unbalance and friction are relative to the inertia of the "
+                          "drawing, which counts as exact: by how much it is off, they are, too."
+                        : "";
+}
+
 }  // namespace sac

@@ -29,4 +29,7 @@ ToldDynamics toldDynamics(const std::vector<CycleReport>& reports);
 /// description are then as far from the real ones, or the rotor is another one.
 std::string strangeInertiaInWords(const CycleReport& motion, const Actuator& described);
 
+/// "", or a sentence: of strength and inertia one is found, the other is that of the drawing.
+std::string exactInertiaInWords(const ParameterSpace& space);
+
 }  // namespace sac

@@ -261,8 +261,7 @@ void printResult(const CalibrationSession& session, const std::optional<Actuator
     }
   }
   std::cout << openParagraph(session);
-  const std::string& map = session.orientationMap().sentence;
-  if (!map.empty()) {
+  if (const std::string& map = session.orientationMap().sentence; !map.empty()) {
     std::cout << map << "\n";
   }
 }

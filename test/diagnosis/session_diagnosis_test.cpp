@@ -52,6 +52,29 @@ TEST_F(SessionDiagnosis, SaysNothingOfCoilsThatAreOff) {
   }
 }
 
+// Level 1, with a force/torque sensor that is not tared.
+TEST_F(SessionDiagnosis, TakesNoBiasWithoutCurrentForTheEndOfARange) {
+  scenarios::Generator generator(2);
+  std::normal_distribution<double> newton_metre(0.0, 1e-4);
+  std::vector<Sample> samples =
+      scenarios::orientationSamples(scenarios::paperTruth(),
+                                    scenarios::randomPoses(12, 0.3, generator),
+                                    1e-3,
+                                    scenarios::uniformStddev(1e-3),
+                                    generator);
+  for (Sample& sample : samples) {
+    sample.has_torque = true;
+    sample.torque_stddev = 1e-4;
+    sample.current = Eigen::VectorXd::Zero(24);
+    sample.torque = Eigen::Vector3d(4e-3, -2e-3, 3e-3) +
+                    Eigen::Vector3d::NullaryExpr([&] { return newton_metre(generator); });
+  }
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  const std::vector<Diagnosis> mistakes = diagnoseMistakes(session);
+  EXPECT_TRUE(mistakes.empty()) << mistakes.front().message;
+  EXPECT_TRUE(session.run({Cycle::kJoint}).success);
+}
+
 // Twelve coils in turn at each of few poses: most torques of a coil that no pole reaches are
 // nothing, and one more is, that the drawing puts at the end of the reach.
 TEST_F(SessionDiagnosis, SaysNothingOfCoilsThatNoPoleReaches) {

@@ -174,6 +174,18 @@ class Motion(RecordedMotion):
         self.assertEqual([reason for reason in outcome.left_out if "end of its sensor" in reason], [])
         self.assertLessEqual(sum(outcome.left_out.values()), 3)
 
+    def test_a_motion_without_excitation_is_refused(self):
+        machine = free_motion.Machine(excitation=1e-6)
+        motion = free_motion.simulate(self.unit, self.errors, machine, self.SECONDS, self.SEED)
+        recording = free_motion.record(self.unit, self.errors, motion, free_motion.Streams(), self.SEED)
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "held.bag")
+            write_bag(bag, recording, len(self.unit.coils))
+            result = self.calibrate_bags(folder, "motion", [bag])
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("so that other axes may explain it as well: excite the coils", result.stdout)
+        self.assertNotIn("diagnosis: ", result.stdout.replace("diagnosis: none", ""))
+
     def test_calibrate_bag_takes_motion_by_itself(self):
         with tempfile.TemporaryDirectory() as folder:
             bag, output = os.path.join(folder, "motion.bag"), os.path.join(folder, "calibrated.yaml")

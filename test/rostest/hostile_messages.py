@@ -146,7 +146,7 @@ class HostileMessages(unittest.TestCase):
         for kind, (service, content) in REQUESTS.items():
             with contextlib.suppress(EOFError):
                 _, answer = hostile_peer.call(f"{NAMESPACE}/{service}", content)
-                self.assertNotIn(b"\x1b", answer, kind)
+                self.assertNotRegex(answer, rb"\x1b[\[\]]", kind)  # a stamp may have such a byte
             self.expect_all_well(kind)
         for name in self.nodes:
             # roscpp's own: one ends a node where rosconsole and log4cxx do not fit, the other keeps what it is given.

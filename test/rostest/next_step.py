@@ -185,6 +185,7 @@ class NextStep(unittest.TestCase):
         saved = self.client.call("save")
         self.assertTrue(saved.success, saved.message)
         self.assertIn("Grade: contradicted", saved.message)
+        wait_for(lambda: self.client.diagnostic("session").get("grade") == "contradicted", "the grade on diagnostics")
         self.says("Do not use the parameters")
 
 
