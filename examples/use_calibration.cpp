@@ -43,6 +43,9 @@ int main(int argc, char** argv) {
     if (!actuator.hasUncertainty()) {
       std::puts("No uncertainty is stated: nobody has calibrated this, and ± 0 is not known.");
     }
+    if (actuator.isContradicted()) {
+      std::puts("What was held out contradicted this calibration: do not use it, calibrate anew.");
+    }
     if (actuator.hasJoints()) {
       const auto pose = actuator.orientation(joints);
       const Eigen::Quaterniond q(pose.R_stator_rotor);

@@ -27,8 +27,10 @@ def main(path, *words):
 
 if __name__ == "__main__":
     if len(sys.argv) != 5:
-        sys.exit(__doc__)
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
     try:
         main(*sys.argv[1:])
     except ValueError as wrong:
-        sys.exit(f"use_calibration: {wrong}")
+        print(f"use_calibration: {wrong}", file=sys.stderr)
+        sys.exit(2)

@@ -227,8 +227,9 @@ std::string failure(const MotionProblem& problem,
            (skew.empty() ? skew : skew + " ") +
            (is_balance
                 ? endsInWords(found.at_end) +
-                      "Check signs and channels of currents, torque curve, strengths, polarities, "
-                      "joint sensors and the clocks of the streams. Where a force/torque sensor "
+                      "Check signs, channels and zeros of currents, torque curve, strengths, "
+                      "polarities, joint sensors and the clocks of the streams. Where a "
+                      "force/torque sensor "
                       "is at hand, samples at rest tell more (diagnose)."
                 : "Check joint sensors, frames, and the tracker with its clock.");
   }

@@ -158,6 +158,17 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
              : "";
 }
 
+/// Of groups that contradict: one coil after the other rarely changes.
+std::string severalInWords(const std::vector<HeldOutGroup>& groups) {
+  const bool are_coils = std::none_of(groups.begin(), groups.end(), [](const HeldOutGroup& one) {
+    return one.name == kOrientations;
+  });
+  return groups.size() > 1 && are_coils ? " Several coils at once: a joint, or the rotor on it, "
+                                          "that has moved by less than the "
+                                          "tracker shows turns all poles against them, too."
+                                        : "";
+}
+
 }  // namespace
 
 ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples checked) {
@@ -202,6 +213,7 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
                                         "(probability %.2g).",
                                         validation.probability)
                                   : "Not valid any more: changed are " + changed + ".";
+  check.message += severalInWords(validation.contradicting());
   const Actuator in_force = session.model().space().actuatorAt(session.state().belief.x);
   check.changes = diagnoseWiring(in_force, held_out, session.config()).mistakes;
   for (const Diagnosis& change : check.changes) {

@@ -285,8 +285,9 @@ void CalibrationPanel::showCalibration() {
   }
   coil_->setRange(1, std::max(1, static_cast<int>(model_.coils())));
   const std::string reason = model_.gradeReason() + " (" + model_.revision() + ")";
-  grade_->setText(QString("<b>%1</b> <small>%2</small>")
-                      .arg(QString::fromStdString(model_.grade()).toHtmlEscaped(),
+  grade_->setText(QString("<b%1>%2</b> <small>%3</small>")
+                      .arg(model_.isContradicted() ? " style='color:#c62828'" : "",
+                           QString::fromStdString(model_.grade()).toHtmlEscaped(),
                            QString::fromStdString(reason).toHtmlEscaped()));
   parameters_->fill(model_.parameters());
   estimates_->fill(model_.estimates());
@@ -297,8 +298,9 @@ void CalibrationPanel::showCalibration() {
 void CalibrationPanel::showAnswer() {
   const std::optional<ServiceAnswer> answer = caller_.takeAnswer();
   if (answer) {
+    const bool is_well = answer->success && !(called_ == "save" && model_.isContradicted());
     outcome_->showEnd(called_ + ": " + QString::fromStdString(answer->message),
-                      answer->success ? OutcomeLabel::Ending::kGood : OutcomeLabel::Ending::kBad);
+                      is_well ? OutcomeLabel::Ending::kGood : OutcomeLabel::Ending::kBad);
     changed_ = true;
     setCallsEnabled(true);
   } else if (caller_.isBusy()) {

@@ -107,6 +107,7 @@ class PanelModel {
   /// What the calibration is worth: "Grade: good.", and why.
   std::string grade() const;
   const std::string& gradeReason() const { return status_.grade_reason; }
+  bool isContradicted() const { return status_.grade == "contradicted"; }
   /// The parameters in force; what is not identified has no value to show.
   std::vector<ParameterLine> parameters() const;
   /// The parameters that the last cycle was free to change.

@@ -30,7 +30,7 @@ class UseCalibration(unittest.TestCase):
         script = os.path.join(SOURCE, "examples", "use_calibration.py")
         for words in (("no_such_file.yaml", "0"), (os.path.join(SOURCE, "config", "pm_spherical_8x24.yaml"), "abc")):
             result = run(sys.executable, script, *words, "0", "0")
-            self.assertEqual(result.returncode, 1)
+            self.assertEqual(result.returncode, 2)
             self.assertTrue(result.stderr.startswith("use_calibration: ") and words[-1 if words[1] == "abc" else 0] in result.stderr)
 
 
