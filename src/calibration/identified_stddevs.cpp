@@ -111,7 +111,7 @@ std::optional<TorqueCurveStddev> curveStddev(const ParameterSpace& space,
   const TorqueCurve curve(*at.torque_curve);
   const Eigen::VectorXd angles =
       Eigen::VectorXd::LinSpaced(kIntervals + 1, 0.0, curve.supportEnd());
-  const auto changeOf = [&](const TorqueCurve& moved) {
+  const auto change_of = [&](const TorqueCurve& moved) {
     return angles.unaryExpr([&](double angle) { return moved.value(angle) - curve.value(angle); })
         .eval();
   };
@@ -120,7 +120,7 @@ std::optional<TorqueCurveStddev> curveStddev(const ParameterSpace& space,
   for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
     const Actuator moved =
         space.actuatorAt(state.belief.x + Eigen::VectorXd::Unit(space.size(), p));
-    const Eigen::VectorXd change = changeOf(TorqueCurve(*moved.torque_curve));
+    const Eigen::VectorXd change = change_of(TorqueCurve(*moved.torque_curve));
     if (change.isZero(0.0)) {
       continue;
     }
