@@ -50,7 +50,7 @@ class CalibrationGrader::Examiner {
       is_outdated_ = validation_ != nullptr && newestContradict(validation);
     }
     const Grade grade = this->grade();
-    return {grade, reason(grade)};
+    return {grade, reason(grade), grade == Grade::kContradicted && isContradicted()};
   }
 
   void settle() {
@@ -245,17 +245,6 @@ class CalibrationGrader::Examiner {
       return format(", but the expected orientation error is above the wanted %.2g mrad",
                     1e3 * wanted.orientation);
     }
-    // Registrations that are hardly known leave it so, however well all fits.
-    const ManufacturingTolerance& tolerance = session_.config().tolerance;
-    const double drawn = std::max(tolerance.joint_axis, tolerance.joint_offset);
-    if (!(wanted.orientation > 0.0) && drawn > 0.0 &&
-        session_.expectedErrors().orientation > drawn) {
-      return format(
-          ", but the expected orientation error is no better than that of the drawing, whose "
-          "tolerance "
-          "is %.2g mrad: find the registrations better (register_frames)",
-          1e3 * drawn);
-    }
     if (wanted.torque > 0.0 && session_.expectedErrors().torque > wanted.torque) {
       return format(", but the expected torque error is above the wanted %.2g mN.m per ampere",
                     1e3 * wanted.torque);
@@ -389,9 +378,9 @@ GradedCalibration gradeCalibration(const CalibrationSession& session) {
 
 CalibratedDescription gradedDescription(const CalibrationSession& session,
                                         const CalibrationOrigin& origin,
-                                        Grade grade) {
+                                        const GradedCalibration& graded) {
   CalibratedDescription result = session.description(origin);
-  if (grade == Grade::kContradicted && result.calibration->validation) {
+  if (graded.held_out_contradicts && result.calibration->validation) {
     result.calibration->validation->contradicted = true;
   }
   return result;

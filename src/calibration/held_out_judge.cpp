@@ -69,6 +69,7 @@ class HeldOutJudge::Judgement {
     }
     const HeldOutValidation& of_samples = judgeSamples(samples);
     if (other_) {
+      result_.has_windows_beside = other_->torques > 0;
       other_->undecided_coils = of_samples.undecided_coils;
     }
     return other_ ? severer(of_samples, *other_) : of_samples;
@@ -304,13 +305,14 @@ class HeldOutJudge::Judgement {
       torque_squares_ = 0.0;
       result_.orientations = 0;
       result_.torques = 0;
-      result_.told_coils.clear();
+      told_ = ToldCoils();
     }
     for (; added_ < judged_.size(); ++added_) {
       if (!result_.residuals[added_].rejected) {
         addMisfit(judged_[added_]);
       }
     }
+    result_.told_coils = told_.coils();
     result_.orientation_rms = rootMean(orientation_squares_, result_.orientations);
     result_.torque_rms = rootMean(torque_squares_, result_.torques);
   }
@@ -322,8 +324,7 @@ class HeldOutJudge::Judgement {
     if (!one.counts) {
       return;
     }
-    const std::vector<std::size_t> told = toldCoils(one, problem_.model->space());
-    result_.told_coils.insert(told.begin(), told.end());
+    told_.add(one, problem_.model->space());
     if (one.dwell != added_dwell_) {
       update_->beginDwell();
       added_dwell_ = one.dwell;
@@ -355,6 +356,7 @@ class HeldOutJudge::Judgement {
   std::optional<SequentialUpdate> update_;  ///< the first added_ of judged_ that are not rejected
   std::size_t added_ = 0;
   std::size_t added_dwell_ = 0;
+  ToldCoils told_;
   double orientation_squares_ = 0.0;
   double torque_squares_ = 0.0;
 

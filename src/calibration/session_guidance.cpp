@@ -12,6 +12,9 @@
 namespace sac {
 namespace {
 
+/// Beside what the paper's protocol wants.
+constexpr const char* kPlanned = " Fewer captures do at poses that plan_poses chooses.";
+
 std::string number(std::size_t value) {
   return std::to_string(value);
 }
@@ -121,7 +124,7 @@ class Guide {
     }
     return "Excite coil " + number(numberOf(coil)) +
            " alone and capture at poses that bring each pole near it: " +
-           missing(held, advised(Cycle::kPoles)) + ".";
+           missing(held, advised(Cycle::kPoles)) + "." + kPlanned;
   }
 
   std::optional<std::size_t> firstOpenCoil() const {
@@ -141,7 +144,7 @@ class Guide {
     }
     return "Excite coil " + number(numberOf(coil)) +
            " alone and capture at poses that bring poles near it: " +
-           missing(held, advised(Cycle::kCoil)) + ".";
+           missing(held, advised(Cycle::kCoil)) + "." + kPlanned;
   }
 
   std::string closingStep() const {

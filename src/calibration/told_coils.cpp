@@ -1,24 +1,32 @@
 #include "told_coils.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include "linear_coils.hpp"
 
 namespace sac {
 
-std::vector<std::size_t> toldCoils(const HeldOutMeasurement& torque, const ParameterSpace& space) {
+void ToldCoils::add(const HeldOutMeasurement& torque, const ParameterSpace& space) {
   const std::vector<Eigen::Index>& columns = torque.misfit.columns;
-  const auto shows = [&](Eigen::Index coordinate) {
+  const auto information = [&](Eigen::Index coordinate) {
     const auto found = std::lower_bound(columns.begin(), columns.end(), coordinate);
-    return found != columns.end() && *found == coordinate &&
-           kLinearRange * torque.misfit.jacobian.col(found - columns.begin()).norm() > 1.0;
+    return found == columns.end() || *found != coordinate
+               ? 0.0
+               : torque.misfit.jacobian.col(found - columns.begin()).squaredNorm();
   };
-  std::vector<std::size_t> told;
-  std::copy_if(
-      torque.coils.begin(), torque.coils.end(), std::back_inserter(told), [&](std::size_t coil) {
-        return shows(space.coil(coil)) || shows(space.coil(coil) + 1);
-      });
+  for (const std::size_t coil : torque.coils) {
+    const Eigen::Index first = space.coil(coil);
+    information_[coil] += std::max(information(first), information(first + 1));
+  }
+}
+
+std::set<std::size_t> ToldCoils::coils() const {
+  std::set<std::size_t> told;
+  for (const auto& [coil, information] : information_) {
+    if (kLinearRange * kLinearRange * information > 1.0) {
+      told.insert(coil);
+    }
+  }
   return told;
 }
 

@@ -1,15 +1,25 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <map>
+#include <set>
 
 #include "held_out_measurement.hpp"
 #include "spherical_actuator_calibration/estimation/parameter_space.hpp"
 
 namespace sac {
 
-/// Coils of a held-out torque that counts, of which the largest error of an axis that is judged
-/// (kLinearRange) would show in it.
-std::vector<std::size_t> toldCoils(const HeldOutMeasurement& torque, const ParameterSpace& space);
+/// Coils that held-out torques judge: the largest error of an axis that is judged (kLinearRange)
+/// would show in all torques of the coil together.
+class ToldCoils {
+ public:
+  /// A torque that counts.
+  void add(const HeldOutMeasurement& torque, const ParameterSpace& space);
+
+  std::set<std::size_t> coils() const;
+
+ private:
+  std::map<std::size_t, double> information_;  ///< [1/rad²] of the better known angle, by coil
+};
 
 }  // namespace sac

@@ -133,7 +133,7 @@ std::string unseenInWords(const std::vector<std::size_t>& coils,
              ? " No sample has a torque: nothing is said of poles and coils; capture one with each "
                "coil."
              : " No sample judges " + coilsInWords(coils) +
-                   ": nothing is said of them; capture one with each.";
+                   ": nothing is said of them; capture one with each, where a pole is near it.";
 }
 
 /// What a few poses leave out: a joint shows where it turns.
@@ -160,13 +160,19 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
 
 /// Of groups that contradict: one coil after the other rarely changes.
 std::string severalInWords(const std::vector<HeldOutGroup>& groups) {
-  const bool are_coils = std::none_of(groups.begin(), groups.end(), [](const HeldOutGroup& one) {
-    return one.name == kOrientations;
-  });
-  return groups.size() > 1 && are_coils ? " Several coils at once: a joint, or the rotor on it, "
-                                          "that has moved by less than the "
-                                          "tracker shows turns all poles against them, too."
-                                        : "";
+  static const std::string kNewest = "the newest of ";
+  std::set<std::string> coils;
+  for (const HeldOutGroup& group : groups) {
+    if (group.name == kOrientations) {
+      return {};
+    }
+    coils.insert(group.name.rfind(kNewest, 0) == 0 ? group.name.substr(kNewest.size())
+                                                   : group.name);
+  }
+  return coils.size() > 1 ? " Several coils at once: a joint, or the rotor on it, that has moved "
+                            "by less than the "
+                            "tracker shows turns all poles against them, too."
+                          : "";
 }
 
 }  // namespace

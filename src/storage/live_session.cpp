@@ -247,7 +247,7 @@ void LiveSession::searchLinearityAnew() {
 }
 
 CalibratedDescription LiveSession::description(const std::string& date) const {
-  return gradedDescription(session_, origin(date), grade().grade);
+  return gradedDescription(session_, origin(date), grade());
 }
 
 CalibrationOrigin LiveSession::origin(const std::string& date) const {

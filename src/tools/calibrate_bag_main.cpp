@@ -296,7 +296,7 @@ void writeResult(const CalibrationSession& session,
     return;
   }
   const CalibratedDescription result =
-      gradedDescription(session, origin, gradeCalibration(session).grade);
+      gradedDescription(session, origin, gradeCalibration(session));
   saveDescription(files.description, result, policy);
   std::cout << "Calibrated description: " << files.description << "\n";
   if (!files.covariance.empty()) {

@@ -183,7 +183,7 @@ class Motion(RecordedMotion):
             write_bag(bag, recording, len(self.unit.coils))
             result = self.calibrate_bags(folder, "motion", [bag])
         self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertIn("so that other axes may explain it as well: excite the coils", result.stdout)
+        self.assertIn("so that other axes may explain the motion as well: excite the coils", result.stdout)
         self.assertNotIn("diagnosis: ", result.stdout.replace("diagnosis: none", ""))
 
     def test_calibrate_bag_takes_motion_by_itself(self):

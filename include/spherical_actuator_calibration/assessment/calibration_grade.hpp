@@ -26,17 +26,20 @@ bool isSound(Grade grade);
 struct GradedCalibration {
   Grade grade = Grade::kFailed;
   std::string reason;  ///< the whole result in a sentence or two
+  /// Whether it is contradicted by what is held out, all of it or the newest; else by a cycle, or
+  /// by what its description says.
+  bool held_out_contradicts = false;
 };
 
 /// Grades the parameters in force of a session, by what is identified and what held-out samples
 /// say. A cycle that failed changed nothing, and does not count.
 GradedCalibration gradeCalibration(const CalibrationSession& session);
 
-/// The calibrated description of a session, as it is kept: where it is graded `contradicted`, what
-/// was held out is recorded to contradict it, the newest alone, too.
+/// The calibrated description of a session, as it is kept: where the newest held-out samples alone
+/// contradict it, it says so, too. `graded`: the session's grade.
 CalibratedDescription gradedDescription(const CalibrationSession& session,
                                         const CalibrationOrigin& origin,
-                                        Grade grade);
+                                        const GradedCalibration& graded);
 
 /// Grades a session whose samples come one after the other, in the time that a new one takes:
 /// what the parameters in force say by themselves is found once.

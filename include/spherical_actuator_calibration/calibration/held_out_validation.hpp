@@ -52,9 +52,11 @@ struct HeldOutValidation {
   /// That stand out by themselves, where they are no more than among the samples in use: they have
   /// a residual that is `rejected`, and no part in the test.
   std::size_t outliers = 0;
-  /// Coils that torques in the test judge: an error of 10 mrad of their axes would show. A torque
-  /// where no pole is near is the same wherever axes are.
+  /// Coils that torques in the test judge: an error of 10 mrad of their axes would show in all of
+  /// them together. A torque where no pole is near is the same wherever axes are.
   std::set<std::size_t> told_coils;
+  /// Windows of a motion judge them beside.
+  bool has_windows_beside = false;
   /// Coils of which every held-out torque is such an outlier: nothing is told of them. Ascending.
   std::vector<std::size_t> undecided_coils;
   /// Coils of which the newest torque is such an outlier, by accident or since they have changed.
@@ -73,7 +75,9 @@ struct HeldOutValidation {
   /// What was held out, in the plural: "samples", or "windows" of a motion.
   const char* things() const { return is_of_windows ? "windows" : "samples"; }
   /// Whether it says anything of poles and coils.
-  bool judgesCoils() const { return is_of_windows ? torques > 0 : !told_coils.empty(); }
+  bool judgesCoils() const {
+    return has_windows_beside || (is_of_windows ? torques > 0 : !told_coils.empty());
+  }
   /// Whether any observation took part in the test.
   bool hasVerdict() const { return residuals.size() > unjudged_torques; }
   /// Largest probability at which one of the groups contradicts, so that all of them together

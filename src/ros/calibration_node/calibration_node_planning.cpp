@@ -2,6 +2,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -74,7 +75,7 @@ void addPoses(const PosePlan& plan, bool validation, PosesToMeasure& poses) {
 EarlierSession posesOfFile(const std::string& path,
                            const CalibrationSession& calibration,
                            const std::string& database) {
-  const Actuator& nominal = calibration.model().space().nominal();
+  const Actuator& nominal = calibration.start().actuator;
   std::error_code ignored;
   if (std::filesystem::equivalent(path, database, ignored)) {
     throw ConfigError(path + ": that is the session which goes on, not an earlier one.");
@@ -101,11 +102,11 @@ EarlierSession posesOfFile(const std::string& path,
 bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
                                      msg::CapturePlanned::Response& response) {
   try {
-    // The model never changes while the node runs.
+    // The start and the configuration never change while the node runs.
     const CalibrationSession& calibration = session_.calibration();
     const double threshold = calibration.config().estimation.current_threshold;
-    const PlannedCapture planned =
-        plannedCapture(request, calibration.model().space().coils(), excitationRange(calibration));
+    const PlannedCapture planned = plannedCapture(
+        request, calibration.start().actuator.coils.size(), excitationRange(calibration));
     if (const auto coil = coilAmiss(planned, intake_.currents(), threshold)) {
       response.flaw = flawName(CaptureFlaw::kExcitation);
       response.message = amissInWords(planned, *coil);
@@ -167,9 +168,9 @@ void CalibrationNode::takeUpPlan() {
 bool CalibrationNode::missingPatterns(msg::MissingPatterns::Request& request,
                                       msg::MissingPatterns::Response& response) {
   try {
-    // The model never changes while the node runs.
+    // The start never changes while the node runs.
     const CalibrationSession& calibration = session_.calibration();
-    const Actuator& nominal = calibration.model().space().nominal();
+    const Actuator& nominal = calibration.start().actuator;
     PlanProgress progress(calibration.config().estimation.current_threshold);
     for (const msg::PosePatterns& message : request.poses) {
       PoseToMeasure pose = poseFromRos(message, nominal.coils.size());
@@ -198,12 +199,13 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
     plan_options.is_time_up = timeIsUpAfter(request.time_budget);
     PlanningProblem problem;
     problem.request = plannedCycle(request);
+    std::optional<CalibrationModel> model;  // a cycle may put another one in force meanwhile
     std::vector<Sample> held;
     {
       const std::lock_guard<std::mutex> lock(session_mutex_);
       const CalibrationSession& calibration = session_.calibration();
-      // The model never changes while the node runs.
-      problem.model = &calibration.model();
+      model = calibration.model();
+      problem.model = &*model;
       problem.state = calibration.state();
       problem.estimation = calibration.config().estimation;
       held = calibration.samples();
@@ -229,11 +231,11 @@ bool CalibrationNode::planPoses(msg::PlanPoses::Request& request,
   return true;
 }
 
-// The model never changes while the node runs.
+// The start never changes while the node runs.
 bool CalibrationNode::drawValidationPoses(msg::DrawValidationPoses::Request& request,
                                           msg::DrawValidationPoses::Response& response) {
   try {
-    const Actuator& nominal = session_.calibration().model().space().nominal();
+    const Actuator& nominal = session_.calibration().start().actuator;
     const ValidationPoseOptions wanted = {request.poses, request.coils_per_pose, request.seed};
     for (const PoseToMeasure& pose : sac::drawValidationPoses(nominal, wanted)) {
       response.poses.push_back(poseToRos(pose));

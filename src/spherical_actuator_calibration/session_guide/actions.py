@@ -121,7 +121,7 @@ class CaptureAction(_AtTheBench):
         samples = f"{count} sample{'' if count == 1 else 's'}"
         message = f"The pose is measured: {samples}."
         if goal.here:
-            others = " It is none of the planned poses, which wait as before." if self._calibration.has_open_poses() else ""
+            others = " Planned poses that it does not serve wait as before." if self._calibration.has_open_poses() else ""
             message = f"Captured without current where the rotor rests: {samples}.{others}"
         return True, msg.CaptureResult(success=True, message=message, samples=course.samples)
 
