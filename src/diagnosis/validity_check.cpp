@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
@@ -160,7 +161,7 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
 
 /// Of groups that contradict: one coil after the other rarely changes.
 std::string severalInWords(const std::vector<HeldOutGroup>& groups) {
-  static const std::string kNewest = "the newest of ";
+  constexpr std::string_view kNewest = "the newest of ";
   std::set<std::string> coils;
   for (const HeldOutGroup& group : groups) {
     if (group.name == kOrientations) {
