@@ -14,7 +14,8 @@ from recorded_motion import RecordedMotion, read_yaml, write_yaml
 
 
 class Diagnosed(RecordedMotion):
-    BEGIN, END = 0.0, 7.0  # [s] of the motion that is recorded
+    SECONDS = 7.0
+    BEGIN, END = 0.0, 5.0  # [s] of the motion that is recorded
 
     def diagnosed(self, change, stream="currents", status=1, description=NOMINAL, **streams):
         """What is said of a part of the motion with another stream recorded, and the coils of the description that corrects
@@ -154,10 +155,9 @@ class Wiring(Diagnosed):
 class TwoTurnedPoles(Diagnosed):
     """Of another motion, a part which the best order of the coils does not explain, at a delay of the currents that is wrong."""
 
-    SECONDS = 7.0
     SEED = 1
     MACHINE = free_motion.Machine()
-    BEGIN = 4.0
+    BEGIN, END = 4.0, 7.0
 
     def test_are_named_beside_late_currents(self):
         with tempfile.TemporaryDirectory() as folder:
