@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
