@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
