@@ -8,6 +8,7 @@
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -169,19 +170,6 @@ LeftOut leaveOut(const Eigen::Matrix3d& hat, const Eigen::Vector3d& residual) {
     }
   }
   return result;
-}
-
-/// Of what is stated beforehand of effects.
-Eigen::MatrixXd statedInformation(const ParameterSpace& space,
-                                  const std::vector<Eigen::Index>& coordinates) {
-  Eigen::VectorXd information =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()));
-  for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    const Eigen::Index effect = coordinates[k] - space.effect();
-    const double variance = effect < 0 ? 0.0 : space.effects().statedVariance(effect);
-    information[static_cast<Eigen::Index>(k)] = variance > 0.0 ? 1.0 / variance : 0.0;
-  }
-  return information.asDiagonal();
 }
 
 }  // namespace

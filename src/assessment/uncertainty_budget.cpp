@@ -11,6 +11,7 @@
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
@@ -23,6 +24,7 @@ class Budget {
   Budget(const CalibrationSession& session, const CycleReport& report)
       : report_(report),
         options_(session.config().estimation),
+        selection_(session.config().effects),
         space_(session.model().space()),
         belief_(session.state().belief),
         chosen_(estimatedCoordinates(space_, report)),
@@ -85,6 +87,7 @@ class Budget {
 
   const CycleReport& report_;
   const EstimationOptions& options_;
+  const EffectSelection& selection_;
   const ParameterSpace& space_;
   const ParameterBelief& belief_;
   std::vector<Eigen::Index> chosen_;
@@ -192,13 +195,13 @@ void Budget::add(const Dwell& dwell) {
 
 /// What was stated of effects, what held open directions, and what held coordinates were known by.
 void Budget::sumKnowledge() {
-  for (std::size_t k = 0; k < chosen_.size(); ++k) {
-    const Eigen::Index effect = chosen_[k] - space_.effect();
-    const double variance = effect < 0 ? 0.0 : space_.effects().statedVariance(effect);
-    if (variance > 0.0) {
-      const auto place = static_cast<Eigen::Index>(k);
-      known_(place, place) += 1.0 / variance;
-      of(space_.effects().at(effect).name)(place, place) += 1.0 / variance;
+  const Eigen::MatrixXd stated = statedInformation(space_, chosen_);
+  known_ += stated;
+  for (Eigen::Index k = 0; k < stated.rows(); ++k) {
+    const Eigen::Index effect = chosen_[static_cast<std::size_t>(k)] - space_.effect();
+    if (stated(k, k) > 0.0) {
+      // Coordinates of other statements are zero in this row.
+      of(selection_.statementOf(space_.effects().at(effect).name)).row(k) += stated.row(k);
     }
   }
   const Eigen::MatrixXd open = priorInformation(report_.open_directions, belief_, chosen_);

@@ -8,10 +8,10 @@ std::string unstatedRegistrationInWords(const RegistrationUncertainty& registrat
   const auto add = [&names](const char* name) {
     names += std::string(names.empty() ? "" : ", ") + name;
   };
-  if (!registration.stator_tracker) {
+  if (!registration.stator_tracker && !registration.tracker_and_marker) {
     add("stator_tracker");
   }
-  if (!registration.rotor_marker) {
+  if (!registration.rotor_marker && !registration.tracker_and_marker) {
     add("rotor_marker");
   }
   if (used_torques && !registration.rotor_ft_sensor) {

@@ -20,6 +20,7 @@ namespace sac {
 namespace {
 
 constexpr std::int64_t kLargestCount = 1'000'000;
+constexpr double kSymmetric = 1e-6;                          // of the norm, of rounded numbers
 constexpr auto kHarmonics = effect_name::kEncoderHarmonics;  // of all joints, or a list of joints
 
 std::string wordOf(MapUse use) {
@@ -142,6 +143,7 @@ void visitOptions(Config& c, Visitor& visit) {
   visit.option("stator_tracker", c.registration.stator_tracker, registration);
   visit.option("rotor_marker", c.registration.rotor_marker, registration);
   visit.option("rotor_ft_sensor", c.registration.rotor_ft_sensor, registration);
+  visit.option("tracker_and_marker", c.registration.tracker_and_marker);
   visit.section("validation");
   visit.option("hold_out_every", c.hold_out_every, 0);
   visit.section("wanted_accuracy");
@@ -170,6 +172,18 @@ class OptionReader {
               const ValueRange& range) const {
     if (has_section_ && section_.has(key)) {
       stddev = section_.map(key).number("stddev", range);
+    }
+  }
+  void option(const std::string& key, std::optional<FrameCovariance>& covariance) const {
+    if (has_section_ && section_.has(key)) {
+      const ValueRange range = ValueRange::closed(-0.25, 0.25, "rad²");
+      covariance = frameCovariance(
+          section_.map(key).numbers("covariance", range, FrameCovariance::SizeAtCompileTime));
+      if (!covariance) {
+        section_.fail(key + ".covariance",
+                      "it must be symmetric and positive definite, 6 rows of 6 numbers one after "
+                      "another; of frames that are exact, state a stddev of 0 each.");
+      }
     }
   }
   void option(const std::string& key, int& value, std::int64_t minimum) const {
@@ -241,6 +255,13 @@ class OptionWriter {
       writer_.entry(2, "stddev", yamlNumber(*stddev));
     }
   }
+  void option(const std::string& key, const std::optional<FrameCovariance>& covariance) {
+    if (covariance) {
+      beginSection();
+      writer_.map(1, key);
+      writer_.entry(2, "covariance", yamlNumbers(rowByRow(*covariance)));
+    }
+  }
   void option(const std::string& key, int value, std::int64_t /*minimum*/) {
     add(key, std::to_string(value));
   }
@@ -304,6 +325,7 @@ void validate(const CalibrationConfig& config) {
   if (config.hold_out_every == 1) {
     throw ConfigError("hold_out_every: 1 would hold out every sample; give 2 or more, or 0.");
   }
+  validate(config.registration);
   if (config.estimation.current_threshold != config.samples.current_threshold) {
     throw ConfigError("current_threshold: samples and estimation must have the same one.");
   }
@@ -311,12 +333,7 @@ void validate(const CalibrationConfig& config) {
 
 void stateRegistration(CalibrationConfig& config, const RegistrationUncertainty& registration) {
   config.registration = registration;
-  config.effects.setStddev(effect_name::kTrackerRegistration,
-                           registration.stator_tracker.value_or(0.0));
-  config.effects.setStddev(effect_name::kMarkerRegistration,
-                           registration.rotor_marker.value_or(0.0));
-  config.effects.setStddev(effect_name::kTorqueRegistration,
-                           registration.rotor_ft_sensor.value_or(0.0));
+  stateRegistration(config.effects, registration);
 }
 
 CalibrationConfig readCalibrationConfig(const YamlMap& file, const std::string& name) {

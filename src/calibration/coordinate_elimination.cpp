@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 
 namespace sac {
 namespace {
@@ -38,14 +39,10 @@ CoordinateElimination::Told CoordinateElimination::toldBy(const EstimationProble
                                                           const ScoreSum& sum) {
   Told told{sum.information(), sum.gradient()};
   const ParameterSpace& space = problem.model->space();
-  for (const Eigen::Index p : problem.free) {
-    const double stated =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    if (stated > 0.0) {
-      told.information(p, p) += 1.0 / stated;
-      told.gradient[p] += estimate.belief.x[p] / stated;
-    }
-  }
+  const std::vector<Eigen::Index> stated = statedOf(space, problem.free);
+  const Eigen::MatrixXd information = statedInformation(space, stated);
+  told.information(stated, stated) += information;
+  told.gradient(stated) += information * estimate.belief.x(stated);
   return told;
 }
 

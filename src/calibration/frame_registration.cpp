@@ -360,11 +360,4 @@ FrameRegistration registerFrames(const CalibratedDescription& description,
   return Registrar(description, poses, options).run();
 }
 
-RegistrationUncertainty registrationUncertainty(const FrameRegistration& registration) {
-  const auto stated = [&](Eigen::Index first) {
-    return std::sqrt(registration.covariance.diagonal().segment<3>(first).mean());
-  };
-  return {stated(0), stated(3), std::nullopt};
-}
-
 }  // namespace sac

@@ -5,6 +5,7 @@
 
 #include "spherical_actuator_calibration/base/atomic_file.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/calibration/frame_registration.hpp"
 
@@ -60,13 +61,11 @@ std::string render(const Actuator& actuator, const FrameRegistration& registrati
   writer.map(0, "launch");
   writer.entry(1, "stator_tracker", yamlText(launchArgument(registration.R_stator_tracker)));
   writer.entry(1, "rotor_marker", yamlText(launchArgument(registration.R_rotor_marker)));
-  writer.line(0, "# For the configuration of a calibration [rad].");
-  const RegistrationUncertainty stated = registrationUncertainty(registration);
+  writer.entry(1, "tracker_and_marker_covariance", yamlText(covarianceArgument(registration)));
+  writer.line(0, "# For the configuration of a calibration [rad2].");
   writer.map(0, "registration");
-  writer.entry(
-      1, "stator_tracker", YamlLine().add("stddev", yamlNumber(*stated.stator_tracker)).text());
-  writer.entry(
-      1, "rotor_marker", YamlLine().add("stddev", yamlNumber(*stated.rotor_marker)).text());
+  writer.map(1, "tracker_and_marker");
+  writer.entry(2, "covariance", covarianceArgument(registration));
   return writer.text();
 }
 
@@ -78,6 +77,17 @@ std::string launchArgument(const Eigen::Matrix3d& rotation) {
     text += " " + roundedText(value, kQuaternionDigits);
   }
   return text;
+}
+
+std::string covarianceArgument(const FrameRegistration& registration) {
+  std::string text;
+  for (Eigen::Index row = 0; row < registration.covariance.rows(); ++row) {
+    for (Eigen::Index column = 0; column < registration.covariance.cols(); ++column) {
+      // With a point in each: YAML 1.1 takes 1e-05 for a word.
+      text += format("%s%.8e", text.empty() ? "[" : ", ", registration.covariance(row, column));
+    }
+  }
+  return text + "]";
 }
 
 void saveFrameRegistration(const std::string& path,

@@ -6,6 +6,7 @@
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 
 namespace sac {
 namespace {
@@ -23,14 +24,7 @@ WhitenedEvidence ownEvidence(const ParameterSpace& space, const MotionEvidence& 
   const Eigen::MatrixXd covariance = motion.belief.covariance(motion.told, motion.told);
   Eigen::MatrixXd information = Cholesky(covariance).inverse();
   const Eigen::VectorXd vector = information * motion.belief.x(motion.told);
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const Eigen::Index p = motion.told[static_cast<std::size_t>(k)];
-    const double stated =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    if (stated > 0.0) {
-      information(k, k) -= 1.0 / stated;
-    }
-  }
+  information -= statedInformation(space, motion.told);
   const SymmetricEigen eigen = symmetricEigen(information);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < size; ++k) {

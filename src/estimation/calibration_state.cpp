@@ -1,8 +1,11 @@
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 
 namespace sac {
 namespace {
@@ -50,10 +53,12 @@ CalibrationState nominalState(const ParameterSpace& space,
   state.belief.covariance = Eigen::MatrixXd::Zero(space.size(), space.size());
   for (Eigen::Index p = 0; p < space.size(); ++p) {
     const double stddev = toleranceOf(space.id(p).kind, tolerance);
-    const double stated =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    state.belief.covariance(p, p) = stated > 0.0 ? stated : stddev * stddev;
+    state.belief.covariance(p, p) = stddev * stddev;
   }
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(space.size()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  const std::vector<Eigen::Index> stated = statedOf(space, all);
+  state.belief.covariance(stated, stated) = statedCovariance(space, stated);
   state.identified.assign(static_cast<std::size_t>(space.size()), false);
   return state;
 }

@@ -10,6 +10,7 @@
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "weighted_observations.hpp"
 
@@ -101,17 +102,13 @@ double Conclusion::priorMisfit() const {
 
 double Conclusion::statedMisfit() const {
   const ParameterSpace& space = solution_.problem->model->space();
-  double sum = 0.0;
-  int count = 0;
-  for (const Eigen::Index p : solution_.estimated) {
-    const double variance =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    if (variance > 0.0) {
-      sum += solution_.x()[p] * solution_.x()[p] / variance;
-      ++count;
-    }
+  const std::vector<Eigen::Index> stated = statedOf(space, solution_.estimated);
+  if (stated.empty()) {
+    return 0.0;
   }
-  return count == 0 ? 0.0 : std::sqrt(sum / count);
+  const Eigen::VectorXd apart = solution_.x()(stated);
+  const double square = apart.dot(statedInformation(space, stated) * apart);
+  return std::sqrt(square / static_cast<double>(stated.size()));
 }
 
 /// Σ over a and b of J_a M(a, b) J_bᵀ for a symmetric M, where the places of the columns a and b of

@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/base/normal_distribution.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 #include "weighted_observations.hpp"
 
@@ -94,10 +95,7 @@ void Estimator::setFree(const UnidentifiedPart& part) {
 /// What observations leave open of the free coordinates of the problem, at x.
 UnidentifiedPart Estimator::unidentifiedAt(const Eigen::VectorXd& x, Which which) const {
   Eigen::MatrixXd information = observations_.information(x, problem_.free, which);
-  for (std::size_t k = 0; k < problem_.free.size(); ++k) {
-    const double variance = statedVariance(problem_.model->space(), problem_.free[k]);
-    information.diagonal()[static_cast<Eigen::Index>(k)] += variance > 0.0 ? 1.0 / variance : 0.0;
-  }
+  information += statedInformation(problem_.model->space(), problem_.free);
   return unidentifiedPart(
       information, problem_.free, problem_.model->space(), options_.unobservable_stddev);
 }

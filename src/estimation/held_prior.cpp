@@ -1,24 +1,8 @@
 #include "held_prior.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <cstddef>
 
 namespace sac {
-
-double statedVariance(const ParameterSpace& space, Eigen::Index coordinate) {
-  return coordinate < space.effect() ? 0.0
-                                     : space.effects().statedVariance(coordinate - space.effect());
-}
-
-std::vector<Eigen::Index> statedOf(const ParameterSpace& space,
-                                   const std::vector<Eigen::Index>& coordinates) {
-  std::vector<Eigen::Index> result;
-  std::copy_if(
-      coordinates.begin(), coordinates.end(), std::back_inserter(result), [&](Eigen::Index p) {
-        return statedVariance(space, p) > 0.0;
-      });
-  return result;
-}
 
 LinearPrior heldPrior(const EstimationProblem& problem,
                       const Eigen::MatrixXd& directions,
@@ -35,10 +19,10 @@ LinearPrior heldPrior(const EstimationProblem& problem,
   prior.covariance.topLeftCorner(open, open) =
       directions.transpose() * problem.prior.covariance * directions;
   for (Eigen::Index k = open; k < all; ++k) {
-    const Eigen::Index p = stated[static_cast<std::size_t>(k - open)];
-    prior.directions(p, k) = 1.0;
-    prior.covariance(k, k) = statedVariance(problem.model->space(), p);
+    prior.directions(stated[static_cast<std::size_t>(k - open)], k) = 1.0;
   }
+  prior.covariance.bottomRightCorner(all - open, all - open) =
+      statedCovariance(problem.model->space(), stated);
   return prior;
 }
 

@@ -169,6 +169,37 @@ EffectLayout::EffectLayout(const Actuator& nominal, const EffectSelection& selec
                         stated > 0.0 ? stated : effect->priorStddev()});
     size_ += effects_.back().size();
   }
+  stated_covariance_ = Eigen::MatrixXd::Zero(size_, size_);
+  for (const PlacedEffect& placed : effects_) {
+    const double stddev = placed.stddev / placed.effect->scale();
+    stated_covariance_.diagonal().segment(placed.first, placed.size()).setConstant(stddev * stddev);
+  }
+  for (const StatedTogether& stated : selection.together()) {
+    stateTogether(stated);
+  }
+}
+
+/// Of those of the effects that are modelled here.
+void EffectLayout::stateTogether(const StatedTogether& stated) {
+  if (stated.effects.empty()) {
+    return;
+  }
+  const Eigen::Index size =
+      stated.covariance.rows() / static_cast<Eigen::Index>(stated.effects.size());
+  const auto of = [&](const PlacedEffect& placed) {
+    return std::find(stated.effects.begin(), stated.effects.end(), placed.name) -
+           stated.effects.begin();
+  };
+  const auto several = static_cast<Eigen::Index>(stated.effects.size());
+  for (const PlacedEffect& a : effects_) {
+    for (const PlacedEffect& b : effects_) {
+      if (of(a) < several && of(b) < several) {
+        stated_covariance_.block(a.first, b.first, size, size) =
+            stated.covariance.block(size * of(a), size * of(b), size, size) /
+            (a.effect->scale() * b.effect->scale());
+      }
+    }
+  }
 }
 
 Eigen::Index EffectLayout::first(const std::string& effect) const {
@@ -190,9 +221,8 @@ const PlacedEffect& EffectLayout::at(Eigen::Index coordinate) const {
 }
 
 double EffectLayout::statedVariance(Eigen::Index coordinate) const {
-  const PlacedEffect& placed = at(coordinate);
-  const double stddev = placed.stddev / placed.effect->scale();
-  return stddev * stddev;
+  at(coordinate);  // there is one
+  return stated_covariance_(coordinate, coordinate);
 }
 
 double EffectLayout::nominalValue(Eigen::Index coordinate) const {

@@ -9,6 +9,7 @@
 #include "delay_search.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 
 namespace sac {
 namespace {
@@ -62,11 +63,7 @@ double MotionDescent::cost(const MotionSums& sums) const {
 Eigen::MatrixXd MotionDescent::priorInformation() const {
   const ParameterSpace& space = problem_.model->space();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(x_.size(), x_.size());
-  for (const Eigen::Index p : estimated_) {
-    const double variance =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    information(p, p) += variance > 0.0 ? 1.0 / variance : 0.0;
-  }
+  information(estimated_, estimated_) += statedInformation(space, estimated_);
   if (open_.directions.cols() > 0) {
     const Eigen::MatrixXd& D = open_.directions;
     // As uncertain as the prior says, or as far from it as it was left.
@@ -95,13 +92,7 @@ void MotionDescent::judgeOpen() {
   const Eigen::MatrixXd all = sums_.information();
   Eigen::MatrixXd information = all(problem_.free, problem_.free);
   const ParameterSpace& space = problem_.model->space();
-  for (std::size_t k = 0; k < problem_.free.size(); ++k) {
-    const Eigen::Index p = problem_.free[k];
-    const double variance =
-        p < space.effect() ? 0.0 : space.effects().statedVariance(p - space.effect());
-    const auto place = static_cast<Eigen::Index>(k);
-    information(place, place) += variance > 0.0 ? 1.0 / variance : 0.0;
-  }
+  information += statedInformation(space, problem_.free);
   const Eigen::Index before = countOpen();
   open_ = unidentifiedPart(information, problem_.free, space, open_limit_);
   // What comes and goes stays.

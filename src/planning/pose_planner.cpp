@@ -14,6 +14,7 @@
 #include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
 #include "spherical_actuator_calibration/estimation/defined_stddev.hpp"
 #include "spherical_actuator_calibration/estimation/sample_prediction.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
 #include "travel_order.hpp"
@@ -159,15 +160,7 @@ class Planner {
   DesignTask designTask() const {
     const ParameterSpace& space = problem_.model->space();
     DesignTask task;
-    task.known = known_;
-    for (std::size_t n = 0; n < coordinates_.size(); ++n) {
-      const Eigen::Index effect = coordinates_[n] - space.effect();
-      const double stated = effect < 0 ? 0.0 : space.effects().statedVariance(effect);
-      if (stated > 0.0) {
-        const auto place = static_cast<Eigen::Index>(n);
-        task.known(place, place) += 1.0 / stated;
-      }
-    }
+    task.known = known_ + statedInformation(space, coordinates_);
     task.reported = reportedDerivative(space, problem_.state.belief.x, coordinates_);
     task.visited = measuredVisits(*problem_.held,
                                   space.coils(),

@@ -140,20 +140,18 @@ void print(const FrameRegistration& registration) {
   }
   printFrame("stator_tracker", registration.R_stator_tracker, registration, 0);
   printFrame("rotor_marker", registration.R_rotor_marker, registration, 3);
-  const RegistrationUncertainty stated = registrationUncertainty(registration);
   std::printf(
       "The rest of +- is what the description leaves open of the joints. The translations, 0 "
       "0 0, move\npictures only: measure them where those matter.\n\n"
       "roslaunch spherical_actuator_calibration lab.launch \\\n"
       "  stator_tracker:=\"%s\" \\\n  rotor_marker:=\"%s\" \\\n"
-      "  stator_tracker_stddev:=%.4g rotor_marker_stddev:=%.4g\n\n"
-      "registration:\n  stator_tracker: {stddev: %.4g}\n  rotor_marker: {stddev: %.4g}\n",
+      "  tracker_and_marker_covariance:=\"%s\"\n\n"
+      "The last one is, in the configuration of a calibration:\n\n"
+      "registration:\n  tracker_and_marker:\n    covariance: %s\n",
       launchArgument(registration.R_stator_tracker).c_str(),
       launchArgument(registration.R_rotor_marker).c_str(),
-      *stated.stator_tracker,
-      *stated.rotor_marker,
-      *stated.stator_tracker,
-      *stated.rotor_marker);
+      covarianceArgument(registration).c_str(),
+      covarianceArgument(registration).c_str());
 }
 
 int registerOnce(const Options& options) {

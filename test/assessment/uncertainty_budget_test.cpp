@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -68,6 +69,33 @@ TEST(UncertaintyBudget, SumsUpToTheStatedVariances) {
     ++compared;
   }
   EXPECT_GT(compared, 60U);
+}
+
+TEST(UncertaintyBudget, FramesThatErrTogetherAreOneSource) {
+  // What turns the tracker turns the marker the other way: the joints hardly feel both.
+  FrameCovariance together = 1e-4 * FrameCovariance::Identity();
+  const FrameCovariance apart = together;
+  together.topRightCorner<3, 3>().diagonal().setConstant(-0.99e-4);
+  together.bottomLeftCorner<3, 3>() = together.topRightCorner<3, 3>();
+  const auto worst = [](const FrameCovariance& covariance) {
+    const RegistrationUncertainty stated{std::nullopt, std::nullopt, 0.0, covariance};
+    const CalibrationSession session = calibratedSession(0.0, stated, Cycle::kJoint);
+    EXPECT_TRUE(session.reports().back().success) << session.reports().back().message;
+    EXPECT_GT(largestShare(session, "frame_registration"), 0.9);
+    EXPECT_EQ(largestShare(session, "marker_registration"), 0.0);
+    double variance = 0.0;
+    for (const ParameterEstimate& parameter : session.parameters()) {
+      variance += parameter.observable ? parameter.stddev * parameter.stddev : 0.0;
+    }
+    return variance;
+  };
+  const CalibrationSession by_stddevs = calibratedSession(0.0, {0.01, 0.01, 0.0}, Cycle::kJoint);
+  double variance = 0.0;
+  for (const ParameterEstimate& parameter : by_stddevs.parameters()) {
+    variance += parameter.observable ? parameter.stddev * parameter.stddev : 0.0;
+  }
+  EXPECT_NEAR(worst(apart) / variance, 1.0, 1e-6);
+  EXPECT_GT(std::abs(worst(together) / variance - 1.0), 0.1);
 }
 
 TEST(UncertaintyBudget, NamesWhatLimits) {

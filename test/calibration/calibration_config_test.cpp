@@ -150,6 +150,41 @@ TEST(CalibrationConfig, WhatIsNotStatedOfRegistrationsStaysUnstated) {
             std::string::npos);
 }
 
+/// registration/tracker_and_marker of a diagonal, with this covariance of the tracker's x and the
+/// marker's z in both places, or in the first alone.
+std::string framesText(double covariance, bool is_symmetric = true) {
+  std::string numbers;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      const bool is_pair = (row == 0 && column == 5) || (is_symmetric && row == 5 && column == 0);
+      numbers += numbers.empty() ? "" : ", ";
+      numbers += row == column ? "1e-4" : is_pair ? std::to_string(covariance) : "0";
+    }
+  }
+  return "registration: {tracker_and_marker: {covariance: [" + numbers + "]}";
+}
+
+TEST(CalibrationConfig, StatesTrackerAndMarkerTogether) {
+  const CalibrationConfig config = parseCalibrationConfig(framesText(5e-5) + "}", "c.yaml");
+  ASSERT_TRUE(config.registration.tracker_and_marker);
+  EXPECT_EQ((*config.registration.tracker_and_marker)(0, 5), 5e-5);
+  EXPECT_DOUBLE_EQ(config.effects.stddev("marker_registration"), 0.01);
+  EXPECT_DOUBLE_EQ(config.effects.stddev("tracker_registration"), 0.01);
+  const CalibrationConfig back =
+      parseCalibrationConfig(renderCalibrationConfig(config), "rendered.yaml");
+  ASSERT_TRUE(back.registration.tracker_and_marker);
+  EXPECT_EQ(*back.registration.tracker_and_marker, *config.registration.tracker_and_marker);
+
+  const auto is_refused = [](const std::string& text, const char* words) {
+    EXPECT_NE(parseError(text).find(words), std::string::npos) << parseError(text);
+  };
+  is_refused(framesText(5e-5, false) + "}", "symmetric and positive definite");
+  is_refused(framesText(2e-4) + "}", "symmetric and positive definite");
+  is_refused(framesText(5e-5) + ", rotor_marker: {stddev: 0.01}}", "not both");
+  is_refused("registration: {tracker_and_marker: {covariance: [1e-4]}}",
+             "registration.tracker_and_marker.covariance");
+}
+
 TEST(CalibrationConfig, AbsentKeysHaveTheirDefaults) {
   const CalibrationConfig config = parseCalibrationConfig("tolerance: {pole: 0.25}", "c.yaml");
   EXPECT_EQ(config.tolerance.pole, 0.25);

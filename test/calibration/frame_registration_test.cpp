@@ -87,9 +87,6 @@ TEST_F(FrameRegistrationTest, JointsAsMadeAreInTheUncertaintyNotInTheResiduals) 
   EXPECT_GT(stddev.minCoeff(), 0.01);
   EXPECT_LT(stddev.maxCoeff(), 0.06);
   EXPECT_LT(result.noise_covariance.diagonal().cwiseSqrt().maxCoeff(), kNoise);
-  const RegistrationUncertainty stated = registrationUncertainty(result);
-  EXPECT_GT(*stated.stator_tracker, stddev.minCoeff());
-  EXPECT_LT(*stated.stator_tracker, stddev.maxCoeff());
 }
 
 TEST_F(FrameRegistrationTest, NoiseIsWhatOtherMeasurementsOfThePosesWouldMoveTheResultBy) {

@@ -3,6 +3,7 @@
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -77,6 +78,21 @@ class RegisterFrames(unittest.TestCase):
             self.assertLess(turn_between(one["quaternion_xyzw"], truth[frame]), 3.0 * np.linalg.norm(one["stddev"]))
             self.assertLess(max(one["stddev"]), 0.06)
 
+    def launches_as_printed(self, said):
+        """The calibration node gets the covariance that is printed as an argument."""
+        (line,) = re.findall(r"^ *(tracker_and_marker_covariance:=.*)$", said, re.MULTILINE)
+        dumped = subprocess.run(
+            ["roslaunch", "--dump-params", PACKAGE, "lab.launch", *shlex.split(line)],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
+        (covariance,) = (
+            value for key, value in yaml.safe_load(dumped.stdout).items() if key.endswith("tracker_and_marker/covariance")
+        )
+        self.assertEqual(covariance, self.load("offline.yaml")["registration"]["tracker_and_marker"]["covariance"])
+        self.assertEqual([type(each) for each in covariance], 36 * [float])
+
     def test_a_recording_and_the_same_live(self):
         output = os.path.join(self.folder.name, "offline.yaml")
         answer = self.register("--output", output, self.bag)
@@ -84,6 +100,7 @@ class RegisterFrames(unittest.TestCase):
         self.assertRegex(answer.stdout, r"stator_tracker:=\"0 0 0 [-0-9. e]+\"")
         offline = self.load("offline.yaml")
         self.check(offline)
+        self.launches_as_printed(answer.stdout)
 
         live_output = os.path.join(self.folder.name, "live.yaml")
         live = subprocess.Popen(

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "spherical_actuator_calibration/base/yaml_reader.hpp"
 #include "spherical_actuator_calibration/calibration/map_use.hpp"
+#include "spherical_actuator_calibration/calibration/registration_uncertainty.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_state.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/streams/sample_builder_options.hpp"
@@ -22,14 +22,6 @@ struct MeasurementFrames {
 struct WantedAccuracy {
   double orientation = 0.0;  ///< [rad]
   double torque = 0.0;       ///< [N·m/A]
-};
-
-/// How well the registrations are known: standard deviation of each component of their rotation
-/// [rad]; 0: exact; nothing: not stated, which counts as exact and is told.
-struct RegistrationUncertainty {
-  std::optional<double> stator_tracker;
-  std::optional<double> rotor_marker;
-  std::optional<double> rotor_ft_sensor;
 };
 
 /// Everything about a calibration that is a matter of choice. The defaults are those of the members

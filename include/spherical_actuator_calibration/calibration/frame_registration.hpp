@@ -63,14 +63,12 @@ FrameRegistration registerFrames(const CalibratedDescription& description,
 std::size_t differentPoses(const CalibratedDescription& description,
                            const std::vector<TrackedPose>& poses);
 
-/// What to state under `registration`: of each frame the standard deviation of a component of its
-/// turn, root mean square of the three. That both frames err together cannot be stated, so that
-/// what a calibration says of the joints is rather too wide than too narrow.
-RegistrationUncertainty registrationUncertainty(const FrameRegistration& registration);
-
 /// "0 0 0 qx qy qz qw" for the launch arguments stator_tracker and rotor_marker. Their translations
 /// move pictures only.
 std::string launchArgument(const Eigen::Matrix3d& rotation);
+
+/// Its covariance, row by row, for registration/tracker_and_marker/covariance of the configuration.
+std::string covarianceArgument(const FrameRegistration& registration);
 
 /// Writes what was found as YAML (doc/registration.md). Throws DataError when the file exists and
 /// must not be replaced, or cannot be written.

@@ -24,7 +24,8 @@ struct RegisteredPose {
   bool rejected = false;
 };
 
-/// Of small turns of tracker and marker, see FrameRegistration [rad²].
+/// Of small turns ξ of the tracker in stator axes and ζ of the marker in rotor axes: the true
+/// frames are e^{ξ̂} R_stator_tracker and e^{ζ̂} R_rotor_marker [rad²].
 using FrameCovariance = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace sac

@@ -68,6 +68,8 @@ class EffectLayout {
   const std::string& name(Eigen::Index coordinate) const;
   /// Variance of a coordinate as stated beforehand; 0: nothing is known.
   double statedVariance(Eigen::Index coordinate) const;
+  /// Covariance of all coordinates as stated beforehand; zero where nothing is known.
+  const Eigen::MatrixXd& statedCovariance() const { return stated_covariance_; }
   /// Value of the effect per coordinate.
   double scale(Eigen::Index coordinate) const { return at(coordinate).effect->scale(); }
   /// Value of the effect where its coordinate is zero.
@@ -76,7 +78,10 @@ class EffectLayout {
   static Eigen::VectorXd values(const PlacedEffect& placed, const double* coordinates);
 
  private:
+  void stateTogether(const StatedTogether& stated);
+
   std::vector<PlacedEffect> effects_;
+  Eigen::MatrixXd stated_covariance_;
   Eigen::Index size_ = 0;
 };
 
