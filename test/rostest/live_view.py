@@ -53,7 +53,7 @@ class LiveView(ViewedLabCase):
     def shows(self, condition):
         """Until enough pixels of the picture meet the condition."""
         wait_for(
-            lambda: count(self.screen.pixels(), condition) >= FEWEST_PIXELS, "the colour in the picture"
+            lambda: count(self.picture(), condition) >= FEWEST_PIXELS, "the colour in the picture"
         )
 
     def test_draws_poles_coils_and_the_excited_one(self):
@@ -93,7 +93,7 @@ class LiveView(ViewedLabCase):
         def captured():
             # Refused while the fixture still settles, of the pose before where the node is behind, and pale while it
             # waits for the answer: as an operator would, click again.
-            place = find_button(self.screen.pixels())
+            place = find_button(self.picture())
             if place:
                 self.screen.click(*place)
                 time.sleep(1.0)

@@ -15,6 +15,7 @@ from launch_client import launch_file
 SIZE = (1280, 720)
 FEWEST_BUTTON_PIXELS = 40  # in a row, beside its text
 FIRST_DISPLAY, DISPLAYS = 1000, 50_000
+PICTURES = 0.3  # [s] from one to the next: each takes half a second of a processor, which rviz needs itself
 PAUSE = 1.0  # [s] between two presses of a key that did nothing: buttons are disabled while a service runs
 
 
@@ -38,7 +39,8 @@ class Screen:
         self.display = ":" + shown
 
     def pixels(self):
-        """Red, green and blue of every pixel."""
+        """Red, green and blue of every pixel, a little later."""
+        time.sleep(PICTURES)
         picture = subprocess.run(
             ["import", "-display", self.display, "-window", "root", "-depth", "8", "rgb:-"],
             check=True,
@@ -136,6 +138,17 @@ class ViewedCase(unittest.TestCase):
             cls.start_rviz_again()
 
     @classmethod
+    def picture(cls):
+        """Pixels of the screen with an rviz that is there."""
+        cls.see_to_rviz()
+        return cls.screen.pixels()
+
+    @classmethod
+    def see_to_rviz(cls):
+        if has_ended("rviz"):
+            cls.start_rviz_again()
+
+    @classmethod
     def start_rviz_again(cls):
         if cls.is_second_rviz:
             raise AssertionError("rviz has ended twice")
@@ -162,8 +175,7 @@ class ViewedCase(unittest.TestCase):
             if done():
                 return True
             if time.monotonic() > end[0]:
-                if has_ended("rviz"):
-                    self.start_rviz_again()
+                self.see_to_rviz()
                 end[0] = time.monotonic() + pause
                 self.key(keys)
             return False
