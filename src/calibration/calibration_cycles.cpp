@@ -301,9 +301,12 @@ CycleOutcome runCycle(const CalibrationModel& model,
   fillReport(samples, problem.observations, estimate, report);
   countAmbiguous(model.space(), estimate, coordinates, report);
   conclude(model, estimate, coordinates, request.expected_errors, outcome.state, report);
-  report.message =
-      successInWords(request, report, problem.free.size() - estimate.unobservable.size(), advice) +
-      left_out.words + together;
+  report.message = successInWords(request,
+                                  report,
+                                  problem.free.size() - estimate.unobservable.size(),
+                                  adviceForCoarse(model.space(), options.unobservable_stddev),
+                                  advice) +
+                   left_out.words + together;
   return outcome;
 }
 

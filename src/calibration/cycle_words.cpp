@@ -27,7 +27,9 @@ std::string cycleInWords(const CycleRequest& request) {
 }
 
 /// Names what stays open across the parameters, and what to do about it; or empty.
-std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::size_t unknowns) {
+std::string openDirectionsInWords(const std::vector<OpenDirection>& open,
+                                  std::size_t unknowns,
+                                  const std::string& coarse) {
   if (open.empty()) {
     return {};
   }
@@ -37,6 +39,9 @@ std::string openDirectionsInWords(const std::vector<OpenDirection>& open, std::s
     words += k == 0 ? " " : ", ";
     words += open[k].name;
     words += format(" (± %.2g mrad)", 1e3 * open[k].stddev);
+  }
+  if (!coarse.empty()) {
+    return words + ". " + coarse;
   }
   const bool is_turned = open.front().name.find("rotation") != std::string::npos;
   return words + (is_turned ? ". Measure the orientation at 3 or more poses."
@@ -131,6 +136,7 @@ std::string failure(const EstimationProblem& problem,
 std::string successInWords(const CycleRequest& request,
                            const CycleReport& report,
                            std::size_t unknowns,
+                           const std::string& coarse,
                            const std::vector<std::string>& advice) {
   std::string words = cycleInWords(request) +
                       format(" calibrated from %u samples in %u iterations: ",
@@ -140,7 +146,7 @@ std::string successInWords(const CycleRequest& request,
   if (report.samples_rejected > 0) {
     words += format(" %u samples rejected as outliers.", report.samples_rejected);
   }
-  words += openDirectionsInWords(report.open_directions, unknowns);
+  words += openDirectionsInWords(report.open_directions, unknowns, coarse);
   for (const std::string& sentence : report.doubts) {
     words += " " + sentence;
   }

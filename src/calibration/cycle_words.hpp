@@ -28,6 +28,7 @@ std::string failure(const EstimationProblem& problem,
 std::string successInWords(const CycleRequest& request,
                            const CycleReport& report,
                            std::size_t unknowns,
+                           const std::string& coarse,
                            const std::vector<std::string>& advice);
 
 }  // namespace sac

@@ -135,11 +135,6 @@ std::string adviceForJoint(const CalibrationModel& model,
 std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinate) {
   const EffectLayout& effects = model.space().effects();
   const auto at = static_cast<Eigen::Index>(coordinate);
-  if (effects.statedVariance(at) > 0.0) {
-    return "The samples cannot tell " + effects.name(at) +
-           " apart from the other parameters, and it is stated more coarsely than "
-           "estimation.unobservable_stddev: measure it better, and state that.";
-  }
   return "The samples cannot tell " + effects.name(at) +
          " apart from the other parameters: switch off effects." + effects.at(at).name +
          ", or add poses over the whole workspace.";
@@ -198,6 +193,17 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
                          : adviceForTorque(model, request, x, coverage, part, id.index));
   }
   return advice;
+}
+
+std::string adviceForCoarse(const ParameterSpace& space, double unobservable_stddev) {
+  for (const PlacedEffect& effect : space.effects().effects()) {
+    if (effect.stddev > unobservable_stddev) {
+      return "The samples cannot tell " + effect.name +
+             " apart from the other parameters, and it is stated more coarsely than "
+             "estimation.unobservable_stddev: measure it better, and state that.";
+    }
+  }
+  return {};
 }
 
 }  // namespace sac

@@ -1,8 +1,11 @@
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "observability.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
+#include "spherical_actuator_calibration/estimation/stated_knowledge.hpp"
 
 namespace sac {
 namespace {
@@ -56,6 +59,21 @@ class OpenCoordinates {
   std::vector<Eigen::Index> places_;  ///< in free_
 };
 
+/// Orthonormal, what directions have beside the coordinates of which something is stated: these are
+/// known by that, and not by the prior once more.
+Eigen::MatrixXd besideStated(Eigen::MatrixXd directions, const ParameterSpace& space) {
+  constexpr double kSome = 1e-3;  // of a squared length of 1
+  for (Eigen::Index p = space.effect(); p < space.size(); ++p) {
+    if (statedVariance(space, p) > 0.0) {
+      directions.row(p).setZero();
+    }
+  }
+  const SymmetricEigen left = symmetricEigen(directions.transpose() * directions);
+  const Eigen::Index count = (left.values.array() > kSome).count();  // they ascend
+  return directions * left.vectors.rightCols(count) *
+         left.values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
 }  // namespace
 
 UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
@@ -71,8 +89,10 @@ UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
     if (weak.empty()) {
       break;
     }
-    std::vector<Eigen::Index> held =
-        open.hold(weak, [&](Eigen::Index k) { return open.coordinate(k) >= space.effect(); });
+    std::vector<Eigen::Index> held = open.hold(weak, [&](Eigen::Index k) {
+      const Eigen::Index p = open.coordinate(k);
+      return p >= space.effect() && statedVariance(space, p) == 0.0;
+    });
     if (held.empty()) {
       held = open.hold(weak, [&](Eigen::Index k) { return open.tellNothing(k, limit); });
     }
@@ -81,6 +101,7 @@ UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
       for (Eigen::Index k = 0; k < observability.open_directions.rows(); ++k) {
         part.directions.row(open.coordinate(k)) = observability.open_directions.row(k);
       }
+      part.directions = besideStated(std::move(part.directions), space);
       break;
     }
     part.coordinates.insert(part.coordinates.end(), held.begin(), held.end());

@@ -16,6 +16,7 @@ PROGRAM = os.path.join(os.environ.get("PROGRAMS", "build/devel/lib/spherical_act
 TOLERANCE = 0.03  # [rad] of manufacture, as configured by default
 ORIENTATION, READING = 3e-4, 1e-4  # [rad] standard deviations of tracker and joints
 TRIALS, POSES, TILT = 40, 12, 0.5
+UNOBSERVABLE = 0.08  # [rad] more than unobservable_stddev
 COARSE = 0.0282  # [rad] what a registration by joints as drawn is worth
 EXACT_JOINTS = "tolerance: {joint_offset: 0.0, joint_axis: 0.0}\n"
 
@@ -187,6 +188,24 @@ class RegistrationIsHonest(unittest.TestCase):
         inside, rms = shares(apart, [outcome.stddevs for outcome in outcomes])
         self.assertGreater(inside, 0.8)
         self.assertLess(rms, 1.3)
+
+    def test_frames_that_leave_a_turn_unobservable_are_told_and_bend_nothing(self):
+        unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(registration=(UNOBSERVABLE, UNOBSERVABLE, 0.0))
+        errors, sessions = [], []
+        for seed in range(320, 328):
+            rng = np.random.default_rng(seed)
+            errors.append(rng.normal(0.0, 0.01, unit.size()))
+            poses = laboratory.random_poses(40, TILT, rng)
+            dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 8, rng)
+            sessions.append((sensors, dwells, 5))
+        outcomes = cases.calibrate(unit, sessions, cases.registration_config(sensors.registration))
+        apart = np.array([outcome.values - unit.values(e) for outcome, e in zip(outcomes, errors)])
+        stddevs = np.array([outcome.stddevs for outcome in outcomes])
+        for outcome in outcomes:
+            self.assertTrue(outcome.refined(), outcome.reason)
+            self.assertNotEqual(outcome.grade, "good", outcome.reason)
+            self.assertFalse(outcome.identified.all())
+        self.assertLess(np.abs(apart / stddevs).max(), 4.0)
 
     def test_argument_of_the_launch_file_is_what_was_found(self):
         found = Registered(Trial(1)).text
