@@ -15,7 +15,8 @@ namespace sac {
 namespace {
 
 constexpr double kTiltShare = 0.8;
-constexpr int kMostPoses = 200;
+constexpr int kMostPoses = 200;      // of which none has a coil
+constexpr int kMostPosesForAll = 8;  // of which some have fewer coils than wanted
 
 class CoilChoice {
  public:
@@ -66,12 +67,20 @@ class CoilChoice {
   std::vector<std::size_t> times_excited_;
 };
 
-/// The first pose with enough coils that judge, else the one with most.
+/// The first pose with enough coils that judge, else the one with most of a few, which differ in
+/// the spin only: in the middle of the tilts most coils see a pole.
 PoseToMeasure drawPose(double tilt, std::size_t coils, CoilChoice& choice, NoiseSource& noise) {
   PoseToMeasure best;
   std::vector<std::size_t> best_coils;
-  for (int drawn = 0; drawn < kMostPoses && (drawn == 0 || best_coils.size() < coils); ++drawn) {
-    const Eigen::Vector3d position = randomPose(tilt, noise);
+  const auto goes_on = [&](int drawn) {
+    return drawn < (best_coils.empty() ? kMostPoses : kMostPosesForAll) &&
+           best_coils.size() < coils;
+  };
+  for (int drawn = 0; drawn == 0 || goes_on(drawn); ++drawn) {
+    Eigen::Vector3d position = randomPose(tilt, noise);
+    if (!best_coils.empty()) {
+      position.head<2>() = best.joint_position.head<2>();
+    }
     std::vector<std::size_t> chosen = choice.choose(position, coils, noise);
     if (drawn == 0 || chosen.size() > best_coils.size()) {
       best.joint_position = position;

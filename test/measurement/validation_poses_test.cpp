@@ -34,6 +34,15 @@ TEST(ValidationPoses, LieInsideTheWorkspaceAndAreTheSameForASeed) {
   }
 }
 
+TEST(ValidationPoses, AreSpreadAlsoWhereMoreCoilsAreWantedThanSeeAPole) {
+  const double tilt = 0.8 * scenarios::paperNominal().workspace.tilt_limit;
+  double sum = 0.0;
+  for (const PoseToMeasure& pose : drawn(200, 24, 3)) {
+    sum += pose.joint_position.head<2>().cwiseAbs().mean();
+  }
+  EXPECT_GT(sum / 200.0, 0.35 * tilt);
+}
+
 TEST(ValidationPoses, ExciteNoCoilWhereNoPoleIsNear) {
   const Actuator nominal = scenarios::paperNominal();
   const TorqueCurve curve(*nominal.torque_curve);
