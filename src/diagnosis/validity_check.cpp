@@ -159,8 +159,11 @@ std::string fewPosesInWords(const std::vector<Sample>& held_out) {
              : "";
 }
 
-/// Of groups that contradict: one coil after the other rarely changes.
-std::string severalInWords(const std::vector<HeldOutGroup>& groups) {
+/// Of groups that contradict: one coil after the other rarely changes. But a torque of several
+/// coils is in the group of each.
+std::string severalInWords(const std::vector<HeldOutGroup>& groups,
+                           const std::vector<Sample>& held_out,
+                           double current_threshold) {
   constexpr std::string_view kNewest = "the newest of ";
   std::set<std::string> coils;
   for (const HeldOutGroup& group : groups) {
@@ -169,6 +172,13 @@ std::string severalInWords(const std::vector<HeldOutGroup>& groups) {
     }
     coils.insert(group.name.rfind(kNewest, 0) == 0 ? group.name.substr(kNewest.size())
                                                    : group.name);
+  }
+  const bool are_together = std::any_of(held_out.begin(), held_out.end(), [&](const Sample& one) {
+    return one.has_torque && excitedCoils(one, current_threshold).size() > 1;
+  });
+  if (coils.size() > 1 && are_together) {
+    return " They were excited together, so that one of them may be all: hold out torques of one "
+           "coil each to tell which.";
   }
   return coils.size() > 1 ? " Several coils at once: a joint, or the rotor on it, that has moved "
                             "by less than the "
@@ -220,7 +230,8 @@ ValidityCheck checkValidity(const CalibrationSession& session, CheckedSamples ch
                                         "(probability %.2g).",
                                         validation.probability)
                                   : "Not valid any more: changed are " + changed + ".";
-  check.message += severalInWords(validation.contradicting());
+  check.message += severalInWords(
+      validation.contradicting(), held_out, session.config().estimation.current_threshold);
   const Actuator in_force = session.model().space().actuatorAt(session.state().belief.x);
   check.changes = diagnoseWiring(in_force, held_out, session.config()).mistakes;
   for (const Diagnosis& change : check.changes) {
