@@ -347,16 +347,20 @@ std::size_t differentPoses(const CalibratedDescription& description,
   return different.size();
 }
 
-FrameRegistration registerFrames(const CalibratedDescription& description,
-                                 const std::vector<TrackedPose>& poses,
-                                 const EstimationOptions& options) {
-  validate(options);
-  validate(options.tolerance);
+void requireJoints(const CalibratedDescription& description) {
   if (!description.actuator.has_joints) {
     throw ConfigError(
         "joints: the description has none, and only their readings can tell where "
         "tracker and marker are; state both registrations.");
   }
+}
+
+FrameRegistration registerFrames(const CalibratedDescription& description,
+                                 const std::vector<TrackedPose>& poses,
+                                 const EstimationOptions& options) {
+  validate(options);
+  validate(options.tolerance);
+  requireJoints(description);
   return Registrar(description, poses, options).run();
 }
 

@@ -161,6 +161,7 @@ int registerOnce(const Options& options) {
   const CalibratedDescription description = options.actuator_path
                                                 ? loadDescription(*options.actuator_path)
                                                 : describedActuator(options.live.ns);
+  requireJoints(description);
   const CalibrationConfig config =
       options.config_path ? loadCalibrationConfig(*options.config_path) : CalibrationConfig();
   const FrameRegistration registration =

@@ -59,6 +59,9 @@ FrameRegistration registerFrames(const CalibratedDescription& description,
                                  const std::vector<TrackedPose>& poses,
                                  const EstimationOptions& options);
 
+/// Throws ConfigError where the description has no joints, which registration is by.
+void requireJoints(const CalibratedDescription& description);
+
 /// How many of the poses differ from each other by more than kSamePose.
 std::size_t differentPoses(const CalibratedDescription& description,
                            const std::vector<TrackedPose>& poses);
