@@ -135,6 +135,7 @@ class Certificate {
   void statements();
   void measurementResults();
   void methods();
+  std::string bendInWords() const;
   void resultList();
   void uncertainties();
   void covarianceMatrix();
@@ -259,7 +260,24 @@ void Certificate::methods() {
                   "share, and stated registrations, are part of it. Results are correlated: use "
                   "their covariance matrix wherever several of them are combined.",
                   factorText(coverageFactor(session_)).c_str(),
-                  degreesOfFreedom(session_))});
+                  degreesOfFreedom(session_)) +
+               bendInWords()});
+}
+
+/// The region of all results is an ellipsoid, and a wide turn in common bends it.
+std::string Certificate::bendInWords() const {
+  constexpr double kWide = 5e-3;  // [rad]; bent by 0.01 mrad, what differences are known to
+  double widest = 0.0;
+  for (const ParameterEstimate& result : results_) {
+    widest = std::max(widest, result.unit == "rad" ? result.stddev : 0.0);
+  }
+  return widest <= kWide
+             ? std::string()
+             : format(
+                   " Angles are known in common to %.2g mrad only, a turn that bends the region "
+                   "of all results by more than it is thick: the intervals of single results "
+                   "hold, the ellipsoid of all together does not.",
+                   1e3 * widest);
 }
 
 void Certificate::uncertainties() {
