@@ -150,6 +150,10 @@ class CalibrationGrader::Examiner {
       return ", but no refinement asked all samples together whether something is not modelled: "
              "run refine";
     }
+    if (isRegistrationRestated()) {
+      return ", but registration has been stated otherwise since it was calibrated: its "
+             "uncertainties are of before; calibrate again, by refine where torques serve";
+    }
     const std::string confounded = confoundedRegistration(parameters);
     const bool used_torques = isTorqueIdentified() &&
                               (last_success_ == nullptr || last_success_->cycle != Cycle::kMotion);
@@ -181,6 +185,11 @@ class CalibrationGrader::Examiner {
           static_cast<char>(std::tolower(static_cast<unsigned char>(sentence.front())));
     }
     return sentence;
+  }
+
+  bool isRegistrationRestated() const {
+    return last_success_ != nullptr && !last_success_->registration.empty() &&
+           last_success_->registration != inWords(session_.config().registration);
   }
 
   /// Whether poles and coils were calibrated one after the other only: each cycle has few samples

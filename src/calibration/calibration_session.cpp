@@ -130,6 +130,7 @@ const CycleReport& CalibrationSession::run(const CycleRequest& request) {
   state_ = std::move(outcome.state);
   expected_errors_.reset();
   reports_.push_back(std::move(outcome.report));
+  reports_.back().registration = inWords(config_.registration);
   if (!reports_.back().success) {
     putInForce(before);
   } else if (is_motion) {

@@ -1,7 +1,10 @@
 #include "spherical_actuator_calibration/calibration/registration_uncertainty.hpp"
 
+#include <utility>
+
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/yaml_writer.hpp"
 #include "spherical_actuator_calibration/estimation/effect_name.hpp"
 
 namespace sac {
@@ -19,6 +22,21 @@ std::optional<FrameCovariance> frameCovariance(const std::vector<double>& row_by
 std::vector<double> rowByRow(const FrameCovariance& covariance) {
   const FrameCovariance rows = covariance.transpose();  // stored by columns
   return {rows.data(), rows.data() + rows.size()};
+}
+
+std::string inWords(const RegistrationUncertainty& registration) {
+  YamlLine line;
+  for (const auto& [name, stddev] : {std::pair{"stator_tracker", registration.stator_tracker},
+                                     std::pair{"rotor_marker", registration.rotor_marker},
+                                     std::pair{"rotor_ft_sensor", registration.rotor_ft_sensor}}) {
+    if (stddev) {
+      line.add(name, yamlNumber(*stddev));
+    }
+  }
+  if (registration.tracker_and_marker) {
+    line.add("tracker_and_marker", yamlNumbers(rowByRow(*registration.tracker_and_marker)));
+  }
+  return line.text();
 }
 
 void validate(const RegistrationUncertainty& registration) {

@@ -166,8 +166,8 @@ std::int64_t insert(const SQLite::Database& database,
                 "INSERT INTO cycles (date, software, cycle, coil, success, message, samples_used, "
                 "samples_rejected, iterations, error_measure, reduced_chi_square, "
                 "condition_number, solve_time, orientation_uncertainty, torque_uncertainty, "
-                "contradicted, degrees_of_freedom, in_force) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                "contradicted, degrees_of_freedom, in_force, registration) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.put(date)
       .put(software)
       .put(cycleName(report.cycle))
@@ -177,7 +177,8 @@ std::int64_t insert(const SQLite::Database& database,
   row.put(report.iterations).put(wordOf(kErrorMeasures, report.error_measure));
   row.put(report.reduced_chi_square).put(report.condition_number).put(report.solve_time);
   row.put(report.orientation_uncertainty).put(report.torque_uncertainty);
-  row.put(report.contradicted).put(std::int64_t{report.degrees_of_freedom}).put(in_force).write();
+  row.put(report.contradicted).put(std::int64_t{report.degrees_of_freedom}).put(in_force);
+  row.put(report.registration).write();
   const std::int64_t id = database.getLastInsertRowid();
   insertErrors(database, id, report);
   insertEstimates(database, id, report);
@@ -201,8 +202,8 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   RowReader row(database,
                 "SELECT cycle, coil, success, message, samples_used, samples_rejected, iterations, "
                 "error_measure, reduced_chi_square, condition_number, solve_time, "
-                "orientation_uncertainty, torque_uncertainty, contradicted, degrees_of_freedom "
-                "FROM cycles WHERE id = ?",
+                "orientation_uncertainty, torque_uncertainty, contradicted, degrees_of_freedom, "
+                "registration FROM cycles WHERE id = ?",
                 id);
   row.next();
   CycleReport report;
@@ -221,6 +222,7 @@ CycleReport find(const SQLite::Database& database, std::int64_t id) {
   report.torque_uncertainty = row.number();
   report.contradicted = row.flag();
   report.degrees_of_freedom = static_cast<int>(row.integer());
+  report.registration = row.text();
   readErrors(database, id, report);
   if (report.success && report.error_history.empty()) {
     throw RowDefect("cycle " + std::to_string(id) + " has succeeded, and has no errors");

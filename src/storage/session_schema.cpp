@@ -12,7 +12,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 8;
+constexpr std::int64_t kSchemaVersion = 9;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -36,7 +36,8 @@ CREATE TABLE cycles (
   torque_uncertainty ANY,
   contradicted INTEGER NOT NULL DEFAULT 0,
   degrees_of_freedom INTEGER NOT NULL DEFAULT 0,
-  in_force INTEGER
+  in_force INTEGER,
+  registration TEXT NOT NULL DEFAULT ''
 ) STRICT;
 )sql";
 
@@ -292,13 +293,17 @@ void upgradeSessionSchema(SQLite::Database& database) {
     database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
     database.exec(kCycles);
     database.exec(
-        "INSERT INTO cycles SELECT *, 0, 0, NULL FROM earlier_cycles; DROP TABLE earlier_cycles;"
+        "INSERT INTO cycles SELECT *, 0, 0, NULL, '' FROM earlier_cycles; DROP TABLE "
+        "earlier_cycles;"
         "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
   } else if (version < 6) {
     database.exec(
         "ALTER TABLE cycles ADD COLUMN contradicted INTEGER NOT NULL DEFAULT 0;"
         "ALTER TABLE cycles ADD COLUMN degrees_of_freedom INTEGER NOT NULL DEFAULT 0;"
         "ALTER TABLE cycles ADD COLUMN in_force INTEGER");
+  }
+  if (version >= 4 && version < 9) {
+    database.exec("ALTER TABLE cycles ADD COLUMN registration TEXT NOT NULL DEFAULT ''");
   }
   if (version < 5) {
     database.exec(kMotionWindows);

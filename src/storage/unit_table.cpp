@@ -61,7 +61,8 @@ void check(const SQLite::Database& database,
   if (started_with != describe(effects)) {
     throw DataError(path + ": this session models the laboratory effects \"" + started_with +
                     "\", but the configuration asks for \"" + describe(effects) +
-                    "\"; set effects as they were, or give another directory.");
+                    "\"; set effects and registration (lab.launch has arguments for it) as they "
+                    "were, or give another directory.");
   }
 }
 

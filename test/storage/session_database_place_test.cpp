@@ -194,6 +194,7 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
 
 /// Cycles as formats before 6 had them.
 constexpr char kWithoutDoubts[] =
+    "ALTER TABLE cycles DROP COLUMN registration;"
     "DROP TABLE cycle_motions;"
     "DROP TABLE cycle_windows_left_out;"
     "DROP TABLE cycle_windows_held_out;"
@@ -247,7 +248,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "8");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "9");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -329,6 +330,7 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
                             "DROP TABLE cycle_motions; DROP TABLE cycle_windows_left_out;"
                             "DROP TABLE cycle_windows_held_out; DROP TABLE cycle_window_residuals; "
                             "DROP TABLE planned_patterns; DROP TABLE planned_poses;"
+                            "ALTER TABLE cycles DROP COLUMN registration;"
                             "PRAGMA user_version = 6");
   SessionDatabase database(path(), identity());
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
@@ -342,8 +344,9 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
 TEST_F(PlaceTest, APlanOfTheSeventhFormatIsToCalibrateBy) {
   PosesToMeasure plan{{Eigen::Vector3d(0.1, -0.2, 0.3), {{{0, 1}}}, true}};
   SessionDatabase(path(), identity()).setPlan(plan);
-  database_examples::change(
-      path(), "ALTER TABLE planned_poses DROP COLUMN validation; PRAGMA user_version = 7");
+  database_examples::change(path(),
+                            "ALTER TABLE planned_poses DROP COLUMN validation;"
+                            "ALTER TABLE cycles DROP COLUMN registration; PRAGMA user_version = 7");
   SessionDatabase database(path(), identity());
   plan[0].validation = false;
   EXPECT_EQ(database.plan(), plan);

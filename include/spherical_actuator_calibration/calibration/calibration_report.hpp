@@ -62,6 +62,8 @@ struct CycleReport {
   double orientation_uncertainty = 0.0;                ///< [rad]
   double torque_uncertainty = 0.0;                     ///< [N·m/A]
   std::optional<MotionSummary> motion = std::nullopt;  ///< of the cycle motion
+  /// What was stated of the registrations, by inWords(); empty: not known.
+  std::string registration;
 };
 
 /// Unit of the error history of a cycle: rad, N·m, or 1 for standardized errors.

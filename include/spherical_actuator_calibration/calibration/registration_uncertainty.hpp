@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "spherical_actuator_calibration/calibration/tracked_pose.hpp"
@@ -18,6 +19,9 @@ struct RegistrationUncertainty {
   /// FrameRegistration has it.
   std::optional<FrameCovariance> tracker_and_marker = std::nullopt;
 };
+
+/// What is stated, and of what nothing is: the same words for the same numbers.
+std::string inWords(const RegistrationUncertainty& registration);
 
 /// Throws ConfigError where something is stated twice.
 void validate(const RegistrationUncertainty& registration);
