@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
+#include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "support/scenarios.hpp"
 
@@ -103,6 +106,54 @@ TEST(ValidityCheck, DoubtsACoilWhoseOnlyTorqueIsAnOutlier) {
 }
 
 // Orientations say nothing of coils, and one pose little of the joints.
+/// What a check says after coil 4 has lost a tenth of its strength, by torques of it and others.
+std::string saidOfAWeakCoil(bool with_another) {
+  scenarios::Generator generator(6);
+  CalibrationSession session(
+      {scenarios::paperNominal()},
+      scenarios::paperSession(scenarios::paperTruth(), scenarios::Tracker::kEveryPose, generator),
+      {});
+  EXPECT_TRUE(session.run({Cycle::kRefine}).success);
+  Actuator unit = scenarios::paperTruth();
+  unit.coils[3].gain = 0.9;
+  const JointGeometry joints = jointGeometry(unit);
+  std::uint32_t id = 5000;
+  for (const Eigen::Vector3d& q : scenarios::randomPoses(48, 0.3, generator)) {
+    Sample sample;
+    sample.id = id++;
+    sample.validation = true;
+    sample.joint_position = q;
+    sample.current.assign(unit.coils.size(), 0.0);
+    sample.current[id % unit.coils.size()] = 2.0;
+    if (with_another) {
+      sample.current[3] = 2.0;
+    }
+    sample.has_torque = true;
+    sample.torque_stddev = 5e-4;
+    sample.torque = rotorTorque(TorqueCurve(*unit.torque_curve),
+                                torqueGeometry(unit),
+                                rotorOrientation(joints, q),
+                                sample.current) +
+                    scenarios::uniformNoise(5e-4, generator);
+    session.add(sample);
+  }
+  const ValidityCheck check = checkValidity(session, CheckedSamples::kAll);
+  EXPECT_FALSE(check.is_valid);
+  return check.message;
+}
+
+TEST(ValidityCheck, BlamesNoJointForACoilThatIsExcitedWithOthers) {
+  const auto says = [](const std::string& message, const char* words) {
+    return message.find(words) != std::string::npos;
+  };
+  const std::string alone = saidOfAWeakCoil(false);
+  EXPECT_TRUE(says(alone, "coil 4")) << alone;
+  EXPECT_FALSE(says(alone, "excited together")) << alone;
+  const std::string together = saidOfAWeakCoil(true);
+  EXPECT_TRUE(says(together, "excited together")) << together;
+  EXPECT_FALSE(says(together, "a joint")) << together;
+}
+
 TEST(ValidityCheck, TellsWhatOrientationsOfOnePoseLeaveOut) {
   CalibrationSession session({scenarios::paperNominal()}, orientations(40, 3), {});
   ASSERT_TRUE(session.run({Cycle::kJoint}).success);

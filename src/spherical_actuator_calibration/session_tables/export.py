@@ -13,7 +13,7 @@ from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
 MAGIC = b"SQLite format 3\0"
-FORMATS = (1, 2, 3, 4, 5, 6, 7, 8)
+FORMATS = range(1, 10)
 FILES = ("samples.csv", "parameters.csv", "revisions.csv", "actuator.yaml")
 PARAMETER_HEADINGS = (
     "revision", "date", "cycle", "coil", "name", "unit", "nominal", "initial", "value", "stddev", "observable"
