@@ -98,12 +98,13 @@ class PanelActions(ViewedLabCase):
         for _ in range(2):
             self.assertTrue(self.client.call("reset").success)
         wait_for(lambda: self.parameters[-1].revision == 2, "revisions")
-        self.key(REVISIONS)
         wait_for(self.restored, "the revision")
         self.assertEqual((self.parameters[-1].source, self.parameters[-1].revision), ("restored", 3))
 
     def restored(self):
         """The second one of the list, newest first: revision 1."""
+        self.key(REVISIONS)
+        time.sleep(PAUSE)  # until they are listed
         for key in ("Home", "Down", RESTORE):
             self.key(key)
         time.sleep(PAUSE)
