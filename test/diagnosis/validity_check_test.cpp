@@ -123,8 +123,8 @@ std::string saidOfAWeakCoil(bool with_another) {
     sample.id = id++;
     sample.validation = true;
     sample.joint_position = q;
-    sample.current.assign(unit.coils.size(), 0.0);
-    sample.current[id % unit.coils.size()] = 2.0;
+    sample.current = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unit.coils.size()));
+    sample.current[id % sample.current.size()] = 2.0;
     if (with_another) {
       sample.current[3] = 2.0;
     }
