@@ -105,6 +105,20 @@ def shares(errors, stddevs):
     return np.mean(normalised < 1.96), np.sqrt(np.mean(normalised**2))
 
 
+def whole_calibrations(coarse, seeds):
+    """Outcomes of sessions by frames that are known so coarsely [rad], and how far their values are from the truth."""
+    unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(registration=(coarse, coarse, 0.0))
+    errors, sessions = [], []
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        errors.append(rng.normal(0.0, 0.01, unit.size()))
+        poses = laboratory.random_poses(40, TILT, rng)
+        dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 8, rng)
+        sessions.append((sensors, dwells, 5))
+    outcomes = cases.calibrate(unit, sessions, cases.registration_config(sensors.registration))
+    return outcomes, np.array([outcome.values - unit.values(e) for outcome, e in zip(outcomes, errors)])
+
+
 class RegistrationIsHonest(unittest.TestCase):
     def test_joints_as_made_are_common_errors(self):
         results = [Registered(Trial(seed)) for seed in range(TRIALS)]
@@ -168,15 +182,7 @@ class RegistrationIsHonest(unittest.TestCase):
         self.assertLess(abs(rms - 1.0), 0.2)
 
     def test_a_whole_calibration_by_frames_as_coarse_as_a_drawing_is_complete(self):
-        unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(registration=(COARSE, COARSE, 0.0))
-        errors, sessions = [], []
-        for seed in range(300, 310):
-            rng = np.random.default_rng(seed)
-            errors.append(rng.normal(0.0, 0.01, unit.size()))
-            poses = laboratory.random_poses(40, TILT, rng)
-            dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 8, rng)
-            sessions.append((sensors, dwells, 5))
-        outcomes = cases.calibrate(unit, sessions, cases.registration_config(sensors.registration))
+        outcomes, apart = whole_calibrations(COARSE, range(300, 310))
         for outcome in outcomes:
             self.assertTrue(outcome.refined(), outcome.reason)
             self.assertEqual(outcome.grade, "good", outcome.reason)
@@ -184,22 +190,12 @@ class RegistrationIsHonest(unittest.TestCase):
             # A common turn is known as well as the frames, what lies between the axes by what was measured.
             self.assertGreater(outcome.stddevs[:9].max(), 0.9 * COARSE)
             self.assertLess(outcome.stddevs.max(), 1.5 * COARSE)
-        apart = np.array([outcome.values - unit.values(e) for outcome, e in zip(outcomes, errors)])
         inside, rms = shares(apart, [outcome.stddevs for outcome in outcomes])
         self.assertGreater(inside, 0.8)
         self.assertLess(rms, 1.3)
 
     def test_frames_that_leave_a_turn_unobservable_are_told_and_bend_nothing(self):
-        unit, sensors = laboratory.paper_unit(), laboratory.Laboratory(registration=(UNOBSERVABLE, UNOBSERVABLE, 0.0))
-        errors, sessions = [], []
-        for seed in range(320, 328):
-            rng = np.random.default_rng(seed)
-            errors.append(rng.normal(0.0, 0.01, unit.size()))
-            poses = laboratory.random_poses(40, TILT, rng)
-            dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 8, rng)
-            sessions.append((sensors, dwells, 5))
-        outcomes = cases.calibrate(unit, sessions, cases.registration_config(sensors.registration))
-        apart = np.array([outcome.values - unit.values(e) for outcome, e in zip(outcomes, errors)])
+        outcomes, apart = whole_calibrations(UNOBSERVABLE, range(320, 328))
         stddevs = np.array([outcome.stddevs for outcome in outcomes])
         for outcome in outcomes:
             self.assertTrue(outcome.refined(), outcome.reason)

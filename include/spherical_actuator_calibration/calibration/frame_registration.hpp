@@ -70,7 +70,8 @@ std::size_t differentPoses(const CalibratedDescription& description,
 /// move pictures only.
 std::string launchArgument(const Eigen::Matrix3d& rotation);
 
-/// Its covariance, row by row, for registration/tracker_and_marker/covariance of the configuration.
+/// Its covariance [rad²], row by row as "[c11, c12, …]", for
+/// registration/tracker_and_marker/covariance of the configuration.
 std::string covarianceArgument(const FrameRegistration& registration);
 
 /// Writes what was found as YAML (doc/registration.md). Throws DataError when the file exists and

@@ -20,13 +20,14 @@ struct RegistrationUncertainty {
   std::optional<FrameCovariance> tracker_and_marker = std::nullopt;
 };
 
-/// What is stated, and of what nothing is: the same words for the same numbers.
+/// What is stated, as a YAML map in one line [rad, rad²]; "{}" where nothing is. The same words for
+/// the same numbers.
 std::string inWords(const RegistrationUncertainty& registration);
 
 /// Throws ConfigError where something is stated twice.
 void validate(const RegistrationUncertainty& registration);
 
-/// Of 36 numbers, row by row; nothing where they are not symmetric and positive definite.
+/// Of 36 numbers [rad²], row by row; nothing where they are not symmetric and positive definite.
 std::optional<FrameCovariance> frameCovariance(const std::vector<double>& row_by_row);
 
 /// The same back.

@@ -20,12 +20,14 @@ struct UnidentifiedPart {
 /// Judges the information matrix (F×F) of the coordinates `free` (ascending): a standard deviation
 /// above `limit` [rad] is open.
 ///
-/// A laboratory effect that takes part in an open direction is held first: it was an option. Then
-/// coordinates are held whole that the data leave open by themselves, as those of a pole that no
-/// sample sees. Of all others only the open directions are held: two parallel joints have offsets
-/// whose sum the data tell though not their difference, and torques alone leave open how the stator
-/// is turned as a whole (doc/method.md, Gauge). Held whole, the prior of such coordinates would
-/// count as noise of each sample by itself, and hide every misfit.
+/// A laboratory effect that takes part in an open direction is held first: it was an option. One of
+/// which something is stated is not: it is known by that, however coarsely, and no direction that
+/// is held has a part in it. Then coordinates are held whole that the data leave open by
+/// themselves, as those of a pole that no sample sees. Of all others only the open directions are
+/// held: two parallel joints have offsets whose sum the data tell though not their difference, and
+/// torques alone leave open how the stator is turned as a whole (doc/method.md, Gauge). Held whole,
+/// the prior of such coordinates would count as noise of each sample by itself, and hide every
+/// misfit.
 UnidentifiedPart unidentifiedPart(const Eigen::MatrixXd& information,
                                   const std::vector<Eigen::Index>& free,
                                   const ParameterSpace& space,
