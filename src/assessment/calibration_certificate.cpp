@@ -266,7 +266,7 @@ void Certificate::methods() {
 
 /// The region of all results is an ellipsoid, and a wide turn in common bends it.
 std::string Certificate::bendInWords() const {
-  constexpr double kWide = 5e-3;  // [rad]; bent by 0.01 mrad, what differences are known to
+  constexpr double kWide = 1e-2;  // [rad]; bent by 0.05 mrad, what differences are known to
   double widest = 0.0;
   for (const ParameterEstimate& result : results_) {
     widest = std::max(widest, result.unit == "rad" ? result.stddev : 0.0);

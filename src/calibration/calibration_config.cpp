@@ -20,7 +20,6 @@ namespace sac {
 namespace {
 
 constexpr std::int64_t kLargestCount = 1'000'000;
-constexpr double kSymmetric = 1e-6;                          // of the norm, of rounded numbers
 constexpr auto kHarmonics = effect_name::kEncoderHarmonics;  // of all joints, or a list of joints
 
 std::string wordOf(MapUse use) {

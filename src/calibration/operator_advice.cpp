@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/sample_coverage.hpp"
 
@@ -132,9 +133,18 @@ std::string adviceForJoint(const CalibrationModel& model,
          format("%.2g rad or more.", kAmple * least_motion);
 }
 
+std::string coarseInWords(const std::string& effect) {
+  return "The samples cannot tell " + effect +
+         " apart from the other parameters, and it is stated more coarsely than "
+         "estimation.unobservable_stddev: measure it better, and state that.";
+}
+
 std::string adviceForEffect(const CalibrationModel& model, std::size_t coordinate) {
   const EffectLayout& effects = model.space().effects();
   const auto at = static_cast<Eigen::Index>(coordinate);
+  if (effects.statedVariance(at) > 0.0) {
+    return coarseInWords(effects.name(at));
+  }
   return "The samples cannot tell " + effects.name(at) +
          " apart from the other parameters: switch off effects." + effects.at(at).name +
          ", or add poses over the whole workspace.";
@@ -196,11 +206,15 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
 }
 
 std::string adviceForCoarse(const ParameterSpace& space, double unobservable_stddev) {
-  for (const PlacedEffect& effect : space.effects().effects()) {
-    if (effect.stddev > unobservable_stddev) {
-      return "The samples cannot tell " + effect.name +
-             " apart from the other parameters, and it is stated more coarsely than "
-             "estimation.unobservable_stddev: measure it better, and state that.";
+  const EffectLayout& effects = space.effects();
+  for (const PlacedEffect& effect : effects.effects()) {
+    const double scale = effect.effect->scale();
+    const Eigen::MatrixXd stated =
+        scale * scale *
+        effects.statedCovariance().block(effect.first, effect.first, effect.size(), effect.size());
+    // About one axis it may be known far worse than about the others.
+    if (symmetricEigen(stated).values.maxCoeff() > unobservable_stddev * unobservable_stddev) {
+      return coarseInWords(effect.name);
     }
   }
   return {};

@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/estimation/laboratory_effects.hpp"
 
+#include <optional>
 #include <regex>
 #include <set>
 #include <string>
@@ -209,6 +210,21 @@ TEST(LaboratoryEffects, ATrackerRegistrationThatIsStatedTooCoarselyIsToBeMeasure
             std::string::npos)
       << report.message;
   EXPECT_EQ(report.message.find("switch off"), std::string::npos) << report.message;
+}
+
+TEST(LaboratoryEffects, ATrackerRegistrationThatIsCoarseAboutOneAxisIsToBeMeasuredBetter) {
+  scenarios::Generator generator(8);
+  FrameCovariance stated = 1e-6 * FrameCovariance::Identity();
+  stated(0, 0) = 0.06 * 0.06;
+  CalibrationConfig config;
+  stateRegistration(config, {std::nullopt, std::nullopt, 0.0, stated});
+  CalibrationSession session(
+      {scenarios::paperNominal()}, sessionIn({}, madeUnit(generator), generator), config);
+  const CycleReport& report = session.run({Cycle::kJoint});
+  EXPECT_EQ(report.open_directions.size(), 1U) << report.message;
+  EXPECT_NE(report.message.find("stated more coarsely than estimation.unobservable_stddev"),
+            std::string::npos)
+      << report.message;
 }
 
 TEST(LaboratoryEffects, AreInTheCalibratedDescription) {

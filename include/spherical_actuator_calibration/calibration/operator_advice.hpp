@@ -22,8 +22,8 @@ std::vector<std::string> adviceForUnobservable(const CalibrationModel& model,
                                                const EstimationOptions& options,
                                                const std::vector<Eigen::Index>& unobservable);
 
-/// Of an effect that is stated more coarsely than this limit [rad], so that a direction stays open
-/// whatever is measured; or empty.
+/// Of an effect that is stated more coarsely than this limit [rad], be it about one axis alone, so
+/// that a direction stays open whatever is measured; or empty.
 std::string adviceForCoarse(const ParameterSpace& space, double unobservable_stddev);
 
 }  // namespace sac
