@@ -124,21 +124,19 @@ void LiveMotionWork::takeNoise() {
 /// By how much the noise is smaller than the streams say, by the likelihood of the residuals.
 void LiveMotionWork::findNoise() {
   constexpr std::size_t kEnough = 60;
-  std::vector<WindowTerm> terms;
+  const double variance = noise_.current * noise_.current;
+  std::vector<NoiseEvidence> evidence;
   const std::size_t stride = std::max<std::size_t>(1, kept_.size() / kEnough);
   for (std::size_t n = 0; n < kept_.size(); n += stride) {
-    WindowTerm term;
-    term.whitening = kept_[n].term.whitening;
-    term.balance.by_joints = kept_[n].term.balance.by_joints;
-    term.balance.by_currents = kept_[n].term.balance.by_currents;
-    term.residual = residualOf(kept_[n]);
-    term.active = kept_[n].term.active;
-    terms.push_back(std::move(term));
+    const WindowTerm& term = kept_[n].term;
+    if (term.active) {
+      evidence.push_back(
+          noiseEvidence(term.balance, variance, term.whitening, residualOf(kept_[n])));
+    }
   }
   const double values = 3.0 * options_.test_functions * static_cast<double>(kept_.size());
   const double share = std::max(0.1, 1.0 - static_cast<double>(free_.size()) / values);
-  const double variance = noise_.current * noise_.current;
-  factors_ = likelyFactors(terms, variance, share);
+  factors_ = likelyFactors(evidence, noise_.chance, share);
   for (LiveWindow& window : kept_) {
     window.whiten(factors_.joints, factors_.currents * variance);
   }

@@ -82,17 +82,15 @@ double Estimator::windowSquares() const {
 
 /// Noise and outliers at the present solution; whether that changes anything that counts.
 bool Estimator::weighAnew() {
-  constexpr double kNoticeable = 1.1;
+  constexpr double kLikelier = 1.0;  // as a χ²: what chance makes where the model fits
   const double values =
       static_cast<double>(terms_.valuesPerWindow()) * static_cast<double>(activeWindows());
   const double share = std::max(0.1, windowFreedom() / values);
-  const double current_variance = terms_.noise().current * terms_.noise().current;
-  const NoiseFactors factors = likelyFactors(terms_.windows(), current_variance, share);
-  const auto differs = [](double one, double other) {
-    return std::max(one / other, other / one) > kNoticeable;
-  };
-  const bool changes =
-      differs(factors.joints, factors_.joints) || differs(factors.currents, factors_.currents);
+  const std::vector<NoiseEvidence> evidence = terms_.noiseEvidence();
+  const NoiseFactors& chance = terms_.noise().chance;
+  const NoiseFactors factors = likelyFactors(evidence, chance, share);
+  const double misfit = std::max(1.0, windowSquares() / std::max(1.0, windowFreedom()));
+  const bool changes = likelierBy(factors, factors_, evidence, chance, share) > kLikelier * misfit;
   if (changes) {
     factors_ = factors;
     terms_.setNoiseFactors(factors.joints, factors.currents);

@@ -34,6 +34,14 @@ class ThirdDifferences {
   }
   double stddev() const { return robustStddev(magnitudes_) / std::sqrt(20.0); }
 
+  /// Standard deviation of the variance, over its value, where noise is white.
+  double chance() const {
+    constexpr double kOfMedian = 5.44;  // of as many normal values, times their number, squared
+    constexpr double kOverlap = 2.3;    // neighbouring differences have readings in common
+    const auto count = static_cast<double>(std::max<std::size_t>(1, magnitudes_.size()));
+    return std::sqrt(kOfMedian * kOverlap / count);
+  }
+
  private:
   std::vector<double> magnitudes_;
 };
@@ -87,6 +95,7 @@ MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
       joint.add(span.track.size(), [&](std::size_t n) { return span.track.reading(n)[k]; });
     }
     noise.joint[k] = std::max(kLeastJoint, joint.stddev());
+    noise.chance.joints = joint.chance();
   }
   ThirdDifferences current;
   for (const MotionSpan& span : spans) {
@@ -97,6 +106,7 @@ MotionNoise noiseOf(const std::vector<MotionSpan>& spans,
     }
   }
   noise.current = std::max(kLeastCurrent, current.stddev());
+  noise.chance.currents = current.chance();
   noise.orientation = trackerNoise(spans, model, x, kEnough);
   return noise;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "motion_span.hpp"
+#include "noise_factors.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 
 namespace sac {
@@ -16,6 +17,8 @@ struct MotionNoise {
   Eigen::Vector3d joint = Eigen::Vector3d::Zero();  ///< standard deviation [rad]
   double current = 0.0;                             ///< [A]
   double orientation = 0.0;                         ///< per component [rad]
+  /// Standard deviations of the variances of readings and currents, over their value, by chance.
+  NoiseFactors chance;
 };
 
 /// `x`: coordinates near enough that the tracker's misfit changes slowly.

@@ -44,7 +44,7 @@ class MotionProbe {
 void MotionProbe::addWindows() {
   const MotionPoint point = terms_.pointAt(x_);
   SkewEvaluator skews(options_);
-  const std::size_t stride = noiseStride(terms_.windowCount());
+  const std::size_t stride = keptStride(terms_.windowCount());
   for (std::size_t n = 0; n < terms_.windowCount(); ++n) {
     const WindowTerm& term = terms_.windows()[n];
     const bool is_some = n % stride == 0;
@@ -67,7 +67,7 @@ void MotionProbe::addWindows() {
 
 void MotionProbe::addOrientations() {
   const std::vector<OrientationGroup>& groups = terms_.orientations().groups();
-  const std::size_t stride = noiseStride(groups.size());
+  const std::size_t stride = keptStride(groups.size());
   TrackerTerm tracker(terms_.orientations().model(), terms_.places(), x_);
   for (std::size_t n = 0; n < groups.size(); n += stride) {
     addOrientations(groups[n], tracker);

@@ -103,7 +103,7 @@ Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance) {
   return Cholesky(covariance).half(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
-std::size_t noiseStride(std::size_t windows) {
+std::size_t keptStride(std::size_t windows) {
   constexpr std::size_t kEnough = 60;
   return std::max<std::size_t>(1, windows / kEnough);
 }
@@ -208,7 +208,7 @@ void MotionTerms::linearizeWindows(const BalanceOrder& order) {
   std::vector<WindowSums> sums(kChunks, sums_);
   parallelFor(kChunks, threads, [&](unsigned worker, std::size_t chunk) {
     for (std::size_t n = count * chunk / kChunks; n < count * (chunk + 1) / kChunks; ++n) {
-      if (n % noiseStride(count) == 0) {
+      if (n % keptStride(count) == 0) {
         keep(windows_[n], point, evaluators_[worker]);
       } else {
         sumUp(windows_[n], point, evaluators_[worker], sums[chunk]);
@@ -245,6 +245,7 @@ void MotionTerms::sumUp(WindowTerm& term,
     return;
   }
   term.steady = evidenceOf(term, spans_[term.window.span].track);
+  term.noise = noiseEvidenceOf(term);
   term.is_summed = true;
   term.is_in_sum = term.isSound();
   if (term.is_in_sum) {
@@ -315,6 +316,21 @@ InformationSum MotionTerms::balance(const Eigen::VectorXd& x) {
 TorqueEvidence MotionTerms::steadyTorque(std::size_t window) const {
   const WindowTerm& term = windows_[window];
   return term.isKept() ? evidenceOf(term, spans_[term.window.span].track) : term.steady;
+}
+
+NoiseEvidence MotionTerms::noiseEvidenceOf(const WindowTerm& term) const {
+  const double variance = noise_.current * noise_.current;
+  return sac::noiseEvidence(term.balance, variance, term.whitening, term.residual);
+}
+
+std::vector<NoiseEvidence> MotionTerms::noiseEvidence() const {
+  std::vector<NoiseEvidence> all;
+  for (const WindowTerm& term : windows_) {
+    if (term.serves()) {
+      all.push_back(term.isKept() ? noiseEvidenceOf(term) : term.noise);
+    }
+  }
+  return all;
 }
 
 double MotionTerms::squares(const Eigen::VectorXd& x) const {

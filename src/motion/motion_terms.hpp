@@ -7,6 +7,7 @@
 
 #include "motion_noise.hpp"
 #include "motion_span.hpp"
+#include "noise_factors.hpp"
 #include "orientation_terms.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 #include "spherical_actuator_calibration/motion/motion_problem.hpp"
@@ -36,6 +37,7 @@ struct WindowTerm {
   std::string at_end;       ///< SaturatedReadings::within()
   bool is_cut_off = false;  ///< by that end: see leaveCutOff()
   TorqueEvidence steady;    ///< of one that is summed
+  NoiseEvidence noise;      ///< of one that is summed
 
   bool isSound() const { return active && !is_pushed && !is_cut_off; }
   bool serves() const { return isSound() && !held_out; }
@@ -97,6 +99,8 @@ class MotionTerms {
   InformationSum orientation(const Eigen::VectorXd& x);
   /// What a window tells of a steady torque that is not modelled, where balance() was asked last.
   TorqueEvidence steadyTorque(std::size_t window) const;
+  /// What the windows that serve tell of the noise, where balance() was asked last.
+  std::vector<NoiseEvidence> noiseEvidence() const;
   /// Squared whitened residuals of the windows that serve, at x, where balance() was asked last.
   double squares(const Eigen::VectorXd& x) const;
   /// Of what is held out and active, without robust weights: the windows' balance, and the mean
@@ -118,6 +122,7 @@ class MotionTerms {
   };
 
   Eigen::MatrixXd whiteningFor(const WindowBalance& balance) const;
+  NoiseEvidence noiseEvidenceOf(const WindowTerm& term) const;
   void linearizeWindows(const BalanceOrder& order);
   void keep(WindowTerm& term, const MotionPoint& point, BalanceEvaluator& evaluator);
   void sumUp(WindowTerm& term,
@@ -148,8 +153,8 @@ class MotionTerms {
   std::vector<BalanceEvaluator> evaluators_;  ///< one for each thread
 };
 
-/// Of so many windows one tells the noise, and is kept.
-std::size_t noiseStride(std::size_t windows);
+/// Of so many windows one is kept, whatever it tells.
+std::size_t keptStride(std::size_t windows);
 
 /// W with WᵀW the inverse of a covariance.
 Eigen::MatrixXd whiteningOfMany(const Eigen::MatrixXd& covariance);

@@ -3,59 +3,96 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include "spherical_actuator_calibration/base/cholesky.hpp"
+#include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
 
 namespace sac {
 namespace {
 
-/// A window's residual in the units it was measured in, and both parts of its covariance.
-struct Evidence {
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd by_joints;
-  Eigen::MatrixXd by_currents;
-};
-
 /// Twice the negative logarithm of the likelihood.
-double unlikelihood(const std::vector<Evidence>& evidence,
+double unlikelihood(const std::vector<NoiseEvidence>& evidence,
                     const NoiseFactors& factors,
                     double share) {
   double sum = 0.0;
-  for (const Evidence& one : evidence) {
-    const Cholesky factor(factors.joints * one.by_joints + factors.currents * one.by_currents);
-    if (!factor.isPositive()) {
+  for (const NoiseEvidence& one : evidence) {
+    const Eigen::ArrayXd variances =
+        factors.joints * one.by_joints + factors.currents * one.by_currents;
+    if (!(variances > 0.0).all()) {
       return std::numeric_limits<double>::infinity();
     }
-    const double logarithm = 2.0 * factor.lower().diagonal().array().log().sum();
-    sum += logarithm + factor.half(one.residual).squaredNorm() / share;
+    sum += variances.log().sum() + (one.squares / variances).sum() / share;
   }
   return sum;
 }
 
-/// The most likely factors, of those that may move.
-NoiseFactors walk(const std::vector<Evidence>& evidence,
-                  double share,
-                  bool joints_move,
-                  bool currents_move) {
+/// What speaks against a factor beforehand. Differences tell the noise well, but for chance: that it
+/// is much smaller has to be certain, and it is not much larger, however badly all fits.
+double priorOf(double factor, double chance) {
+  constexpr double kCertain = 12.0;
+  constexpr double kMost = 9.0;
+  const double square = std::pow(std::log(factor) / chance, 2);
+  if (factor < 1.0) {
+    return std::min(square, kCertain);
+  }
+  return square <= kMost ? square : std::numeric_limits<double>::infinity();
+}
+
+double costOf(const NoiseFactors& factors,
+              const std::vector<NoiseEvidence>& evidence,
+              const NoiseFactors& chance,
+              double share) {
+  return unlikelihood(evidence, factors, share) + priorOf(factors.joints, chance.joints) +
+         priorOf(factors.currents, chance.currents);
+}
+
+}  // namespace
+
+NoiseEvidence noiseEvidence(const WindowBalance& balance,
+                            double current_variance,
+                            const Eigen::MatrixXd& whitening,
+                            const Eigen::VectorXd& residual) {
+  const auto half = whitening.triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd half_by_joints = half * balance.by_joints;
+  const Eigen::MatrixXd half_by_currents = half * balance.by_currents;
+  // With their factors they sum up to the identity: both have the same directions.
+  const SymmetricEigen joints = symmetricEigen(half * half_by_joints.transpose());
+  const Eigen::MatrixXd& directions = joints.vectors;
+  const Eigen::MatrixXd by_currents = directions.transpose() * half * half_by_currents.transpose();
+  NoiseEvidence evidence;
+  evidence.by_joints = joints.values.array().max(0.0);
+  evidence.by_currents = current_variance * (by_currents * directions).diagonal().array().max(0.0);
+  evidence.squares = (directions.transpose() * residual).array().square();
+  return evidence;
+}
+
+double likelierBy(const NoiseFactors& others,
+                  const NoiseFactors& some,
+                  const std::vector<NoiseEvidence>& evidence,
+                  const NoiseFactors& chance,
+                  double share) {
+  return costOf(some, evidence, chance, share) - costOf(others, evidence, chance, share);
+}
+
+NoiseFactors likelyFactors(const std::vector<NoiseEvidence>& evidence,
+                           const NoiseFactors& chance,
+                           double share) {
   constexpr double kLeast = 1e-6;
+  constexpr double kFirst = 16.0;
+  constexpr double kLast = 1.002;
   NoiseFactors best;
-  double least = unlikelihood(evidence, best, share);
+  double least = costOf(best, evidence, chance, share);
   // Over the logarithms of both, with steps that shrink.
-  for (double factor = 16.0; factor > 1.02; factor = std::sqrt(factor)) {
-    for (bool moved = true; moved;) {
+  for (double factor = kFirst; factor > kLast; factor = std::sqrt(factor)) {
+    for (bool moved = !evidence.empty(); moved;) {
       moved = false;
-      const double joint_step = joints_move ? factor : 1.0;
-      const double current_step = currents_move ? factor : 1.0;
-      for (const NoiseFactors& next : {NoiseFactors{best.joints * joint_step, best.currents},
-                                       NoiseFactors{best.joints / joint_step, best.currents},
-                                       NoiseFactors{best.joints, best.currents * current_step},
-                                       NoiseFactors{best.joints, best.currents / current_step}}) {
-        if (next.joints > 1.0 || next.currents > 1.0 || next.joints < kLeast ||
-            next.currents < kLeast) {
+      for (const NoiseFactors& next : {NoiseFactors{best.joints * factor, best.currents},
+                                       NoiseFactors{best.joints / factor, best.currents},
+                                       NoiseFactors{best.joints, best.currents * factor},
+                                       NoiseFactors{best.joints, best.currents / factor}}) {
+        if (next.joints < kLeast || next.currents < kLeast) {
           continue;
         }
-        const double value = unlikelihood(evidence, next, share);
+        const double value = costOf(next, evidence, chance, share);
         if (value < least) {
           least = value;
           best = next;
@@ -63,40 +100,6 @@ NoiseFactors walk(const std::vector<Evidence>& evidence,
           break;
         }
       }
-    }
-  }
-  return best;
-}
-
-}  // namespace
-
-NoiseFactors likelyFactors(const std::vector<WindowTerm>& windows,
-                           double current_variance,
-                           double share) {
-  // Differences tell the noise well: they are doubted only where likelihood is certain.
-  constexpr double kCertain = 12.0;
-  std::vector<Evidence> evidence;
-  const std::size_t stride = noiseStride(windows.size());
-  for (std::size_t n = 0; n < windows.size(); n += stride) {
-    const WindowTerm& term = windows[n];
-    if (term.serves() && term.isKept()) {
-      evidence.push_back({term.whitening.triangularView<Eigen::Lower>().solve(term.residual),
-                          term.balance.by_joints,
-                          current_variance * term.balance.by_currents});
-    }
-  }
-  NoiseFactors best;
-  if (evidence.empty()) {
-    return best;
-  }
-  double least = unlikelihood(evidence, best, share);
-  for (const auto& [joints_move, currents_move] :
-       {std::pair(false, true), std::pair(true, false), std::pair(true, true)}) {
-    const NoiseFactors next = walk(evidence, share, joints_move, currents_move);
-    const double value = unlikelihood(evidence, next, share);
-    if (value < least - kCertain) {
-      least = value;
-      best = next;
     }
   }
   return best;

@@ -116,6 +116,21 @@ class ManyWindows : public ::testing::Test {
     EXPECT_EQ(values, few_values);
     expectNear(all_held, few_held);
     expectNear(allTerms().balance(near_), fewTerms().balance(near_));
+    expectTheSameNoise();
+  }
+
+  /// Where they are linearised: what is not kept tells of it there alone.
+  void expectTheSameNoise() {
+    allTerms().balance(problem_.prior.x);
+    fewTerms().balance(problem_.prior.x);
+    const std::vector<NoiseEvidence> all = allTerms().noiseEvidence();
+    const std::vector<NoiseEvidence> few = fewTerms().noiseEvidence();
+    ASSERT_EQ(all.size(), few.size());
+    const NoiseFactors chance{0.02, 0.01};
+    const NoiseFactors of_all = likelyFactors(all, chance, 1.0);
+    const NoiseFactors of_few = likelyFactors(few, chance, 1.0);
+    EXPECT_NEAR(of_few.joints, of_all.joints, 1e-9);
+    EXPECT_NEAR(of_few.currents, of_all.currents, 1e-9);
   }
 
   static void expectNear(const InformationSum& expected, const InformationSum& found) {
