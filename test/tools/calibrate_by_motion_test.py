@@ -4,7 +4,9 @@ only."""
 
 import os
 import pathlib
+import signal
 import tempfile
+import time
 import unittest
 from unittest import mock
 
@@ -42,6 +44,13 @@ def close_without_end(recording):
     """That of a recorder which was killed."""
     recording.close_as("1.bag.active")
     return []
+
+
+def wait_for(path):
+    deadline = time.monotonic() + 60.0
+    while not path.exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert path.exists(), path
 
 
 class CalibrateByMotion(unittest.TestCase):
@@ -89,6 +98,20 @@ class CalibrateByMotion(unittest.TestCase):
 
     def of_program(self, name):
         return [words for words in self.started if words[0] == name]
+
+    def test_a_recorder_ends_with_a_program_that_is_killed(self):
+        recorder, begun, ended = (pathlib.Path(self.folder.parent) / name for name in ("recorder", "begun", "ended"))
+        recorder.write_text(f"#!/bin/bash\ntrap 'touch {ended}; exit' INT\ntouch {begun}\nfor n in {{1..1200}}; do sleep 0.05; done\n")
+        recorder.chmod(0o755)
+        pid = os.fork()
+        if pid == 0:
+            with mock.patch.object(self.module, "program", lambda _name: str(recorder)):
+                self.recording("/actuator", self.folder)
+            signal.pause()
+        wait_for(begun)
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+        wait_for(ended)
 
     def test_plans_moves_and_calibrates_once(self):
         status, _ = self.run_with()
