@@ -227,11 +227,12 @@ std::string failure(const MotionProblem& problem,
            (skew.empty() ? skew : skew + " ") +
            (is_balance
                 ? endsInWords(found.at_end) +
-                      "Check signs, channels and zeros of currents, torque curve, strengths, "
+                      "Check signs, channels, zeros and filters of currents, torque curve, "
+                      "strengths, "
                       "polarities, joint sensors and the clocks of the streams. Where a "
                       "force/torque sensor "
                       "is at hand, samples at rest tell more (diagnose)."
-                : "Check joint sensors, frames, and the tracker with its clock.");
+                : "Check joint sensors, frames, and the tracker with its clock and filters.");
   }
   const std::string sign = wrongSign(problem.model->space(), estimate, problem.free);
   return sign.empty() ? deviation(problem.model->space(), estimate, problem.free, options) : sign;

@@ -42,10 +42,7 @@ std::string oftenDisturbed(const std::vector<ObservationResidual>& windows) {
 
 /// What the tracker says does not fit, over windows: it drifts, or its clock does.
 std::string driftInWords(const WindowMeansMisfit& orientations) {
-  constexpr double kSignificance = 1e-3;
-  if (!(orientations.freedom > 0.0) ||
-      orientations.squares <=
-          orientations.expected * chiSquareLimit(orientations.freedom, kSignificance)) {
+  if (!orientations.isMisfit()) {
     return {};
   }
   return format(
@@ -53,6 +50,21 @@ std::string driftInWords(const WindowMeansMisfit& orientations) {
       "clock drifts or jumps, or a joint sensor is not as modelled, and that may bias the "
       "parameters: check the tracker's stamps and mounting, and model errors of the joint sensors.",
       std::sqrt(orientations.reduced() / orientations.expected));
+}
+
+/// What is counted as larger is no misfit any more.
+std::string colourInWords(const MotionEstimate& found) {
+  if (!(found.tracker_colour > 1.0)) {
+    return {};
+  }
+  return format(
+      "The tracker's noise is not white: orientations, in the mean of a window, are %.1f times as "
+      "far off as white noise of %.2g mrad would leave them, and not alike in neighbouring "
+      "windows. "
+      "It counts as that much larger: look for a filter or a vibration of the tracker, and record "
+      "longer where that is too much.",
+      std::sqrt(found.tracker_colour),
+      1e3 * found.summary.orientation_stddev / std::sqrt(found.tracker_colour));
 }
 
 /// Currents that step with their readings look like noise, and hide how large it is: what a model
@@ -162,6 +174,7 @@ std::vector<std::string> motionDoubts(const MotionEstimate& found,
   constexpr double kLarge = 1.1;
   std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
                                  driftInWords(found.orientations),
+                                 colourInWords(found),
                                  repetitionInWords(recording),
                                  slowMisfitInWords(found),
                                  otherFrictionInWords(found),

@@ -18,6 +18,7 @@
 #include "spherical_actuator_calibration/estimation/joint_chi_square.hpp"
 #include "spherical_actuator_calibration/estimation/misfit.hpp"
 #include "steady_torque.hpp"
+#include "tracker_colour.hpp"
 
 namespace sac {
 namespace {
@@ -42,6 +43,7 @@ class Estimator {
   bool leaveSaturated();
   bool leavePushed();
   bool fits() const;
+  bool widenTracker();
   bool takeHeldOut();
   bool weighAnew();
   std::size_t activeWindows() const;
@@ -158,6 +160,15 @@ bool Estimator::leavePushed() {
   return solveFinely();
 }
 
+bool Estimator::widenTracker() {
+  result_.tracker_colour = trackerColour(meansOfOrientations(terms_, descent_.x()));
+  if (result_.tracker_colour == 1.0) {
+    return true;
+  }
+  terms_.widenTracker(result_.tracker_colour);
+  return solveFinely();
+}
+
 void Estimator::judgeMisfit() {
   Estimate& estimate = result_.estimate;
   const double freedom = windowFreedom();
@@ -168,9 +179,7 @@ void Estimator::judgeMisfit() {
   }
   const double squares = windowSquares();
   result_.summary.window_chi_square = squares / freedom;
-  const auto joints = static_cast<double>(problem_.model->space().pole(0));
-  result_.orientations = terms_.orientations().misfit(descent_.x(), joints);
-  result_.orientations.expected = meansOverDifferences(terms_.noise(), terms_.spans());
+  result_.orientations = meansOfOrientations(terms_, descent_.x());
   result_.summary.orientation_chi_square = result_.orientations.reduced();
   result_.pace = residualPace(terms_);
   estimate.reduced_chi_square = squares / freedom;
@@ -350,7 +359,8 @@ MotionEstimate Estimator::run() {
     summarise();
     return std::move(result_);
   }
-  const bool solved = solve() && leaveSaturated() && leavePushed() && takeHeldOut();
+  const bool solved =
+      solve() && leaveSaturated() && leavePushed() && widenTracker() && takeHeldOut();
   estimate.unobservable = descent_.open().coordinates;
   estimate.open_directions = descent_.open().directions;
   estimate.error_history = descent_.errors();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,8 @@ class MotionTerms {
   const MotionNoise& noise() const { return noise_; }
   /// Where the tracker's delay is known better than at the begin, what seemed noise may be motion.
   void findTrackerNoise(const Eigen::VectorXd& x);
+  /// From the next linearisation on its variance is so many times as large.
+  void widenTracker(double factor) { noise_.orientation *= std::sqrt(factor); }
   const MotionPlaces& places() const { return places_; }
   /// The model at other coordinates. Keeps references to these terms.
   MotionPoint pointAt(const Eigen::VectorXd& x) const {

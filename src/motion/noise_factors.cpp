@@ -25,8 +25,8 @@ double unlikelihood(const std::vector<NoiseEvidence>& evidence,
   return sum;
 }
 
-/// What speaks against a factor beforehand. Differences tell the noise well, but for chance: that it
-/// is much smaller has to be certain, and it is not much larger, however badly all fits.
+/// What speaks against a factor beforehand. Differences tell the noise well, but for chance: that
+/// it is much smaller has to be certain, and it is not much larger, however badly all fits.
 double priorOf(double factor, double chance) {
   constexpr double kCertain = 12.0;
   constexpr double kMost = 9.0;

@@ -24,6 +24,32 @@ const HeldOutStretch* stretchAt(const std::vector<HeldOutStretch>& stretches,
   return is_in ? &*place : nullptr;
 }
 
+/// The mean of a cell, of which white noise has the same variance as of any other.
+struct CellMean {
+  std::size_t span;
+  std::size_t cell;
+  Eigen::Vector3d residual;
+};
+
+constexpr std::size_t kMostLag = 6;  // 1.5 s: what a model lacks comes and goes with the motion
+
+/// Of means that are so many cells apart.
+double correlation(const std::vector<CellMean>& cells, std::size_t lag) {
+  double products = 0.0;
+  double squares = 0.0;
+  std::size_t before = 0;
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    while (cells[before].cell + lag < cells[n].cell) {
+      ++before;
+    }
+    if (cells[before].cell + lag == cells[n].cell && cells[before].span == cells[n].span) {
+      products += cells[n].residual.dot(cells[before].residual);
+      squares += 0.5 * (cells[n].residual.squaredNorm() + cells[before].residual.squaredNorm());
+    }
+  }
+  return squares > 0.0 ? products / squares : 0.0;
+}
+
 }  // namespace
 
 double robustWeight(double s) {
@@ -218,23 +244,32 @@ std::map<std::size_t, OrientationMean> OrientationTerms::heldOut(const Eigen::Ve
 }
 
 WindowMeansMisfit OrientationTerms::misfit(const Eigen::VectorXd& x, double coordinates) const {
-  double squares = 0.0;
-  double freedom = 0.0;
+  WindowMeansMisfit misfit;
+  std::vector<CellMean> cells;
   for (std::size_t n = 0; n < groups_.size();) {
     OrientationMean mean;
     const std::size_t cell = groups_[n].cell;
+    const std::size_t span = groups_[n].span;
     for (; n < groups_.size() && groups_[n].cell == cell; ++n) {
       if (!groups_[n].held_out && groups_[n].mean.count > 0.0) {
         mean.add(groups_[n].mean);
       }
     }
     if (mean.count > 0.0) {
-      squares += residualAt(x, mean).squaredNorm() / mean.count;
-      freedom += 3.0;
+      cells.push_back({span, cell, residualAt(x, mean) / std::sqrt(mean.count)});
+      misfit.squares += cells.back().residual.squaredNorm();
+      misfit.freedom += 3.0;
     }
   }
-  return freedom > 2.0 * coordinates ? WindowMeansMisfit{squares, freedom - coordinates}
-                                     : WindowMeansMisfit{};
+  if (misfit.freedom <= 2.0 * coordinates) {
+    return {};
+  }
+  misfit.freedom -= coordinates;
+  misfit.next_alike = correlation(cells, 1);
+  for (std::size_t lag = 1; lag <= kMostLag; ++lag) {
+    misfit.alike = std::max(misfit.alike, std::abs(correlation(cells, lag)));
+  }
+  return misfit;
 }
 
 void OrientationTerms::admitHeldOut() {

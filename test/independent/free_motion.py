@@ -45,6 +45,7 @@ class Streams:
     joint_stddev: float = 2e-5  # [rad]
     current_stddev: float = 1e-3  # [A]
     tracker_stddev: float = 5.8e-4  # [rad] per component
+    tracker_fade: float = 0.0  # [s] within which an error of the tracker fades: 0 is white noise
     current_delay: float = 0.0  # [s]
     tracker_delay: float = 4e-3  # [s]
     joint_phase: float = 0.0  # [s] of the first stamp
@@ -269,6 +270,15 @@ def _at(motion, t):
     return _rotations(w[0][:, None] * a + w[1][:, None] * b + w[2][:, None] * c) @ base
 
 
+def _fading_noise(rng, count, stddev, fade, rate):
+    """Of which neighbours have a part in common; rows of three."""
+    noise = rng.normal(0.0, stddev, (count, 3))
+    kept = np.exp(-1.0 / (fade * rate)) if fade > 0.0 else 0.0
+    for n in range(1, count if kept > 0.0 else 0):
+        noise[n] = kept * noise[n - 1] + np.sqrt(1.0 - kept**2) * noise[n]
+    return noise
+
+
 def _current_at(motion, t):
     n = np.clip(np.floor(t / 1e-3 + 1e-9).astype(int), 0, len(motion.time) - 1)
     if motion.lag <= 0:
@@ -300,7 +310,7 @@ def record(unit, errors, motion, streams, seed):
     t = stamps(streams.tracker_rate)
     R = _at(motion, t)
     if streams.tracker_stddev:
-        R = _rotations(rng.normal(0.0, streams.tracker_stddev, (len(t), 3))) @ R
+        R = _rotations(_fading_noise(rng, len(t), streams.tracker_stddev, streams.tracker_fade, streams.tracker_rate)) @ R
     result["orientations"] = (t + streams.tracker_delay, R)
     return _without_lost(result, streams.lost, np.random.default_rng([seed, 1]))
 

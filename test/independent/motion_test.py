@@ -142,6 +142,18 @@ class Motion(RecordedMotion):
                 self.assertLess(abs(value), 3.5 * stddev)
                 self.assertLess(stddev, 1e-5)
 
+    def test_noise_of_the_tracker_that_is_not_white_counts_in_full(self):
+        for fade in (0.01, 0.05):
+            outcome = calibrate(self.record(tracker_fade=fade))
+            self.check(outcome, 1.6e-4)
+            kept = np.exp(-1.0 / (fade * 240.0))
+            self.assertGreater(outcome.tracker_colour, 0.7 * (1.0 + kept) / (1.0 - kept))
+        # A drift is no noise.
+        drifting = calibrate(self.record(tracker_fade=2.0))
+        self.assertEqual(drifting.tracker_colour, 1.0)
+        self.assertLess(drifting.probability, 1e-3)
+        self.assertEqual(calibrate(self.record()).tracker_colour, 1.0)
+
     def test_one_spoilt_reading_costs_its_window_alone(self):
         recording = self.record()
         stamps, currents = recording["currents"]

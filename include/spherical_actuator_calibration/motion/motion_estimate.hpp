@@ -14,6 +14,9 @@ struct MotionEstimate {
   Estimate estimate;
   MotionSummary summary;
   WindowMeansMisfit orientations;
+  /// By how much the tracker's noise, which is not white, makes the variance of means over windows
+  /// larger; weights and uncertainties count it so. 1: it is white.
+  double tracker_colour = 1.0;
   ResidualPace pace;
   std::vector<OtherFriction> frictions;  ///< beside that of the model
   JointSkew skew;

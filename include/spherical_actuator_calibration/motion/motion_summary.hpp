@@ -40,8 +40,12 @@ struct WindowMeansMisfit {
   /// Reduced χ² that the noise of readings may make of them: neighbours have it in common where
   /// joints are read as seldom as the tracker.
   double expected = 1.0;
+  double next_alike = 0.0;  ///< correlation of the means of neighbouring windows
+  double alike = 0.0;       ///< the largest of means up to six windows apart, either sign
 
   double reduced() const { return freedom > 0.0 ? squares / freedom : 0.0; }
+  /// Whether they are larger than chance makes them once in a thousand times.
+  bool isMisfit() const;
 };
 
 /// Whitened residuals of windows by how fast they change. Those of noise are alike; what a model
