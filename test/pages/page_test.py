@@ -27,8 +27,14 @@ BUILD = pathlib.Path(os.environ["BUILD"])
 TIMEOUT = 600.0  # [s] of a block, on however busy a computer
 # A service tells failure in its answer; the command that called it succeeds all the same.
 REFUSED = re.compile(r"^success: False", re.MULTILINE)
-# Calls of ctest only list what they would run.
-CTEST = '#!/bin/bash\n/usr/bin/ctest -N "$@" | tee /dev/stderr | grep -q "Total Tests: [1-9]"\n'
+# Calls of ctest only list what they would run, in a folder of their own: a list, too, replaces the log of a run.
+CTEST = """#!/bin/bash
+place=$(mktemp -d)
+trap 'rm -r "$place"' EXIT
+echo "subdirs(\\"$PWD\\")" > "$place/CTestTestfile.cmake"
+cd "$place"
+/usr/bin/ctest -N "$@" | tee /dev/stderr | grep -q "Total Tests: [1-9]"
+"""
 
 
 class Failure(Exception):
@@ -244,7 +250,10 @@ class Reader:
 
     def names_of_tests(self):
         if self.tests is None:
-            listed = subprocess.run(["ctest", "-N"], cwd=BUILD, stdout=subprocess.PIPE, text=True, check=True).stdout
+            with tempfile.TemporaryDirectory() as folder:
+                (pathlib.Path(folder) / "CTestTestfile.cmake").write_text(f'subdirs("{BUILD}")')
+                command = ["ctest", "-N"]
+                listed = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=True).stdout
             names = re.findall(r"^ *Test +#\d+: (\S+)", listed, re.MULTILINE)
             self.tests = {re.sub(r"^_ctest_\w+_rostest_test_rostest_(\w+)\.test$", r"\1", name) for name in names}
             # Also those that a build without the session database leaves out.
