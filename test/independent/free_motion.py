@@ -88,12 +88,8 @@ def joint_angles(unit, errors, R):
     return q - errors[[0, 3, 6]]
 
 
-def _cross(a, b):
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
 def _quaternion_matrix(p):
-    w, x, y, z = p
+    w, x, y, z = p.tolist()
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -135,10 +131,8 @@ class Coils:
 
     def torque(self, R, current):
         p, h = self.pairs(R)
-        g = (h * current) @ self.coils
-        return np.array(
-            [p[:, 1] @ g[:, 2] - p[:, 2] @ g[:, 1], p[:, 2] @ g[:, 0] - p[:, 0] @ g[:, 2], p[:, 0] @ g[:, 1] - p[:, 1] @ g[:, 0]]
-        )
+        M = (p.T @ ((h * current) @ self.coils)).tolist()  # of numbers, which costs less than of small arrays
+        return np.array([M[1][2] - M[2][1], M[2][0] - M[0][2], M[0][1] - M[1][0]])
 
     def per_ampere(self, R):
         p, h = self.pairs(R)
@@ -195,14 +189,16 @@ class _Rotor:
         p = p / np.sqrt(p @ p)
         R = _quaternion_matrix(p)
         w = self.rate(R, L)
-        speed = np.sqrt(w @ w + machine.friction_speed**2)
+        speed = math.sqrt(w @ w + machine.friction_speed**2)
         a = R @ self.centre
         torque = self.coils.torque(R, current) + np.array([-a[1], a[0], 0.0])
-        torque = torque - (machine.viscous + machine.coulomb / speed + machine.drag * np.sqrt(w @ w)) * w
+        torque = torque - (machine.viscous + machine.coulomb / speed + machine.drag * math.sqrt(w @ w)) * w
         torque = torque - machine.spin_viscous * (R[:, 2] @ w) * R[:, 2]
         if machine.push is not None and machine.push[0] <= t < machine.push[1]:
             torque = torque + np.array(machine.push[2])
-        return 0.5 * np.append(-w @ p[1:], w * p[0] + _cross(w, p[1:])), torque
+        (x, y, z), (s, a, b, c) = w.tolist(), p.tolist()
+        turn = (-x * a - y * b - z * c, x * s + y * c - z * b, y * s + z * a - x * c, z * s + x * b - y * a)
+        return 0.5 * np.array(turn), torque
 
     def advance(self, t, p, L, h, begin, middle, end):
         """After h, with the currents at its begin, middle and end."""

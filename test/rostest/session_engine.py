@@ -66,7 +66,9 @@ class SessionEngine(LabCase):
     def test_a_session_by_actions_alone(self):
         self.assertIn("Not saved: ", self.saved(GoalStatus.ABORTED))
         session = self.action("session")
-        taken = [self.cancelled(session) for _ in range(ATTEMPTS)]
+        taken = [self.cancelled(session)]
+        while min(taken) >= AT_ONCE and len(taken) < ATTEMPTS:
+            taken.append(self.cancelled(session))
         print("from cancel to zero currents [s]:", ", ".join(f"{seconds:.3f}" for seconds in taken))
         self.assertLess(min(taken), AT_ONCE)
         self.client_is_killed()
