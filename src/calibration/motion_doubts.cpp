@@ -86,6 +86,20 @@ std::string slowMisfitInWords(const MotionEstimate& found) {
       1e3 * found.summary.current_stddev);
 }
 
+/// The standard deviations count it, as far as it is like that all the time.
+std::string alignmentInWords(const ResidualAlignment& alignment) {
+  if (!alignment.isMisfit()) {
+    return {};
+  }
+  return format(
+      "What is left over moves the parameters %.2f times as far as noise of single readings would "
+      "(told from %.2f times on), and standard deviations count that: currents step between their "
+      "readings, a clock jumps, or something is not modelled. Record coil_command, read currents "
+      "more often than they are set, and check clocks and joint sensors.",
+      std::sqrt(alignment.ratio),
+      std::sqrt(alignment.limit()));
+}
+
 /// What takes friction for another law shifts friction most, and hardly the axes.
 std::string otherFrictionInWords(const MotionEstimate& found) {
   constexpr double kSure = 5.0;  // standard deviations
@@ -177,6 +191,7 @@ std::vector<std::string> motionDoubts(const MotionEstimate& found,
                                  colourInWords(found),
                                  repetitionInWords(recording),
                                  slowMisfitInWords(found),
+                                 alignmentInWords(found.alignment),
                                  otherFrictionInWords(found),
                                  skewInWords(found)};
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {

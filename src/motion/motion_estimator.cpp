@@ -11,6 +11,7 @@
 #include "motion_solution.hpp"
 #include "motion_terms.hpp"
 #include "noise_factors.hpp"
+#include "residual_alignment.hpp"
 #include "residual_pace.hpp"
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
@@ -196,7 +197,9 @@ void Estimator::findCovariance() {
   const Eigen::MatrixXd all = information + prior;
   const Eigen::MatrixXd inverse =
       solveSemidefinite(all(estimated, estimated), Eigen::MatrixXd::Identity(count, count));
-  const double windows = std::pow(result_.estimate.covariance_scale, 2);
+  result_.alignment = residualAlignment(terms_, estimated, inverse);
+  const double windows =
+      std::max(std::pow(result_.estimate.covariance_scale, 2), result_.alignment.variance());
   const double orientations = std::max(1.0, result_.summary.orientation_chi_square);
   const Eigen::MatrixXd all_noise =
       windows * sums.balance.information() + orientations * sums.orientation.information() + prior;

@@ -35,6 +35,8 @@ class Outcome:
                 self.response = [float(value) for value in rest]  # delay, lag, what is left of a delay
             elif word == "tracker":
                 self.tracker_colour = float(rest[1])  # of the variance of means
+            elif word == "alignment":
+                self.alignment, self.alignment_limit = float(rest[0]), float(rest[2])
             elif word == "skew":
                 self.skew = [float(value) for value in rest[:4]]  # joint 2 and its stddev, joint 3 and its
             elif word == "live":

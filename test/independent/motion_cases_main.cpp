@@ -168,6 +168,7 @@ void calibrate(const Actuator& nominal,
               summary.held_out.reduced_chi_square,
               summary.held_out.probability);
   std::printf("tracker colour %.6g alike %.3g\n", found.tracker_colour, found.orientations.alike);
+  std::printf("alignment %.6g limit %.6g\n", found.alignment.ratio, found.alignment.limit());
   printSkew(found.skew);
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());

@@ -154,6 +154,16 @@ class Motion(RecordedMotion):
         self.assertLess(drifting.probability, 1e-3)
         self.assertEqual(calibrate(self.record()).tracker_colour, 1.0)
 
+    def test_a_clock_that_jumps_by_little_is_told_and_counted(self):
+        sound = self.record()
+        outcome = calibrate(sound)
+        self.assertLess(outcome.alignment, outcome.alignment_limit)
+        stamps, currents = sound["currents"]
+        jumping = {**sound, "currents": (stamps + 4e-4 * (stamps > 0.5 * self.SECONDS), currents)}
+        outcome = calibrate(jumping)
+        self.assertGreater(outcome.alignment, outcome.alignment_limit)
+        self.assertLess(outcome.distance(self.unit, self.errors), 1.5)
+
     def test_one_spoilt_reading_costs_its_window_alone(self):
         recording = self.record()
         stamps, currents = recording["currents"]

@@ -18,6 +18,7 @@ struct MotionEstimate {
   /// larger; weights and uncertainties count it so. 1: it is white.
   double tracker_colour = 1.0;
   ResidualPace pace;
+  ResidualAlignment alignment;
   std::vector<OtherFriction> frictions;  ///< beside that of the model
   JointSkew skew;
   /// Windows with readings that look like the end of a sensor's range, whether they served or not.

@@ -60,6 +60,21 @@ struct ResidualPace {
   double probability() const;
 };
 
+/// How far residuals of windows move what is estimated: Σ sᵀ N⁻¹ s over that of noise, with the
+/// slopes s = Jᵀr of single windows and the information N of all. Noise that is as stated makes it
+/// 1. Where it is another within windows, as where currents step between their readings or a clock
+/// jumps, windows can fit as well as noise and yet mislead: estimates err by its root more.
+struct ResidualAlignment {
+  double ratio = 1.0;
+  double chance = 0.0;  ///< standard deviation of it by noise alone, at the most
+
+  /// What noise hardly exceeds, nor do recordings in which messages are lost.
+  double limit() const { return 1.0 + 4.0 * chance; }
+  bool isMisfit() const { return ratio > limit(); }
+  /// Factor on the variance of what windows tell.
+  double variance() const { return isMisfit() ? ratio : 1.0; }
+};
+
 /// A friction that the model lacks, and what the residuals tell of it.
 struct OtherFriction {
   const char* law = "";   ///< "that grows with …"
