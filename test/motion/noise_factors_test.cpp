@@ -14,7 +14,7 @@ namespace {
 
 constexpr Eigen::Index kValues = 18;
 constexpr double kCurrentVariance = 4e-6;
-const NoiseFactors kChance{0.02, 0.005};
+constexpr NoiseFactors kChance{0.02, 0.005};
 
 /// Windows whose residuals have the noise of these factors. Readings and currents act in directions
 /// of their own in each.
