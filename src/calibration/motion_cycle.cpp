@@ -228,8 +228,7 @@ std::string failure(const MotionProblem& problem,
            (is_balance
                 ? endsInWords(found.at_end) +
                       "Check signs, channels, zeros and filters of currents, torque curve, "
-                      "strengths, "
-                      "polarities, joint sensors and the clocks of the streams. Where a "
+                      "strengths, polarities, joint sensors and the clocks of the streams. Where a "
                       "force/torque sensor "
                       "is at hand, samples at rest tell more (diagnose)."
                 : "Check joint sensors, frames, and the tracker with its clock and filters.");

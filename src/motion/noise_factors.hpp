@@ -20,8 +20,6 @@ struct NoiseEvidence {
   Eigen::ArrayXd by_joints;    ///< variance along each, where the factor on readings is 1
   Eigen::ArrayXd by_currents;  ///< and where that on currents is 1
   Eigen::ArrayXd squares;      ///< of the residual along each
-
-  bool isTold() const { return squares.size() > 0; }
 };
 
 /// Of a window with the covariances of `balance`. `whitening`: by their sum, each with any factor;
