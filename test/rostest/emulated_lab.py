@@ -23,14 +23,15 @@ from std_srvs.srv import SetBool, Trigger
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
-# [Hz] of the force/torque sensor and of the emulation, in a fixture: with noise to match it means as much as 1 kHz, and all
-# who listen take less than half of the processor's time.
+# [Hz] of the force/torque sensor and of the emulation, in a fixture: with noise to match it means as much as 1 kHz. Of both
+# drivers, whose noise is small beside that of what else is measured. All who listen take a third of the processor's time.
 FIXTURE_RATE = 400.0
+DRIVER_RATE = 100.0
 NEAR_BY_JOINTS, NEAR_BY_TRACKER = 1e-3, 2.5e-3  # [rad] beyond noise and quantisation of readings
-PATIENT_BEATS = 80  # of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
+PATIENCE = 0.4  # [s] of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
 
 
-def configuration_with_free_ports(folder):
+def configuration_with_free_ports(folder, driver_rate=None):
     """A copy of the shipped configuration whose devices listen at free ports, and may take their time."""
     shipped = pathlib.Path(rospy.get_param("~config"))
     copy = pathlib.Path(folder) / "config"
@@ -39,9 +40,10 @@ def configuration_with_free_ports(folder):
         content = yaml.safe_load(file.read_text())
         if isinstance(content.get("link"), dict):
             content["link"].update(port=free_port(), response_timeout=RESPONSE_TIMEOUT)
+            content["rate"] = content["rate"] if driver_rate is None else driver_rate
         if "deviation" in content:
             content["link"]["response_timeout"] = AMPLIFIER_TIMEOUT
-            content["deviation"]["beats"] = PATIENT_BEATS
+            content["deviation"]["beats"] = int(PATIENCE * content["rate"])
         (copy / file.name).write_text(yaml.safe_dump(content))
     return str(copy)
 
@@ -49,13 +51,13 @@ def configuration_with_free_ports(folder):
 class EmulatedLab:
     """emulated_lab.launch on the master of the test; `folder` keeps its files. Without `commands` it is
     somebody else who moves and excites. `unit`: name of a shipped description, with its URDF. A rotor that is to be
-    `released` needs the emulation at its full rate."""
+    `released` needs the emulation and the drivers at their full rates."""
 
     def __init__(self, folder, commands=True, environment=None, unit="pm_spherical_8x24", released=False, **arguments):
         self.folder = folder
         self.truth = os.path.join(folder, "truth.yaml")
         self.directory = os.path.join(folder, "calibration")
-        self.config = configuration_with_free_ports(folder)
+        self.config = configuration_with_free_ports(folder, None if released else DRIVER_RATE)
         if not released:
             self._slow_down()
         shipped = pathlib.Path(rospy.get_param("~config"))
