@@ -79,7 +79,7 @@ def joint_angles(unit, errors, R):
     """Readings at which the joints make these orientations, without jumps of the spin; Newton's method."""
     axes = np.stack([lab.chart_axis(unit.bases[k], *errors[3 * k + 1 : 3 * k + 3]) for k in range(3)])
     q = np.stack([np.arctan2(-R[:, 1, 2], R[:, 2, 2]), np.arcsin(R[:, 0, 2]), np.unwrap(np.arctan2(-R[:, 0, 1], R[:, 0, 0]))], axis=1)
-    for _ in range(6):
+    for _ in range(4):  # from some hundredths of a radian, each squares what is left
         A1 = _rotations(q[:, :1] * axes[0])
         A2 = A1 @ _rotations(q[:, 1:2] * axes[1])
         made = A2 @ _rotations(q[:, 2:] * axes[2])
@@ -156,8 +156,8 @@ class Reference:
         return self.scale * (a * np.sin(self.frequency * t + self.phase)).sum(axis=1)
 
     def orientation(self, t):
-        q = self.angles(t)
-        return lab.rotation([q[0], 0, 0]) @ lab.rotation([0, q[1], 0]) @ lab.rotation([0, 0, q[2]])
+        (a, b, c), (x, y, z) = (f(self.angles(t)).tolist() for f in (np.cos, np.sin))
+        return np.array([[b * c, -b * z, y], [a * z + x * y * c, a * c - x * y * z, -x * b], [x * z - a * y * c, x * c + a * y * z, a * b]])
 
     def currents(self, t):
         return self.excitation / np.sqrt(6) * np.sqrt(2) * np.sin(self.coil_frequency * t + self.coil_phase).sum(axis=1)
@@ -185,20 +185,25 @@ class _Rotor:
         return R @ (self.inverse @ (R.T @ L))
 
     def rates(self, t, p, L, current):
+        # Of single numbers what is small: an operation on an array of three takes as long as one of a hundred.
         machine = self.machine
-        p = p / np.sqrt(p @ p)
+        p = p / math.sqrt(p @ p)
         R = _quaternion_matrix(p)
         w = self.rate(R, L)
-        speed = math.sqrt(w @ w + machine.friction_speed**2)
+        x, y, z = w.tolist()
+        square = x * x + y * y + z * z
+        resists = machine.viscous + machine.coulomb / math.sqrt(square + machine.friction_speed**2) + machine.drag * math.sqrt(square)
         a = R @ self.centre
-        torque = self.coils.torque(R, current) + np.array([-a[1], a[0], 0.0])
-        torque = torque - (machine.viscous + machine.coulomb / speed + machine.drag * math.sqrt(w @ w)) * w
-        torque = torque - machine.spin_viscous * (R[:, 2] @ w) * R[:, 2]
+        torque = self.coils.torque(R, current) - resists * w
+        torque[0] -= a[1]
+        torque[1] += a[0]
+        if machine.spin_viscous:
+            torque -= machine.spin_viscous * (R[:, 2] @ w) * R[:, 2]
         if machine.push is not None and machine.push[0] <= t < machine.push[1]:
-            torque = torque + np.array(machine.push[2])
-        (x, y, z), (s, a, b, c) = w.tolist(), p.tolist()
+            torque += machine.push[2]
+        s, a, b, c = (0.5 * p).tolist()
         turn = (-x * a - y * b - z * c, x * s + y * c - z * b, y * s + z * a - x * c, z * s + x * b - y * a)
-        return 0.5 * np.array(turn), torque
+        return np.array(turn), torque
 
     def advance(self, t, p, L, h, begin, middle, end):
         """After h, with the currents at its begin, middle and end."""
@@ -223,7 +228,7 @@ class _Controller:
         turn = (lab.rotation_vector(ahead @ target.T) - lab.rotation_vector(target @ behind.T)) / 1e-6
         wanted = turn + 20.0 * (rate - w) + 100.0 * lab.rotation_vector(target @ R.T)
         Q = self.coils.per_ampere(R)
-        pseudo = np.linalg.pinv(Q)
+        pseudo = Q.T @ np.linalg.inv(Q @ Q.T)
         wish = self.reference.currents(t)
         setpoint = pseudo @ (R @ self.inertia @ R.T @ wanted) + wish - pseudo @ (Q @ wish)
         return setpoint * min(1.0, self.machine.limit / np.abs(setpoint).sum())
@@ -292,7 +297,8 @@ def record(unit, errors, motion, streams, seed):
         return np.arange(first + phase, last, 1.0 / rate)
 
     t = stamps(streams.joint_rate, streams.joint_phase)
-    q = np.stack([joint_angles(unit, errors, _at(motion, t + skew))[:, k] for k, skew in enumerate(streams.joint_skews)], axis=1)
+    read = {skew: joint_angles(unit, errors, _at(motion, t + skew)) for skew in set(streams.joint_skews)}
+    q = np.stack([read[skew][:, k] for k, skew in enumerate(streams.joint_skews)], axis=1)
     result = {"joints": (t, q + rng.normal(0.0, streams.joint_stddev, q.shape) if streams.joint_stddev else q)}
     t = stamps(streams.current_rate, streams.current_phase)
     I = _current_at(motion, t)

@@ -5,6 +5,7 @@ torques in N*m, currents in A; R maps rotor coordinates to stator coordinates; j
 """
 
 import dataclasses
+import math
 
 import numpy as np
 
@@ -14,10 +15,23 @@ SUPPORT = (28.0, 32.0)  # [deg]
 
 
 def turn(axis, angle):
-    """Rotation by Rodrigues' formula."""
-    axis = np.asarray(axis, float) / np.linalg.norm(axis)
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    """Rotation by Rodrigues' formula; of single numbers, which takes a fifth of the time of small arrays."""
+    x, y, z = (float(one) for one in axis)
+    length = math.sqrt(x * x + y * y + z * z)
+    x, y, z = x / length, y / length, z / length
+    c, s = math.cos(angle), math.sin(angle)
+    v = 1.0 - c
+    return np.array([
+        [c + v * x * x, v * x * y - s * z, v * x * z + s * y],
+        [v * x * y + s * z, c + v * y * y, v * y * z - s * x],
+        [v * x * z - s * y, v * y * z + s * x, c + v * z * z],
+    ])
+
+
+def cross_product(a, b):
+    """Of two vectors; numpy's is for arrays of many."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
 def small_turn(generator, stddev):
@@ -52,15 +66,14 @@ def rotation_of(xyzw):
 
 
 def _curve_and_slope(degrees):
-    powers = np.arange(len(COEFFICIENTS))
-    value = np.dot(COEFFICIENTS, degrees**powers)
-    slope = np.dot(np.array(COEFFICIENTS[1:]) * powers[1:], degrees ** powers[:-1])
+    value = sum(c * degrees**n for n, c in enumerate(COEFFICIENTS))
+    slope = sum(n * c * degrees ** (n - 1) for n, c in enumerate(COEFFICIENTS) if n > 0)
     return value, slope
 
 
 def torque_curve(psi):
     """Torque of a pole and a coil at an angle [N*m/A]: odd cubic, polynomial, cubic to zero."""
-    degrees = np.degrees(psi)
+    degrees = math.degrees(psi)
     if degrees < BLEND_START:
         value, slope = _curve_and_slope(BLEND_START)
         cubic = (slope * BLEND_START - value) / (2 * BLEND_START**3)
@@ -107,8 +120,8 @@ class Machine:
             s = rotation.T @ self.coils[coil]
             cosines = self.poles @ s
             for pole in np.flatnonzero(cosines > np.cos(np.radians(SUPPORT[1]))):
-                cross = np.cross(self.poles[pole], s)
-                sine = np.linalg.norm(cross)
+                cross = cross_product(self.poles[pole], s)
+                sine = math.sqrt(cross @ cross)
                 if sine > 1e-9:
                     strength = self.polarity[pole] * self.pole_strength[pole] * self.coil_strength[coil]
                     total += strength * current[coil] * torque_curve(np.arctan2(sine, cosines[pole])) * cross / sine
