@@ -6,6 +6,7 @@
 
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
+#include "unmodelled_words.hpp"
 
 namespace sac {
 namespace {
@@ -159,8 +160,7 @@ std::string skewInWords(const MotionEstimate& found) {
   constexpr double kSure = 1e-6;    // probability that chance makes as much
   constexpr double kMatters = 1.0;  // standard deviations, of all parameters together
   const JointSkew& skew = found.skew;
-  const double variance = std::max(
-      {1.0, std::pow(found.estimate.covariance_scale, 2), found.summary.orientation_chi_square});
+  const double variance = excessVariance(found);
   if (!skew.isTold() || skew.distance < kMatters ||
       skew.value.dot(skew.covariance.inverse() * skew.value) <
           variance * chiSquareLimit(2.0, kSure)) {
@@ -170,30 +170,29 @@ std::string skewInWords(const MotionEstimate& found) {
   constexpr double kMilli = 1e3;
   return format(
       "The motion fits better with joints that are not read at once: joint 2 by %.3f +- %.3f ms "
-      "and joint 3 by %.3f +- %.3f ms later than joint 1. That puts the parameters together off by "
-      "%.1f standard deviations, %s by %.1f of its own: read all joints at one instant, or bring "
-      "each to the time of its stamp by its speed.",
+      "and joint 3 by %.3f +- %.3f ms later than joint 1. %s: read all joints at one instant, or "
+      "bring each to the time of its stamp by its speed.",
       kMilli * skew.value[0],
       kMilli * stddev[0],
       kMilli * skew.value[1],
       kMilli * stddev[1],
-      skew.distance,
-      skew.most_shifted.c_str(),
-      std::abs(skew.shift));
+      shiftInWords(skew).c_str());
 }
 
 std::vector<std::string> motionDoubts(const MotionEstimate& found,
                                       const MotionRecording& recording) {
   // Sound motions have 0.96 to 1.04; what a hand leaves in most of a motion is no window's alone.
   constexpr double kLarge = 1.1;
+  const std::string skew = skewInWords(found);
+  // What has a name comes before what may have several.
   std::vector<std::string> words{oftenDisturbed(found.estimate.residuals),
+                                 skew.empty() ? unmodelledInWords(found) : skew,
                                  driftInWords(found.orientations),
                                  colourInWords(found),
                                  repetitionInWords(recording),
                                  slowMisfitInWords(found),
                                  alignmentInWords(found.alignment),
-                                 otherFrictionInWords(found),
-                                 skewInWords(found)};
+                                 otherFrictionInWords(found)};
   if (found.estimate.covariance_scale > 1.0 && found.summary.window_chi_square > kLarge) {
     words.push_back(
         format("Residuals are %.2f times their noise: something acts that is not modelled, as a "

@@ -1,6 +1,7 @@
 #include "motion_noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -54,7 +55,8 @@ double trackerNoise(const std::vector<MotionSpan>& spans,
                     std::size_t most) {
   // A stream without noise has at least that of its numbers.
   constexpr double kLeast = 1e-8;
-  ThirdDifferences differences;
+  // A marker seen from one side is turned well about some axes, and badly about another.
+  std::array<ThirdDifferences, 3> differences;
   const MotionPlaces places(model.space());
   for (const MotionSpan& span : spans) {
     TrackerTerm term(model, places, x);
@@ -64,11 +66,16 @@ double trackerNoise(const std::vector<MotionSpan>& spans,
         misfits.push_back(term.residual());
       }
     }
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      differences.add(misfits.size(), [&](std::size_t n) { return misfits[n][k]; });
+    for (std::size_t k = 0; k < differences.size(); ++k) {
+      differences[k].add(misfits.size(),
+                         [&](std::size_t n) { return misfits[n][static_cast<Eigen::Index>(k)]; });
     }
   }
-  return std::max(kLeast, differences.stddev());
+  double squares = 0.0;
+  for (const ThirdDifferences& axis : differences) {
+    squares += std::pow(axis.stddev(), 2);
+  }
+  return std::max(kLeast, std::sqrt(squares / 3.0));
 }
 
 double meansOverDifferences(const MotionNoise& noise, const std::vector<MotionSpan>& spans) {

@@ -77,6 +77,9 @@ class MotionPoint {
               const Eigen::VectorXd& current,
               StatorTorque& out) const;
 
+  /// What multiplies the torque of a pair per ampere.
+  double strength(const NearPair& pair) const { return weight_(pair.pole, pair.coil); }
+
   const Eigen::Matrix3d& inertia() const { return inertia_; }
   double viscous() const { return valueAt(places_.viscous); }
   double coulomb() const { return valueAt(places_.coulomb); }

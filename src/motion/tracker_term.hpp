@@ -23,6 +23,8 @@ class TrackerTerm {
   Eigen::Vector3d byTime(std::size_t k) const {
     return rates_[static_cast<Eigen::Index>(k)] * jacobian_.col(space_.joint(k));
   }
+  /// Of the joints then [rad].
+  const Eigen::Vector3d& reading() const { return sample_.joint_position; }
   /// True time of the orientation, by the clock of the joints [s].
   double time() const { return time_; }
 

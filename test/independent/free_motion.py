@@ -57,7 +57,7 @@ class Streams:
     lost: float = 0.0  # share of the messages that got lost, of commands none
 
 
-def _rotations(vectors):
+def rotations(vectors):
     """exp of many rotation vectors, n x 3."""
     angle = np.linalg.norm(vectors, axis=1)[:, None, None]
     K = np.zeros((len(vectors), 3, 3))
@@ -80,9 +80,9 @@ def joint_angles(unit, errors, R):
     axes = np.stack([lab.chart_axis(unit.bases[k], *errors[3 * k + 1 : 3 * k + 3]) for k in range(3)])
     q = np.stack([np.arctan2(-R[:, 1, 2], R[:, 2, 2]), np.arcsin(R[:, 0, 2]), np.unwrap(np.arctan2(-R[:, 0, 1], R[:, 0, 0]))], axis=1)
     for _ in range(4):  # from some hundredths of a radian, each squares what is left
-        A1 = _rotations(q[:, :1] * axes[0])
-        A2 = A1 @ _rotations(q[:, 1:2] * axes[1])
-        made = A2 @ _rotations(q[:, 2:] * axes[2])
+        A1 = rotations(q[:, :1] * axes[0])
+        A2 = A1 @ rotations(q[:, 1:2] * axes[1])
+        made = A2 @ rotations(q[:, 2:] * axes[2])
         columns = np.stack([np.broadcast_to(axes[0], (len(q), 3)), A1 @ axes[1], A2 @ axes[2]], axis=2)
         q = q + np.linalg.solve(columns, _logs(R @ made.transpose(0, 2, 1))[:, :, None])[:, :, 0]
     return q - errors[[0, 3, 6]]
@@ -268,7 +268,7 @@ def _at(motion, t):
     back = base.transpose(0, 2, 1)
     a, b, c = (_logs(motion.orientation[n + k] @ back) for k in (-1, 1, 2))
     w = np.stack([-s * (s - 1) * (s - 2) / 6, -s * (s + 1) * (s - 2) / 2, s * (s + 1) * (s - 1) / 6])
-    return _rotations(w[0][:, None] * a + w[1][:, None] * b + w[2][:, None] * c) @ base
+    return rotations(w[0][:, None] * a + w[1][:, None] * b + w[2][:, None] * c) @ base
 
 
 def _fading_noise(rng, count, stddev, fade, rate):
@@ -312,7 +312,7 @@ def record(unit, errors, motion, streams, seed):
     t = stamps(streams.tracker_rate)
     R = _at(motion, t)
     if streams.tracker_stddev:
-        R = _rotations(_fading_noise(rng, len(t), streams.tracker_stddev, streams.tracker_fade, streams.tracker_rate)) @ R
+        R = rotations(_fading_noise(rng, len(t), streams.tracker_stddev, streams.tracker_fade, streams.tracker_rate)) @ R
     result["orientations"] = (t + streams.tracker_delay, R)
     return _without_lost(result, streams.lost, np.random.default_rng([seed, 1]))
 

@@ -89,7 +89,7 @@ def _joint_orientations(unit, errors, q):
     R = np.broadcast_to(np.eye(3), (len(q), 3, 3))
     for k in range(3):
         offset, u, v = errors[3 * k : 3 * k + 3]
-        R = R @ free_motion._rotations((q[:, k] + offset)[:, None] * lab.chart_axis(unit.bases[k], u, v))
+        R = R @ free_motion.rotations((q[:, k] + offset)[:, None] * lab.chart_axis(unit.bases[k], u, v))
     return R
 
 

@@ -14,13 +14,14 @@ import numpy as np
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("MOTION_CASES", str(PROJECT / "build" / "test" / "motion_cases"))
 NOMINAL = str(PROJECT / "config" / "pm_spherical_8x24.yaml")
+KINDS = ("turn", "scale", "curve", "tracker drift", "current clock", "tracker clock")  # of errors that the model lacks
 
 
 class Outcome:
     """What motion_cases prints of one file."""
 
     def __init__(self, lines):
-        self.parameters, self.left_out, self.response = {}, {}, None
+        self.parameters, self.left_out, self.response, self.unmodelled = {}, {}, None, {}
         rows = []
         for line in lines:
             word, *rest = line.split()
@@ -37,6 +38,9 @@ class Outcome:
                 self.tracker_colour = float(rest[1])  # of the variance of means
             elif word == "alignment":
                 self.alignment, self.alignment_limit = float(rest[0]), float(rest[2])
+            elif word == "unmodelled":
+                values = np.array([float(value) for value in rest[10:]]).reshape(-1, 2)  # and their stddevs
+                self.unmodelled[KINDS[int(rest[0])], int(rest[1])] = float(rest[3]), values
             elif word == "skew":
                 self.skew = [float(value) for value in rest[:4]]  # joint 2 and its stddev, joint 3 and its
             elif word == "live":

@@ -112,6 +112,22 @@ void printParameters(const ParameterSpace& space, const Estimate& estimate) {
   }
 }
 
+/// χ² of an error that the model lacks, and its values with their standard deviations.
+void printUnmodelled(const UnmodelledError& one) {
+  std::printf("unmodelled %d %zu chi_square %.6g of %td distance %.3g %s %.3g",
+              static_cast<int>(one.kind),
+              one.joint + 1,
+              one.value.dot(one.covariance.ldlt().solve(one.value)),
+              one.value.size(),
+              one.distance,
+              one.most_shifted.c_str(),
+              one.shift);
+  for (Eigen::Index n = 0; n < one.value.size(); ++n) {
+    std::printf(" %.6g %.3g", one.value[n], std::sqrt(one.covariance(n, n)));
+  }
+  std::printf("\n");
+}
+
 void printSkew(const JointSkew& skew) {
   if (!skew.isTold()) {
     return;
@@ -170,6 +186,9 @@ void calibrate(const Actuator& nominal,
   std::printf("tracker colour %.6g alike %.3g\n", found.tracker_colour, found.orientations.alike);
   std::printf("alignment %.6g limit %.6g\n", found.alignment.ratio, found.alignment.limit());
   printSkew(found.skew);
+  for (const UnmodelledError& one : found.unmodelled) {
+    printUnmodelled(one);
+  }
   for (const WindowsLeftOut& left_out : summary.left_out) {
     std::printf("left_out %zu %s\n", left_out.count, left_out.reason.c_str());
   }

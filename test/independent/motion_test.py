@@ -12,6 +12,7 @@ import numpy as np
 from motion_bag import write_bag
 from motion_cases import NOMINAL, calibrate
 from recorded_motion import RecordedMotion, read_yaml, run, write_yaml
+ONCE_IN_A_MILLION = {1: 23.93, 2: 27.63, 3: 30.66, 9: 44.81}  # chi-square of so many values
 
 
 class Motion(RecordedMotion):
@@ -141,6 +142,63 @@ class Motion(RecordedMotion):
             for value, stddev in (outcome.skew[:2], outcome.skew[2:]):
                 self.assertLess(abs(value), 3.5 * stddev)
                 self.assertLess(stddev, 1e-5)
+
+    def told(self, recording, nominal=NOMINAL):
+        """The error that the model lacks which is surest, of those that chance makes once in a million times, and its
+        values."""
+        errors = calibrate(recording, nominal).unmodelled
+        self.assertGreaterEqual(len(errors), 7)
+        sure = {name: square / ONCE_IN_A_MILLION[len(values)] for name, (square, values) in errors.items()}
+        surest = max(sure, key=sure.get)
+        return (surest, errors[surest][1]) if sure[surest] > 1.0 else (None, None)
+
+    def test_errors_of_sensors_and_clocks_are_told(self):
+        sound = self.record()
+        self.assertIsNone(self.told(sound)[0])
+        stamps, joints = sound["joints"]
+        current_stamps, currents = sound["currents"]
+        tracker_stamps, R = sound["orientations"]
+        share = tracker_stamps[:, None] / self.SECONDS
+        turning = joints + 2e-4 * np.sin(joints[:, 2:] + 0.5) * [0.0, 0.0, 1.0]
+        scaled = joints * [1.0 + 6e-4, 1.0, 1.0]
+        late = current_stamps + 2e-4 * (current_stamps > 0.5 * self.SECONDS)
+        for name, change in (
+            (("turn", 3), {"joints": (stamps, turning)}),
+            (("scale", 1), {"joints": (stamps, scaled)}),
+            (("tracker drift", 1), {"orientations": (tracker_stamps, free_motion.rotations(share * [0.0, 3e-4, 0.0]) @ R)}),
+            (("current clock", 1), {"currents": (late, currents)}),
+            (("tracker clock", 1), {"orientations": (tracker_stamps + 3e-4 * share[:, 0], R)}),
+        ):
+            with self.subTest(name):
+                told, values = self.told({**sound, **change})
+                self.assertEqual(told, name)
+                if told == ("turn", 3):
+                    expected = 2e-4 * np.array([np.cos(0.5), np.sin(0.5)])
+                    self.assertLess(np.abs((values[:, 0] - expected) / values[:, 1]).max(), 4.0)
+
+    def test_a_torque_curve_that_is_hardly_wrong_is_told(self):
+        description = read_yaml(NOMINAL)
+        curve = description["actuator"]["torque_curve"]
+        curve["coefficients"] = [c / 1.0006**n for n, c in enumerate(curve["coefficients"])]
+        with tempfile.TemporaryDirectory() as folder:
+            stretched = os.path.join(folder, "stretched.yaml")
+            write_yaml(stretched, description)
+            told, values = self.told(self.record(), stretched)
+            self.assertEqual(told[0], "curve")
+            self.assertLess(abs(values[0, 0] + 6e-4), 4.0 * values[0, 1])
+            bag = os.path.join(folder, "motion.bag")
+            write_bag(bag, self.record(), len(self.unit.coils))
+            said = self.calibrate_bags(folder, "motion", [bag], actuator=stretched).stdout
+        self.assertIn("fits better with a torque curve that is wider in angle by -0.06", said)
+        self.assertIn("grade: usable", said)
+
+    def test_a_tracker_that_is_worse_about_one_axis_is_sound(self):
+        sound = self.record(tracker_stddev=3e-4)
+        stamps, R = sound["orientations"]
+        noise = np.random.default_rng(self.SEED).normal(size=(len(stamps), 1)) * [0.0, 0.0, 1e-3]
+        outcome = calibrate({**sound, "orientations": (stamps, free_motion.rotations(noise) @ R)})
+        self.check(outcome, 1.6e-4)
+        self.assertEqual(outcome.tracker_colour, 1.0)
 
     def test_noise_of_the_tracker_that_is_not_white_counts_in_full(self):
         for fade in (0.01, 0.05):

@@ -21,6 +21,8 @@ struct MotionEstimate {
   ResidualAlignment alignment;
   std::vector<OtherFriction> frictions;  ///< beside that of the model
   JointSkew skew;
+  std::vector<UnmodelledError>
+      unmodelled;  ///< each that the residuals can tell, whether they do or not
   /// Windows with readings that look like the end of a sensor's range, whether they served or not.
   std::vector<WindowsLeftOut> at_end;
 };

@@ -83,17 +83,38 @@ struct OtherFriction {
   double stddev = 0.0;
 };
 
-/// By how much later than joint 1 the others seem to be read, and what that does to the estimate,
-/// which counts all as read at once.
-struct JointSkew {
-  Eigen::Vector2d value = Eigen::Vector2d::Zero();       ///< of joints 2 and 3 [s]
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both; zero: nothing is told
+/// What an error that the model lacks does to an estimate, which knows nothing of it.
+struct EstimateShift {
   std::string most_shifted;  ///< of the parameters of joints, poles and coils
   double shift = 0.0;        ///< of it, in its standard deviations
   /// Of all of these together, in standard deviations, by their common covariance.
   double distance = 0.0;
+};
+
+/// By how much later than joint 1 the others seem to be read, where the estimate counts all as read
+/// at once.
+struct JointSkew : EstimateShift {
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();       ///< of joints 2 and 3 [s]
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both; zero: nothing is told
 
   bool isTold() const { return covariance(0, 0) > 0.0; }
+};
+
+/// An error of sensors or of the torque curve that the model lacks, as large as the residuals tell
+/// where there is no other.
+struct UnmodelledError : EstimateShift {
+  enum class Kind {
+    kTurn,          ///< of a joint's readings once a turn: with their sine and cosine [rad]
+    kScale,         ///< that grows over a joint's range, and with its square: at its ends [rad]
+    kCurve,         ///< the torque curve is wider in angle by this share [1]
+    kTrackerDrift,  ///< about the axes of the stator: one after the other in each shape [rad]
+    kCurrentClock,  ///< stamps of the currents that drift, in each shape [s]
+    kTrackerClock,  ///< of the tracker [s]
+  };
+  Kind kind = Kind::kTurn;
+  std::size_t joint = 0;  ///< counted from 0, of kTurn and kScale
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
 };
 
 /// What became of a recording of motion.
