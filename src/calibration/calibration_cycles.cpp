@@ -207,7 +207,8 @@ LeftOut estimateOnce(EstimationProblem& problem,
 std::vector<std::string> doubtsOf(const EstimationProblem& problem,
                                   const CycleRequest& request,
                                   const EstimationOptions& options,
-                                  const Estimate& estimate) {
+                                  const Estimate& estimate,
+                                  const MotionEvidence* motion) {
   std::vector<std::string> words = doubts(problem, estimate, options);
   if (const std::string beyond_table = tableCoverageInWords(problem, estimate, options);
       !beyond_table.empty()) {
@@ -215,7 +216,7 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
   }
   // Poles and coils by themselves have few samples; the refinement judges them with all others.
   if (request.cycle == Cycle::kJoint || request.cycle == Cycle::kRefine) {
-    const EffectEvidence evidence = effectEvidence(problem, estimate, options);
+    const EffectEvidence evidence = effectEvidence(problem, estimate, options, motion);
     if (evidence.found) {
       words.push_back(evidence.found->sentence);
     } else {
@@ -269,17 +270,17 @@ CycleOutcome runCycle(const CalibrationModel& model,
   Estimate estimate;
   const LeftOut left_out = estimateOnce(problem, options, estimate);
   report.message = failure(problem, estimate, request, options);
-  if (report.message.empty()) {
-    report.doubts = left_out.doubts;
-    const std::vector<std::string> others = doubtsOf(problem, request, options, estimate);
-    report.doubts.insert(report.doubts.end(), others.begin(), others.end());
-  }
   std::string together;
   if (motion != nullptr && report.message.empty()) {
     together = join(model.space(), *motion, estimate, coordinates, report);
     if (report.contradicted) {
       return outcome;
     }
+  }
+  if (report.message.empty()) {
+    report.doubts = left_out.doubts;
+    const std::vector<std::string> others = doubtsOf(problem, request, options, estimate, motion);
+    report.doubts.insert(report.doubts.end(), others.begin(), others.end());
   }
   std::set_union(estimate.unobservable.begin(),
                  estimate.unobservable.end(),

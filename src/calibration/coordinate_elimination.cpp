@@ -36,8 +36,13 @@ Eigen::MatrixXd rootOf(const Eigen::MatrixXd& covariance) {
 
 CoordinateElimination::Told CoordinateElimination::toldBy(const EstimationProblem& problem,
                                                           const Estimate& estimate,
-                                                          const ScoreSum& sum) {
+                                                          const ScoreSum& sum,
+                                                          const MotionInformation* beside) {
   Told told{sum.information(), sum.gradient()};
+  if (beside != nullptr) {
+    told.information += beside->information;
+    told.gradient += beside->information * estimate.belief.x - beside->vector;
+  }
   const ParameterSpace& space = problem.model->space();
   const std::vector<Eigen::Index> stated = statedOf(space, problem.free);
   const Eigen::MatrixXd information = statedInformation(space, stated);
@@ -49,9 +54,10 @@ CoordinateElimination::Told CoordinateElimination::toldBy(const EstimationProble
 CoordinateElimination::CoordinateElimination(const EstimationProblem& problem,
                                              const Estimate& estimate,
                                              const EstimationOptions& options,
-                                             const ScoreSum& sum)
+                                             const ScoreSum& sum,
+                                             const MotionInformation* beside)
     : CoordinateElimination(problem,
-                            toldBy(problem, estimate, sum),
+                            toldBy(problem, estimate, sum, beside),
                             options.unobservable_stddev * options.unobservable_stddev) {}
 
 CoordinateElimination::CoordinateElimination(const EstimationProblem& problem,

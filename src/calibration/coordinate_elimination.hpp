@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "score_sum.hpp"
+#include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 #include "spherical_actuator_calibration/estimation/estimate.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 #include "spherical_actuator_calibration/estimation/information_factor.hpp"
@@ -15,10 +16,12 @@ namespace sac {
 /// observations and from what was known of them. It is never formed.
 class CoordinateElimination {
  public:
+  /// `beside`: what a motion told of them, which the estimate has counted, too; null: nothing.
   CoordinateElimination(const EstimationProblem& problem,
                         const Estimate& estimate,
                         const EstimationOptions& options,
-                        const ScoreSum& sum);
+                        const ScoreSum& sum,
+                        const MotionInformation* beside = nullptr);
 
   /// Y of what columns have in common with the coordinates (P×k), linear in it: YᵀY' = AᵀCA'.
   Eigen::MatrixXd half(const Eigen::MatrixXd& crossed) const {
@@ -40,7 +43,8 @@ class CoordinateElimination {
 
   static Told toldBy(const EstimationProblem& problem,
                      const Estimate& estimate,
-                     const ScoreSum& sum);
+                     const ScoreSum& sum,
+                     const MotionInformation* beside);
   Eigen::MatrixXd reduced(const Eigen::MatrixXd& crossed) const;
   Eigen::MatrixXd reducedInformation(const Eigen::MatrixXd& information) const;
   Eigen::VectorXd known(double open) const;

@@ -71,6 +71,17 @@ ParameterBelief withoutMotion(ParameterBelief belief, const MotionEvidence& moti
   return belief;
 }
 
+MotionInformation ownInformation(const ParameterSpace& space, const MotionEvidence& motion) {
+  MotionInformation all{Eigen::MatrixXd::Zero(space.size(), space.size()),
+                        Eigen::VectorXd::Zero(space.size())};
+  if (!motion.told.empty()) {
+    const WhitenedEvidence own = ownEvidence(space, motion);
+    all.information(motion.told, motion.told) = own.factor * own.factor.transpose();
+    all.vector(motion.told) = own.factor * own.value;
+  }
+  return all;
+}
+
 CombinedBelief combined(const ParameterSpace& space,
                         const ParameterBelief& by_samples,
                         const MotionEvidence& motion) {

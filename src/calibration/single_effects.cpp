@@ -151,7 +151,8 @@ class Tests {
  public:
   Tests(const EstimationProblem& problem,
         const Estimate& estimate,
-        const EstimationOptions& options)
+        const EstimationOptions& options,
+        const MotionInformation* beside)
       : problem_(problem),
         estimate_(estimate),
         options_(options),
@@ -159,7 +160,7 @@ class Tests {
         effects_(effectCandidates(columns_)),
         steps_(stepCandidates(columns_)),
         sums_(scoreSums(problem, estimate, options, columns_, effects_, steps_)),
-        elimination_(problem, estimate, options, sums_.all),
+        elimination_(problem, estimate, options, sums_.all, beside),
         streams_(streamsOf(estimate)),
         poses_(torquePoses(problem)) {}
 
@@ -374,8 +375,13 @@ class Tests {
 
 EffectEvidence effectEvidence(const EstimationProblem& problem,
                               const Estimate& estimate,
-                              const EstimationOptions& options) {
-  Tests tests(problem, estimate, options);
+                              const EstimationOptions& options,
+                              const MotionEvidence* motion) {
+  std::optional<MotionInformation> beside;
+  if (motion != nullptr) {
+    beside = ownInformation(problem.model->space(), *motion);
+  }
+  Tests tests(problem, estimate, options, beside ? &*beside : nullptr);
   EffectEvidence evidence;
   evidence.found = tests.strongest();
   evidence.untold = tests.untold();

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "spherical_actuator_calibration/calibration/motion_evidence.hpp"
 #include "spherical_actuator_calibration/estimation/estimate.hpp"
 #include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
 
@@ -27,9 +28,11 @@ struct EffectEvidence {
   std::string untold;
 };
 
+/// `motion`: whose evidence the estimate has joined to that of the samples; null: none.
 /// Precondition: the estimate converged, and nothing contradicts it.
 EffectEvidence effectEvidence(const EstimationProblem& problem,
                               const Estimate& estimate,
-                              const EstimationOptions& options);
+                              const EstimationOptions& options,
+                              const MotionEvidence* motion);
 
 }  // namespace sac

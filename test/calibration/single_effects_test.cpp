@@ -51,7 +51,7 @@ class SingleEffectsTest : public ::testing::Test {
   std::optional<SingleEffect> found() const {
     const CalibrationModel model{ParameterSpace(scenarios::paperNominal())};
     const EstimationProblem problem = problemOf(model);
-    return effectEvidence(problem, estimate(problem, options_), options_).found;
+    return effectEvidence(problem, estimate(problem, options_), options_, nullptr).found;
   }
 
   /// χ² of a fit that models such effects.

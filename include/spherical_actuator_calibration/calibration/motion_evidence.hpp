@@ -29,6 +29,13 @@ MotionEvidence motionEvidence(const ParameterSpace& space,
 /// counts twice. The values stay.
 ParameterBelief withoutMotion(ParameterBelief belief, const MotionEvidence& motion);
 
+/// What a motion told by itself, in all coordinates: Λ, and Λx of the values that it told.
+struct MotionInformation {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd vector;
+};
+MotionInformation ownInformation(const ParameterSpace& space, const MotionEvidence& motion);
+
 /// Two independent beliefs in one.
 struct CombinedBelief {
   ParameterBelief belief;
