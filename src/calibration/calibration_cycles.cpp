@@ -10,7 +10,7 @@
 #include "repeated_observations.hpp"
 #include "single_effects.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
-#include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
+#include "spherical_actuator_calibration/calibration/held_out_judge.hpp"
 #include "spherical_actuator_calibration/calibration/operator_advice.hpp"
 #include "spherical_actuator_calibration/estimation/estimator.hpp"
 #include "spherical_actuator_calibration/estimation/unidentified_part.hpp"
@@ -158,6 +158,32 @@ std::string join(const ParameterSpace& space,
                 all.probability);
 }
 
+/// Of samples that are too few to be calibrated by themselves, so that an estimate of them gets
+/// lost: whether they agree with the motion before them, which stands in any case.
+std::string judgedByMotion(const CalibrationModel& model,
+                           const std::vector<Sample>& samples,
+                           const CalibrationState& state,
+                           const EstimationOptions& options,
+                           CycleReport& report) {
+  std::vector<Sample> judged;
+  for (const Sample& sample : samples) {
+    if (!sample.validation) {
+      judged.push_back(sample);
+      judged.back().validation = true;
+    }
+  }
+  const HeldOutValidation found = validateHeldOut(model, judged, state, options);
+  report.contradicted = found.hasVerdict() && found.probability < kLeastProbability;
+  return format(
+      "All parameters: the samples tell too little by themselves to find the parameters beside the "
+      "motion, and %s it (probability %.2g). %s",
+      report.contradicted ? "contradict" : "agree with",
+      found.probability,
+      report.contradicted
+          ? "Check registrations, torque curve and force/torque sensor."
+          : "The motion stands; more poses, of all poles and coils, would add to it.");
+}
+
 /// Axes that could lie elsewhere as well, also by what a motion told, are not identified.
 void countAmbiguous(const ParameterSpace& space,
                     const Estimate& estimate,
@@ -296,6 +322,9 @@ CycleOutcome runCycle(const CalibrationModel& model,
                                                                 coordinates.unobservable);
   if (!report.message.empty()) {
     refuse(problem, estimate, advice, report);
+    if (motion != nullptr && estimate.termination == Termination::kIterationLimit) {
+      report.message = judgedByMotion(model, samples, state, options, report);
+    }
     report.message += left_out.words;
     return outcome;
   }

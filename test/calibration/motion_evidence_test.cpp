@@ -250,6 +250,34 @@ TEST_F(MotionThenSamples, LeaveNothingAmbiguousThatTheMotionTold) {
   EXPECT_EQ(report.message.find("Ambiguous"), std::string::npos) << report.message;
 }
 
+// Samples that an estimate gets lost with, here for want of iterations, take nothing from a motion
+// that they agree with.
+TEST_F(MotionThenSamples, ThatTellTooLittleAreJudgedByTheMotion) {
+  CalibrationSession both = session(samples_);
+  ASSERT_TRUE(both.run({Cycle::kMotion}).success);
+  const auto refined = [&](const std::vector<Sample>& samples) {
+    EstimationOptions hasty;
+    hasty.max_iterations = 1;
+    return runCycle(both.model(),
+                    samples,
+                    both.state(),
+                    {Cycle::kRefine},
+                    hasty,
+                    &*both.motionEvidence())
+        .report;
+  };
+  const CycleReport agreeing = refined(samples_);
+  EXPECT_FALSE(agreeing.success);
+  EXPECT_FALSE(agreeing.contradicted) << agreeing.message;
+  EXPECT_NE(agreeing.message.find("agree with it"), std::string::npos) << agreeing.message;
+  for (Sample& sample : samples_) {
+    sample.torque *= 1.05;
+  }
+  const CycleReport other = refined(samples_);
+  EXPECT_TRUE(other.contradicted);
+  EXPECT_NE(other.message.find("contradict it"), std::string::npos) << other.message;
+}
+
 TEST_F(MotionThenSamples, ThatContradictEachOtherAreRefused) {
   moving_.truth = scenarios::paperNominal();  // a motion of another unit
   CalibrationSession both = session(samples_);
