@@ -280,18 +280,6 @@ void writeWorkspace(YamlWriter& writer, const CalibrationSession& session) {
   writer.list(2, "torque", matrixLines(map.torque));
 }
 
-/// Of the observations of the last cycle, where it succeeded.
-std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
-  if (session.reports().empty()) {
-    return {};
-  }
-  return sampleInfluences(session.model(),
-                          session.samples(),
-                          session.reports().back(),
-                          session.state(),
-                          session.config().estimation);
-}
-
 void writeDiagnoses(YamlWriter& writer, const std::vector<Diagnosis>& diagnoses) {
   std::vector<std::string> lines;
   for (const Diagnosis& diagnosis : diagnoses) {
@@ -318,7 +306,7 @@ std::string renderReport(const CalibrationSession& session,
                          const CalibrationOrigin& origin,
                          const std::vector<std::string>& recording,
                          const std::vector<Diagnosis>& diagnoses) {
-  const std::vector<SampleInfluence> influences = influencesOf(session);
+  const std::vector<SampleInfluence> influences = sampleInfluences(session);
   // Samples judge effects; motion has more of its own.
   const std::vector<ModelFit> fits =
       session.motion() == nullptr

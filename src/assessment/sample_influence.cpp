@@ -174,11 +174,15 @@ LeftOut leaveOut(const Eigen::Matrix3d& hat, const Eigen::Vector3d& residual) {
 
 }  // namespace
 
-std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
-                                              const std::vector<Sample>& samples,
-                                              const CycleReport& report,
-                                              const CalibrationState& after,
-                                              const EstimationOptions& options) {
+std::vector<SampleInfluence> sampleInfluences(const CalibrationSession& session) {
+  if (session.reports().empty()) {
+    return {};
+  }
+  const CalibrationModel& model = session.model();
+  const std::vector<Sample>& samples = session.samples();
+  const CycleReport& report = session.reports().back();
+  const CalibrationState& after = session.state();
+  const EstimationOptions& options = session.config().estimation;
   const std::vector<Eigen::Index> coordinates = estimatedCoordinates(model.space(), report);
   if (!report.success || coordinates.empty()) {
     return {};
@@ -195,7 +199,12 @@ std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
   InformationSum sum(priorInformation(report.open_directions, after.belief, coordinates) +
                      statedInformation(model.space(), coordinates));
   used.addTo(sum);
-  const Eigen::MatrixXd covariance = InformationFactor(sum.information()).inverse();
+  Eigen::MatrixXd information = sum.information();
+  if (const MotionEvidence* motion = session.joinedMotion()) {
+    const MotionInformation own = ownInformation(model.space(), *motion);
+    information += own.information(coordinates, coordinates);
+  }
+  const Eigen::MatrixXd covariance = InformationFactor(information).inverse();
   const Eigen::VectorXd stddevs = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 
   std::vector<SampleInfluence> influences(used.size());

@@ -291,12 +291,17 @@ const CycleReport* CalibrationSession::lastSuccess() const {
   return last == reports_.rend() ? nullptr : &*last;
 }
 
+const MotionEvidence* CalibrationSession::joinedMotion() const {
+  const CycleReport* last = lastSuccess();
+  const bool joins = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
+  return joins ? &*motion_evidence_ : nullptr;
+}
+
 HeldOutJudge CalibrationSession::heldOutJudge() const {
   const CycleReport* last = lastSuccess();
   HeldOutJudge judge(model_, state_, config_.estimation, usualOutliers(reports_));
   const bool is_motion = last != nullptr && last->motion;
-  const bool joins_motion = last != nullptr && last->cycle == Cycle::kRefine && motion_evidence_;
-  if (is_motion || joins_motion) {
+  if (is_motion || joinedMotion() != nullptr) {
     const auto motion = std::find_if(reports_.rbegin(), reports_.rend(), [](const auto& one) {
       return one.success && one.motion;
     });

@@ -166,11 +166,7 @@ std::string cycleParagraph(const CycleReport& report) {
 }
 
 std::string influenceParagraph(const CalibrationSession& session) {
-  const std::vector<SampleInfluence> influences = sampleInfluences(session.model(),
-                                                                   session.samples(),
-                                                                   session.reports().back(),
-                                                                   session.state(),
-                                                                   session.config().estimation);
+  const std::vector<SampleInfluence> influences = sampleInfluences(session);
   if (influences.empty()) {
     return {};
   }

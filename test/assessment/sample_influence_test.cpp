@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "spherical_actuator_calibration/calibration/calibration_session.hpp"
+#include "support/moving_rotor.hpp"
 #include "support/scenarios.hpp"
 
 namespace sac {
@@ -31,19 +33,11 @@ CalibrationSession refined(const std::vector<Sample>& samples) {
   return session;
 }
 
-std::vector<SampleInfluence> influencesOf(const CalibrationSession& session) {
-  return sampleInfluences(session.model(),
-                          session.samples(),
-                          session.reports().back(),
-                          session.state(),
-                          session.config().estimation);
-}
-
 /// Refines again without some of the samples.
 void expectInfluencesOfLeavingOut(const std::vector<Sample>& samples,
                                   const std::vector<std::size_t>& left_out) {
   const CalibrationSession session = refined(samples);
-  const std::vector<SampleInfluence> influences = influencesOf(session);
+  const std::vector<SampleInfluence> influences = sampleInfluences(session);
   ASSERT_EQ(influences.size(), samples.size());
   const Eigen::VectorXd stddevs = session.state().belief.covariance.diagonal().cwiseSqrt();
   for (const std::size_t n : left_out) {
@@ -120,7 +114,7 @@ TEST(SampleInfluence, KnowsWhatTheSamplesOfARestShare) {
 TEST(SampleInfluence, FindsTheOneBadSample) {
   std::vector<Sample> samples = paperSamples(2);
   samples[60].torque += Eigen::Vector3d::Constant(1.2e-3);
-  const std::vector<SampleInfluence> influences = influencesOf(refined(samples));
+  const std::vector<SampleInfluence> influences = sampleInfluences(refined(samples));
   const auto worst = std::max_element(
       influences.begin(), influences.end(), [](const SampleInfluence& a, const SampleInfluence& b) {
         return a.largest_shift < b.largest_shift;
@@ -130,7 +124,7 @@ TEST(SampleInfluence, FindsTheOneBadSample) {
 }
 
 TEST(SampleInfluence, LeveragesSumUpToTheNumberOfParameters) {
-  const std::vector<SampleInfluence> influences = influencesOf(refined(paperSamples(3)));
+  const std::vector<SampleInfluence> influences = sampleInfluences(refined(paperSamples(3)));
   double sum = 0.0;
   for (const SampleInfluence& influence : influences) {
     EXPECT_GE(influence.leverage, 0.0);
@@ -149,7 +143,7 @@ TEST(SampleInfluence, NamesTheSampleThatNothingReplaces) {
   const std::uint32_t only_id = only->id;
   samples.erase(std::remove_if(only + 1, samples.end(), excites_coil_7), samples.end());
 
-  for (const SampleInfluence& influence : influencesOf(refined(samples))) {
+  for (const SampleInfluence& influence : sampleInfluences(refined(samples))) {
     EXPECT_EQ(influence.irreplaceable, influence.id == only_id) << influence.id;
     EXPECT_LT(influence.largest_shift, 10.0) << influence.id;
     if (influence.irreplaceable) {
@@ -158,10 +152,32 @@ TEST(SampleInfluence, NamesTheSampleThatNothingReplaces) {
   }
 }
 
+TEST(SampleInfluence, AMotionReplacesWhatASampleAloneTells) {
+  MovingRotor moving;
+  moving.truth = scenarios::paperTruth();
+  std::vector<Sample> samples = paperSamples(4);
+  const auto excites_coil_7 = [](const Sample& sample) {
+    return sample.has_torque && sample.current[6] != 0.0;
+  };
+  const auto only = std::find_if(samples.begin(), samples.end(), excites_coil_7);
+  samples.erase(std::remove_if(only + 1, samples.end(), excites_coil_7), samples.end());
+  CalibrationSession session({scenarios::paperNominal()}, samples, {});
+  session.setMotion(std::make_shared<const MotionRecording>(moving.record()));
+  ASSERT_TRUE(session.run({Cycle::kMotion}).success);
+  ASSERT_TRUE(session.run({Cycle::kRefine}).success) << session.reports().back().message;
+
+  const std::vector<SampleInfluence> influences = sampleInfluences(session);
+  EXPECT_GT(influences.size(), samples.size() / 2);
+  for (const SampleInfluence& influence : influences) {
+    EXPECT_FALSE(influence.irreplaceable) << influence.id << " " << influence.parameter;
+    EXPECT_LT(influence.largest_shift, 10.0) << influence.id;
+  }
+}
+
 TEST(SampleInfluence, AFailedCycleHasNone) {
   CalibrationSession session({scenarios::paperNominal()}, {}, {});
   session.run({Cycle::kRefine});
-  EXPECT_TRUE(influencesOf(session).empty());
+  EXPECT_TRUE(sampleInfluences(session).empty());
 }
 
 }  // namespace

@@ -4,10 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "spherical_actuator_calibration/calibration/calibration_cycles.hpp"
-#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
-#include "spherical_actuator_calibration/estimation/estimation_problem.hpp"
+#include "spherical_actuator_calibration/calibration/calibration_session.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
@@ -27,14 +24,10 @@ struct SampleInfluence {
   std::string parameter;  ///< the one that changes most, or that could not be told
 };
 
-/// Influence of every observation that a successful cycle used, by leave-one-out from one
+/// Influence of every observation that the last cycle of a session used, by leave-one-out from one
 /// factorisation: Δx = −(JᵀWJ)⁻¹Jₙᵀ W (I − Hₙ)⁻¹ rₙ, exact for a linear model. The errors that a
-/// dwell shares are found along, as the fit does. Rejected observations have none. `after` is the
-/// state after the cycle.
-std::vector<SampleInfluence> sampleInfluences(const CalibrationModel& model,
-                                              const std::vector<Sample>& samples,
-                                              const CycleReport& report,
-                                              const CalibrationState& after,
-                                              const EstimationOptions& options);
+/// dwell shares are found along, as the fit does; what a motion told stays when an observation
+/// goes. Rejected observations have none. Empty where no cycle ran, or the last one failed.
+std::vector<SampleInfluence> sampleInfluences(const CalibrationSession& session);
 
 }  // namespace sac

@@ -88,6 +88,8 @@ class CalibrationSession {
 
   /// What the last successful cycle `motion` told; a refinement takes it beside the samples.
   const std::optional<MotionEvidence>& motionEvidence() const { return motion_evidence_; }
+  /// The same, where the last cycle that succeeded is such a refinement; null: it is not.
+  const MotionEvidence* joinedMotion() const;
 
   /// Runs one cycle. Its parameters are in force afterwards if it succeeded.
   const CycleReport& run(const CycleRequest& request);
