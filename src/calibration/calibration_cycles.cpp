@@ -234,8 +234,12 @@ std::vector<std::string> doubtsOf(const EstimationProblem& problem,
                                   const CycleRequest& request,
                                   const EstimationOptions& options,
                                   const Estimate& estimate,
+                                  const LeftOut& left_out,
                                   const MotionEvidence* motion) {
-  std::vector<std::string> words = doubts(problem, estimate, options);
+  std::vector<std::string> words = left_out.doubts;
+  for (std::string& one : doubts(problem, estimate, options)) {
+    words.push_back(std::move(one));
+  }
   if (const std::string beyond_table = tableCoverageInWords(problem, estimate, options);
       !beyond_table.empty()) {
     words.push_back(beyond_table);
@@ -286,7 +290,6 @@ CycleOutcome runCycle(const CalibrationModel& model,
   CycleReport& report = outcome.report;
   report.cycle = request.cycle;
   report.coil = request.coil;
-
   EstimationProblem problem{&model, &samples, {}, {}, beliefBefore(state, motion)};
   CycleCoordinates coordinates;
   report.message = prepare(state, request, options, problem, coordinates);
@@ -304,9 +307,7 @@ CycleOutcome runCycle(const CalibrationModel& model,
     }
   }
   if (report.message.empty()) {
-    report.doubts = left_out.doubts;
-    const std::vector<std::string> others = doubtsOf(problem, request, options, estimate, motion);
-    report.doubts.insert(report.doubts.end(), others.begin(), others.end());
+    report.doubts = doubtsOf(problem, request, options, estimate, left_out, motion);
   }
   std::set_union(estimate.unobservable.begin(),
                  estimate.unobservable.end(),
