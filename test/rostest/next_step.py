@@ -76,7 +76,11 @@ class NextStep(unittest.TestCase):
 
     def test_the_report_names_samples_in_use_only(self):
         def names(samples):
-            wait_for(lambda: {one.id for one in self.client.latest("report").residuals} == set(samples), f"{samples}")
+            def is_told():
+                report = self.client.latest("report")  # none of a node that was started just now
+                return report is not None and {one.id for one in report.residuals} == set(samples)
+
+            wait_for(is_told, f"{samples}")
 
         self.calibrate()
         held = sorted(self.client.held())
