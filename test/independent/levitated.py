@@ -4,7 +4,7 @@ rotor is. It shares no code with the package under test. Frames as in laboratory
 import dataclasses
 
 import numpy as np
-from laboratory import CURVE, quaternion_xyzw, rotation, rotation_vector
+from laboratory import CURVE, cross, quaternion_xyzw, rotation, rotation_vector
 
 
 def axes_of(angles):
@@ -43,7 +43,7 @@ class Sphere:
         poles = axes_of(self.poles + errors[:m].reshape(-1, 2))
         axes = axes_of(self.coils + errors[m:].reshape(-1, 2))
         s = np.einsum("nji,nj->ni", R, axes[coils])
-        crossed = np.cross(poles[None, :, :], s[:, None, :])
+        crossed = cross(poles[None, :, :], s[:, None, :])
         sine = np.maximum(np.linalg.norm(crossed, axis=2), 1e-12)
         strength = self.polarity * CURVE(np.arctan2(sine, s @ poles.T) / self.width) / sine
         return np.einsum("nm,nmi->ni", strength, crossed)

@@ -91,7 +91,7 @@ class SmallActuator(unittest.TestCase):
         )
         poses = laboratory.random_poses(60, 0.5, np.random.default_rng(5))
         errors, sessions = [], []
-        for seed in range(20):
+        for seed in range(40):
             rng = np.random.default_rng(seed)
             errors.append(rng.uniform(-0.02, 0.02, unit.size()))
             dwells, _ = laboratory.measured_session(unit, errors[-1], sensors, poses, 3, rng)

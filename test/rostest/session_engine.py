@@ -23,7 +23,7 @@ AT_ONCE = 0.3  # [s] in which currents end
 STILL = 3.0  # [s] in which a session that goes on excites the next coil
 ATTEMPTS = 4  # of which one shows that, on a computer that is busy with something else
 DEADLINE = rospy.Duration(300.0)
-GOAL = {"poses": 12, "drive_fixture": True, "dwell": 0.2, "settling": 0.15}
+GOAL = {"poses": 9, "drive_fixture": True, "dwell": 0.2, "settling": 0.15}
 SCRIPT = pathlib.Path(__file__).parent / "session_by_action.py"
 
 
