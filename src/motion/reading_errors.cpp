@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
@@ -36,8 +37,8 @@ JointRanges rangesOf(const std::vector<MotionSpan>& spans) {
   JointRanges ranges;
   for (std::size_t k = 0; k < kJoints; ++k) {
     const auto joint = static_cast<Eigen::Index>(k);
-    double least = INFINITY;
-    double most = -INFINITY;
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
     for (const MotionSpan& span : spans) {
       for (std::size_t n = 0; n < span.track.size(); ++n) {
         least = std::min(least, span.track.reading(n)[joint]);
