@@ -7,8 +7,7 @@
 namespace sac {
 
 /// The error of sensors, clocks or the torque curve that residuals of a motion tell most surely,
-/// what it does to the parameters, and what to do about it; "": none. Where joints are not read at
-/// once, that alone is told: the same residuals may look like another error, too.
+/// what it does to the parameters, and what to do about it; "": none (doc/motion.md, How).
 std::string unmodelledInWords(const MotionEstimate& found);
 
 /// "That puts the parameters together off by …".

@@ -12,6 +12,7 @@ import numpy as np
 from motion_bag import write_bag
 from motion_cases import NOMINAL, calibrate
 from recorded_motion import RecordedMotion, read_yaml, run, write_yaml
+
 ONCE_IN_A_MILLION = {1: 23.93, 2: 27.63, 3: 30.66, 9: 44.81}  # chi-square of so many values
 
 
