@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMost = 120;
 
 /// The reading nearest to a stamp. Precondition: there is one.
-std::size_t nearest(const std::vector<Stamp>& stamps, Stamp stamp) {
+std::size_t nearest(const LongSeries<Stamp>& stamps, Stamp stamp) {
   const auto after = std::lower_bound(stamps.begin(), stamps.end(), stamp);
   const auto place = static_cast<std::size_t>(after - stamps.begin());
   if (after == stamps.end()) {

@@ -17,6 +17,14 @@
 namespace sac {
 namespace {
 
+StreamCurrents timesMatrix(const StreamCurrents& currents, const Eigen::MatrixXf& change) {
+  StreamCurrents result;
+  for (Eigen::Index n = 0; n < currents.rows(); ++n) {
+    result.addRow(Eigen::RowVectorXf(currents.row(n) * change));
+  }
+  return result;
+}
+
 /// How well a step from the description explains the motion without the mistakes of a candidate.
 double misfitWithout(const CalibrationSession& session,
                      const MotionRecording& excerpt,
@@ -168,17 +176,17 @@ CorrectedMotion correctedMotion(const Actuator& actuator,
     described.samples.push_back(sample);
   }
   const WiringCase undone = corrected(described, candidate, startOf(candidate));
-  StreamCurrents change(coils, coils);
+  Eigen::MatrixXf change(coils, coils);
   for (Eigen::Index coil = 0; coil < coils; ++coil) {
     change.row(coil) =
         undone.samples[static_cast<std::size_t>(coil)].current.transpose().cast<float>();
   }
   CorrectedMotion result{undone.actuator, recording};
   for (MotionStreams& streams : result.recording.spans) {
-    streams.currents = streams.currents * change;
+    streams.currents = timesMatrix(streams.currents, change);
     if (streams.commanded != nullptr) {
       CommandedCurrents commanded = *streams.commanded;
-      commanded.currents = commanded.currents * change;
+      commanded.currents = timesMatrix(commanded.currents, change);
       streams.commanded = std::make_shared<const CommandedCurrents>(std::move(commanded));
     }
   }

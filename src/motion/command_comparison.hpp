@@ -9,12 +9,6 @@
 
 namespace sac {
 
-/// Currents that were commanded, each from its stamp on; stamps increase strictly.
-struct CommandStream {
-  std::vector<Stamp> stamps;
-  MotionStreams::Currents currents;  ///< per stamp and coil [A]
-};
-
 /// From `begin` to before `end`.
 struct SampleRange {
   std::size_t begin = 0;

@@ -47,7 +47,7 @@ class Stretch {
 template <typename Visit, typename Pass>
 void eachChange(const MotionStreams& streams, const Visit& visit, const Pass& pass) {
   constexpr double kGap = 2.0;  // usual intervals
-  const std::vector<Stamp>& stamps = streams.current_stamps;
+  const LongSeries<Stamp>& stamps = streams.current_stamps;
   const double longest = kGap * usualStep(StampTimes(stamps.front(), stamps));
   Eigen::RowVectorXd change;
   for (std::size_t n = 1; n < stamps.size(); ++n) {

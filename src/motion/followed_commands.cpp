@@ -6,7 +6,7 @@
 namespace sac {
 
 FollowedCommands::FollowedCommands(const std::vector<double>& times,
-                                   const MotionStreams::Currents& commands,
+                                   const StreamCurrents& commands,
                                    double delay,
                                    double lag)
     : times_(times),

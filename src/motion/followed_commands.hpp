@@ -20,7 +20,7 @@ class FollowedCommands {
  public:
   /// Keeps references. `times`: of the commands, increasing [s]; each acts later by the delay.
   FollowedCommands(const std::vector<double>& times,
-                   const MotionStreams::Currents& commands,
+                   const StreamCurrents& commands,
                    double delay,
                    double lag);
 
@@ -41,7 +41,7 @@ class FollowedCommands {
   void take();
 
   const std::vector<double>& times_;
-  const MotionStreams::Currents& commands_;
+  const StreamCurrents& commands_;
   double delay_;
   double lag_;
   std::size_t next_ = 0;  ///< command that acts next

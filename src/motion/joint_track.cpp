@@ -38,7 +38,7 @@ double longestWhole(double step, double steps) {
   return std::max(steps * step, kShort);
 }
 
-std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps) {
+std::vector<double> secondsFrom(Stamp origin, const LongSeries<Stamp>& stamps) {
   std::vector<double> times;
   times.reserve(stamps.size());
   for (const Stamp stamp : stamps) {

@@ -58,6 +58,6 @@ double usualStep(const std::vector<double>& times);
 double usualStep(const StampTimes& times);
 
 /// Seconds from `origin`.
-std::vector<double> secondsFrom(Stamp origin, const std::vector<Stamp>& stamps);
+std::vector<double> secondsFrom(Stamp origin, const LongSeries<Stamp>& stamps);
 
 }  // namespace sac

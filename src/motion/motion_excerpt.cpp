@@ -23,16 +23,23 @@ struct Places {
   std::size_t count = 0;
 
   template <typename T>
-  std::vector<T> of(const std::vector<T>& all) const {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+  LongSeries<T> of(const LongSeries<T>& all) const {
+    LongSeries<T> some;
+    for (std::size_t n = first; n < first + count; ++n) {
+      some.push_back(all[n]);
+    }
+    return some;
   }
   StreamCurrents of(const StreamCurrents& all) const {
-    return all.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+    StreamCurrents some;
+    for (std::size_t n = first; n < first + count; ++n) {
+      some.addRow(all.row(static_cast<Eigen::Index>(n)));
+    }
+    return some;
   }
 };
 
-Places placesWithin(const std::vector<Stamp>& stamps, const StampInterval& interval) {
+Places placesWithin(const LongSeries<Stamp>& stamps, const StampInterval& interval) {
   const auto begin = std::lower_bound(stamps.begin(), stamps.end(), interval.begin);
   const auto end = std::upper_bound(begin, stamps.end(), interval.end);
   return {static_cast<std::size_t>(begin - stamps.begin()), static_cast<std::size_t>(end - begin)};

@@ -14,18 +14,6 @@ namespace {
 /// Seventeen minutes at a kilohertz: far more than is needed, and no more memory.
 constexpr std::size_t kMostReadings = 1U << 20U;
 
-MotionStreams::Currents matrixOf(const std::vector<float>& currents, std::size_t rows) {
-  const auto count = static_cast<Eigen::Index>(rows);
-  const auto coils = rows == 0 ? 0 : static_cast<Eigen::Index>(currents.size()) / count;
-  return Eigen::Map<const MotionStreams::Currents>(currents.data(), count, coils);
-}
-
-void append(const Eigen::VectorXd& current, std::vector<float>& currents) {
-  for (const double one : current) {
-    currents.push_back(static_cast<float>(one));
-  }
-}
-
 /// Whether commands tell steps so well that nothing else needs to be tried: commands that come now
 /// sooner, now later, or that samples follow too seldom, may tell less than samples alone.
 bool tellsSteps(const CommandResponse& response, const MotionStreams& streams) {
@@ -36,12 +24,15 @@ bool tellsSteps(const CommandResponse& response, const MotionStreams& streams) {
 
 /// Puts what commands tell of the currents into the streams.
 void heed(const CommandStream& commands, MotionStreams& streams) {
-  MotionStreams::Currents sampled = streams.currents;
+  if (commands.stamps.empty()) {
+    return;
+  }
+  StreamCurrents sampled = streams.currents;
   streams.response = takeMeans(commands, streams);
   if (!streams.response || tellsSteps(*streams.response, streams)) {
     return;
   }
-  sampled.swap(streams.currents);
+  std::swap(sampled, streams.currents);
   streams.commanded =
       std::make_shared<CommandedCurrents>(CommandedCurrents{std::move(sampled), *streams.response});
   streams.response.reset();
@@ -65,7 +56,7 @@ bool MotionRecorder::isSetBack(Sequence& sequence, Stamp last, Stamp stamp) {
 bool MotionRecorder::isAfterPause(Stamp stamp) const {
   constexpr double kPause = 5.0;  // [s]
   bool is_begun = false;
-  for (const std::vector<Stamp>* stamps :
+  for (const LongSeries<Stamp>* stamps :
        {&streams_.joint_stamps, &streams_.current_stamps, &streams_.orientation_stamps}) {
     if (!stamps->empty() && secondsBetween(stamps->back(), stamp) <= kPause) {
       return false;
@@ -76,7 +67,7 @@ bool MotionRecorder::isAfterPause(Stamp stamp) const {
 }
 
 bool MotionRecorder::isNext(Sequence& sequence,
-                            const std::vector<Stamp>& stamps,
+                            const LongSeries<Stamp>& stamps,
                             Stamp stamp,
                             bool is_fine) {
   const bool is_set_back = is_fine && !stamps.empty() && isSetBack(sequence, stamps.back(), stamp);
@@ -113,14 +104,15 @@ void MotionRecorder::add(const CurrentMeasurement& measurement) {
     return;
   }
   streams_.current_stamps.push_back(measurement.stamp);
-  append(measurement.current, currents_);
+  streams_.currents.addRow(measurement.current);
 }
 
 void MotionRecorder::add(const CurrentCommand& command) {
-  const bool is_later = command_stamps_.empty() || command.stamp > command_stamps_.back();
-  if (is_later && isCurrent(command.current) && command_stamps_.size() < kMostReadings) {
-    command_stamps_.push_back(command.stamp);
-    append(command.current, commands_);
+  LongSeries<Stamp>& stamps = commands_.stamps;
+  const bool is_later = stamps.empty() || command.stamp > stamps.back();
+  if (is_later && isCurrent(command.current) && stamps.size() < kMostReadings) {
+    stamps.push_back(command.stamp);
+    commands_.currents.addRow(command.current);
   }
 }
 
@@ -136,16 +128,11 @@ void MotionRecorder::add(const OrientationMeasurement& measurement) {
 
 void MotionRecorder::endSpan() {
   if (!streams_.joints.empty() && !streams_.current_stamps.empty()) {
-    streams_.currents = matrixOf(currents_, streams_.current_stamps.size());
-    currents_ = {};
-    const CommandStream commands{command_stamps_, matrixOf(commands_, command_stamps_.size())};
-    heed(commands, streams_);
+    heed(commands_, streams_);
     recording_.spans.push_back(std::move(streams_));
   }
   streams_ = MotionStreams();
-  currents_ = {};
-  command_stamps_ = {};
-  commands_ = {};
+  commands_ = CommandStream();
   for (Sequence* sequence : {&joints_, &orientations_, &coil_currents_}) {
     sequence->earlier.reset();
   }

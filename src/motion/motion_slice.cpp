@@ -35,12 +35,25 @@ std::size_t placeOf(const Stream& stream, Stamp stamp) {
 
 /// A rotor that a hand or a fixture turns tells nothing here.
 bool isDriven(const MotionStreams& streams) {
-  return streams.currents.size() > 0 &&
-         streams.currents.cwiseAbs().maxCoeff() > kExcitationThreshold;
+  for (Eigen::Index n = 0; n < streams.currents.rows(); ++n) {
+    if (streams.currents.row(n).cwiseAbs().maxCoeff() > kExcitationThreshold) {
+      return true;
+    }
+  }
+  return false;
 }
 
-bool isIncreasing(const std::vector<Stamp>& stamps) {
+bool isIncreasing(const LongSeries<Stamp>& stamps) {
   return std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) == stamps.end();
+}
+
+bool areFinite(const StreamCurrents& currents) {
+  for (Eigen::Index n = 0; n < currents.rows(); ++n) {
+    if (!currents.row(n).allFinite()) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool isFine(const MotionStreams& streams, std::size_t coils) {
@@ -57,7 +70,7 @@ bool isFine(const MotionStreams& streams, std::size_t coils) {
                      [](const Eigen::Vector3d& position) { return position.allFinite(); }) &&
          streams.currents.rows() == readings && readings > 0 &&
          streams.currents.cols() == static_cast<Eigen::Index>(coils) &&
-         streams.currents.allFinite() &&
+         areFinite(streams.currents) &&
          streams.orientations.size() == streams.orientation_stamps.size() &&
          std::all_of(streams.orientations.begin(), streams.orientations.end(), is_unit);
 }
@@ -177,12 +190,9 @@ MotionSlice MotionSlicer::cut(std::size_t end) const {
   const std::size_t first_current = placeOf(currents_, from);
   const std::size_t first_row = first_current - std::min<std::size_t>(first_current, 2);
   const std::size_t last_row = std::min(placeOf(currents_, to) + 2, currents_.size());
-  streams.currents.resize(static_cast<Eigen::Index>(last_row - first_row),
-                          static_cast<Eigen::Index>(coils_));
   for (std::size_t n = first_row; n < last_row; ++n) {
     streams.current_stamps.push_back(currents_[n].first);
-    streams.currents.row(static_cast<Eigen::Index>(n - first_row)) =
-        currents_[n].second.transpose();
+    streams.currents.addRow(currents_[n].second);
   }
   for (std::size_t n = placeOf(orientations_, joints_[begin_].first);
        n < placeOf(orientations_, joints_[end].first);

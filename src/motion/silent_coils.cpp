@@ -28,12 +28,13 @@ void SilentCoils::add(const MotionStreams& streams) {
   if (rows == 0) {
     return;
   }
-  const auto currents = streams.currents.array();
   if (squares_.size() == 0) {
-    squares_.setZero(currents.cols());
-    third_.setZero(currents.cols());
+    squares_.setZero(streams.currents.cols());
+    third_.setZero(streams.currents.cols());
   }
-  const auto at = [&](Eigen::Index n) { return currents.row(n).transpose().cast<double>(); };
+  const auto at = [&](Eigen::Index n) {
+    return streams.currents.row(n).transpose().cast<double>().array().eval();
+  };
   for (Eigen::Index n = 0; n < rows; ++n) {
     squares_ += at(n).square();
   }

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <vector>
 
+#include "spherical_actuator_calibration/base/long_series.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
 
 namespace sac {
@@ -13,7 +12,7 @@ namespace sac {
 class StampTimes {
  public:
   /// Keeps a reference. `stamps`: increasing.
-  StampTimes(Stamp origin, const std::vector<Stamp>& stamps) : origin_(origin), stamps_(&stamps) {}
+  StampTimes(Stamp origin, const LongSeries<Stamp>& stamps) : origin_(origin), stamps_(&stamps) {}
 
   std::size_t size() const { return stamps_->size(); }
   bool empty() const { return stamps_->empty(); }
@@ -22,28 +21,32 @@ class StampTimes {
   double back() const { return (*this)[size() - 1]; }
   /// The first that is not before a time; size(): none.
   std::size_t firstFrom(double time) const {
-    return static_cast<std::size_t>(std::lower_bound(stamps_->begin(),
-                                                     stamps_->end(),
-                                                     time,
-                                                     [this](Stamp stamp, double at) {
-                                                       return secondsBetween(origin_, stamp) < at;
-                                                     }) -
-                                    stamps_->begin());
+    return firstThat([time](double at) { return at >= time; });
   }
   /// The first that is later than a time; size(): none.
   std::size_t firstAfter(double time) const {
-    return static_cast<std::size_t>(std::upper_bound(stamps_->begin(),
-                                                     stamps_->end(),
-                                                     time,
-                                                     [this](double at, Stamp stamp) {
-                                                       return at < secondsBetween(origin_, stamp);
-                                                     }) -
-                                    stamps_->begin());
+    return firstThat([time](double at) { return at > time; });
   }
 
  private:
+  /// By halves, as of those behind one of which it holds it holds, too.
+  template <typename Holds>
+  std::size_t firstThat(const Holds& holds) const {
+    std::size_t begin = 0;
+    std::size_t end = size();
+    while (begin < end) {
+      const std::size_t middle = begin + (end - begin) / 2;
+      if (holds((*this)[middle])) {
+        end = middle;
+      } else {
+        begin = middle + 1;
+      }
+    }
+    return begin;
+  }
+
   Stamp origin_;
-  const std::vector<Stamp>* stamps_;
+  const LongSeries<Stamp>* stamps_;
 };
 
 }  // namespace sac

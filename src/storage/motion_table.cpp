@@ -71,16 +71,18 @@ void readJoints(Bytes bytes, MotionStreams& streams) {
   const std::size_t count = bytes.rows(sizeof(Stamp) + 3 * sizeof(double));
   for (std::size_t n = 0; n < count; ++n) {
     streams.joint_stamps.push_back(bytes.take<Stamp>());
-    Eigen::Vector3d& position = streams.joints.emplace_back();
+    Eigen::Vector3d position;
     for (double& angle : position) {
       angle = bytes.take<double>();
     }
+    streams.joints.push_back(position);
   }
 }
 
 void readCurrents(Bytes bytes, std::size_t coils, MotionStreams& streams) {
   const std::size_t count = bytes.rows(sizeof(Stamp) + coils * sizeof(float));
-  streams.currents.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(coils));
+  streams.currents =
+      StreamCurrents(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(coils));
   for (std::size_t n = 0; n < count; ++n) {
     streams.current_stamps.push_back(bytes.take<Stamp>());
     for (float& current : streams.currents.row(static_cast<Eigen::Index>(n))) {
@@ -93,10 +95,11 @@ void readOrientations(Bytes bytes, MotionStreams& streams) {
   const std::size_t count = bytes.rows(sizeof(Stamp) + 4 * sizeof(double));
   for (std::size_t n = 0; n < count; ++n) {
     streams.orientation_stamps.push_back(bytes.take<Stamp>());
-    Eigen::Quaterniond& orientation = streams.orientations.emplace_back();
+    Eigen::Quaterniond orientation;
     for (double& component : orientation.coeffs()) {
       component = bytes.take<double>();
     }
+    streams.orientations.push_back(orientation);
   }
 }
 

@@ -85,7 +85,7 @@ TEST_F(MotionCycleTest, KeepsInertiaFrictionAndUnbalanceInTheDescription) {
 MotionRecording turned(MotionRecording recording, const std::vector<Eigen::Index>& coils) {
   for (MotionStreams& streams : recording.spans) {
     for (const Eigen::Index coil : coils) {
-      streams.currents.col(coil) *= -1.0F;
+      streams.currents.matrix().col(coil) *= -1.0F;
     }
   }
   return recording;
@@ -114,7 +114,7 @@ TEST_F(MotionCycleTest, DoubtsWhatManyWindowsContradict) {
   moving_.duration = 12.0;
   MotionRecording recording = noisy(moving_.record());
   for (MotionStreams& streams : recording.spans) {
-    streams.currents.col(4) *= 1.01F;
+    streams.currents.matrix().col(4) *= 1.01F;
   }
   session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
   const CycleReport report = session_.run({Cycle::kMotion});
@@ -134,7 +134,7 @@ bool isDoubted(const CycleReport& report, const std::string& begin) {
 
 TEST_F(MotionCycleTest, DoubtsSetpointsInPlaceOfMeasuredCurrents) {
   MotionRecording recording = noisy(moving_.record());
-  MotionStreams::Currents& currents = recording.spans.front().currents;
+  StreamCurrents& currents = recording.spans.front().currents;
   for (Eigen::Index n = 0; n < currents.rows(); ++n) {
     currents.row(n) = Eigen::RowVectorXf(currents.row(n - n % 3));
   }
@@ -148,7 +148,7 @@ TEST_F(MotionCycleTest, DoubtsSetpointsInPlaceOfMeasuredCurrents) {
 TEST_F(MotionCycleTest, DoubtsCurrentsWhoseClockJumps) {
   moving_.duration = 15.0;
   MotionRecording recording = noisy(moving_.record());
-  std::vector<Stamp>& stamps = recording.spans.front().current_stamps;
+  LongSeries<Stamp>& stamps = recording.spans.front().current_stamps;
   for (std::size_t n = 0; n < stamps.size(); ++n) {
     stamps[n] += n < stamps.size() * 3 / 5 ? 0 : 3'000'000;
   }
@@ -184,7 +184,7 @@ TEST_F(MotionCycleTest, DoubtsATrackerWhoseClockJumps) {
   moving_.duration = 15.0;
   for (const Stamp jump : {0, 200'000}) {
     MotionRecording recording = noisy(moving_.record());
-    std::vector<Stamp>& stamps = recording.spans.front().orientation_stamps;
+    LongSeries<Stamp>& stamps = recording.spans.front().orientation_stamps;
     for (std::size_t n = stamps.size() / 2; n < stamps.size(); ++n) {
       stamps[n] += jump;
     }
@@ -208,8 +208,8 @@ TEST_F(MotionCycleTest, DoubtsNoTrackerForCoarseJoints) {
     streams.joints[n] = streams.joints[kSeldom * n];
     streams.joint_stamps[n] = streams.joint_stamps[kSeldom * n];
   }
-  streams.joints.resize(count);
-  streams.joint_stamps.resize(count);
+  streams.joints.truncate(count);
+  streams.joint_stamps.truncate(count);
   session_.setMotion(std::make_shared<const MotionRecording>(std::move(recording)));
   const CycleReport report = session_.run({Cycle::kMotion});
   ASSERT_TRUE(report.success) << report.message;
@@ -219,7 +219,7 @@ TEST_F(MotionCycleTest, DoubtsNoTrackerForCoarseJoints) {
 TEST_F(MotionCycleTest, DoubtsATrackerWhoseMarkerSlips) {
   moving_.duration = 15.0;
   MotionRecording recording = noisy(moving_.record());
-  std::vector<Eigen::Quaterniond>& orientations = recording.spans.front().orientations;
+  LongSeries<Eigen::Quaterniond>& orientations = recording.spans.front().orientations;
   const Eigen::Quaterniond slip(rotationExp({0.0, 2e-4, 2e-4}));
   for (std::size_t n = orientations.size() / 2; n < orientations.size(); ++n) {
     orientations[n] = orientations[n] * slip;
@@ -265,7 +265,7 @@ TEST_F(MotionCycleTest, HoldsACoilThroughWhichNothingFlowed) {
   moving_.truth.coils[kDead].gain = 0.0;
   MotionRecording recording = moving_.record();
   for (MotionStreams& streams : recording.spans) {
-    streams.currents.col(kDead).setZero();
+    streams.currents.matrix().col(kDead).setZero();
   }
   session_.setMotion(std::make_shared<const MotionRecording>(noisy(std::move(recording))));
   const CycleReport report = session_.run({Cycle::kMotion});

@@ -43,7 +43,7 @@ Sample sampleAt(int n) {
 MotionSlice windowAt(int n) {
   MotionSlice slice;
   slice.window = {2, 20};
-  slice.streams.currents.resize(24, 0);
+  slice.streams.currents = StreamCurrents(24, 0);
   for (int k = 0; k < 24; ++k) {
     slice.streams.joint_stamps.push_back(250'000'000LL * n + 10'000'000LL * k);
     slice.streams.joints.emplace_back(0.01 * k, 0.0, 0.1 * k);

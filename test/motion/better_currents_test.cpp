@@ -31,8 +31,8 @@ class BetterCurrents : public ::testing::Test {
   MotionEstimate estimated(float sampled, float commanded) {
     MotionStreams& streams = recording_.spans.front();
     CommandedCurrents by_commands{streams.currents, {1e-3, 2e-3, 4e-4}};
-    by_commands.currents.col(0) *= commanded;
-    streams.currents.col(0) *= sampled;
+    by_commands.currents.matrix().col(0) *= commanded;
+    streams.currents.matrix().col(0) *= sampled;
     streams.commanded = std::make_shared<CommandedCurrents>(by_commands);
     commanded_ = byCommands(recording_);
     return estimateByBetterCurrents(commanded_, {}, problem_);

@@ -46,7 +46,7 @@ void follow(double begin,
 CommandStream commanded() {
   CommandStream commands;
   const auto count = static_cast<Eigen::Index>(std::lround(kDuration / kHold));
-  commands.currents.resize(count, 3);
+  commands.currents = StreamCurrents(count, 3);
   for (Eigen::Index n = 0; n < count; ++n) {
     const double time = static_cast<double>(n) * kHold;
     commands.stamps.push_back(stampOf(time - kLate));
@@ -65,7 +65,7 @@ MotionStreams sampled(double interval, double phase) {
     currents.push_back(current +
                        Eigen::Vector3d(noise(generator), noise(generator), noise(generator)));
   });
-  streams.currents.resize(static_cast<Eigen::Index>(currents.size()), 3);
+  streams.currents = StreamCurrents(static_cast<Eigen::Index>(currents.size()), 3);
   for (std::size_t n = 0; n < currents.size(); ++n) {
     streams.currents.row(static_cast<Eigen::Index>(n)) = currents[n].transpose().cast<float>();
   }
@@ -131,13 +131,13 @@ TEST(CommandResponse, IsNoneWhereCurrentsDoSomethingElse) {
   };
   EXPECT_TRUE(is_told(commanded()));
   CommandStream commands = commanded();
-  commands.currents.col(1) *= -1.0F;  // one coil the other way round
+  commands.currents.matrix().col(1) *= -1.0F;  // one coil the other way round
   EXPECT_FALSE(is_told(commands));
   commands = commanded();
-  commands.currents.col(0).setZero();
+  commands.currents.matrix().col(0).setZero();
   EXPECT_FALSE(is_told(commands));
   commands = commanded();
-  commands.currents = commands.currents.colwise().reverse().eval();
+  commands.currents = StreamCurrents(commands.currents.matrix().colwise().reverse());
   EXPECT_FALSE(is_told(commands));
   commands = commanded();
   for (std::size_t n = 2000; n < commands.stamps.size(); ++n) {
@@ -146,8 +146,9 @@ TEST(CommandResponse, IsNoneWhereCurrentsDoSomethingElse) {
   EXPECT_FALSE(is_told(commands));
   commands = commanded();
   const std::size_t half = commands.stamps.size() / 2;  // recorded until then
-  commands.stamps.resize(half);
-  commands.currents.conservativeResize(static_cast<Eigen::Index>(half), Eigen::NoChange);
+  commands.stamps.truncate(half);
+  commands.currents =
+      StreamCurrents(commands.currents.matrix().topRows(static_cast<Eigen::Index>(half)));
   EXPECT_FALSE(is_told(commands));
   EXPECT_FALSE(is_told({}));
 }
@@ -163,8 +164,9 @@ TEST(CommandResponse, LeavesWhatIsBesideAHole) {
   }
   const MotionStreams before = streams;
   ASSERT_TRUE(takeMeans(commands, streams));
-  EXPECT_EQ(streams.currents.middleRows(9999, 2), before.currents.middleRows(9999, 2));
-  EXPECT_LT((streams.currents - before.currents).cwiseAbs().maxCoeff(), 0.02F);
+  EXPECT_EQ(streams.currents.matrix().middleRows(9999, 2),
+            before.currents.matrix().middleRows(9999, 2));
+  EXPECT_LT((streams.currents.matrix() - before.currents.matrix()).cwiseAbs().maxCoeff(), 0.02F);
 }
 
 /// What a recorder makes of them.

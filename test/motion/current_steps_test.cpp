@@ -20,7 +20,7 @@ MotionStreams stepping(double interval, double phase, double noise) {
   std::normal_distribution<double> normal(0.0, 1.0);
   MotionStreams streams;
   const auto count = static_cast<Eigen::Index>(std::lround(kDuration / interval));
-  streams.currents.resize(count, 2);
+  streams.currents = StreamCurrents(count, 2);
   Eigen::Vector2d setpoint = Eigen::Vector2d::Zero();
   Eigen::Vector2d before = Eigen::Vector2d::Zero();
   long step = 0;
@@ -63,7 +63,7 @@ TEST(CurrentSteps, CountBySquaresOfTheirChanges) {
   EXPECT_NEAR(delayStddev(told, 0.0), 5e-6, 1e-9);
   for (const float share : {1.0F, 0.2F}) {
     MotionStreams gentle = stepping(1e-3, 0.0, 0.0);
-    gentle.currents *= share;
+    gentle.currents.matrix() *= share;
     CurrentSteps both;
     both.add(gentle);
     both.add(told);
@@ -73,7 +73,7 @@ TEST(CurrentSteps, CountBySquaresOfTheirChanges) {
   // What is noise alone counts for nothing.
   constexpr double kNoise = 1e-3;
   MotionStreams still = stepping(1e-3, 0.0, 1e3 * kNoise);
-  still.currents *= 1e-3F;
+  still.currents.matrix() *= 1e-3F;
   CurrentSteps both;
   both.add(still);
   both.add(told);
@@ -84,7 +84,7 @@ TEST(CurrentSteps, CountBySquaresOfTheirChanges) {
 MotionStreams rising(double interval) {
   MotionStreams streams;
   const auto count = static_cast<Eigen::Index>(std::lround(10.0 / interval));
-  streams.currents.resize(count, 1);
+  streams.currents = StreamCurrents(count, 1);
   for (Eigen::Index n = 0; n < count; ++n) {
     const double time = static_cast<double>(n) * interval;
     streams.current_stamps.push_back(static_cast<Stamp>(std::llround(time * 1e9)));
@@ -110,14 +110,14 @@ TEST(CurrentSteps, AreNotThoseOverAGap) {
   for (auto n = static_cast<std::size_t>(half); n < streams.current_stamps.size(); ++n) {
     streams.current_stamps[n] += 5'000'000'000;
   }
-  streams.currents.bottomRows(half).array() += 5.0F;
+  streams.currents.matrix().bottomRows(half).array() += 5.0F;
   EXPECT_NEAR(delayStddev(streams, 0.0), delayStddev(whole, 0.0), 1e-7);
 }
 
 TEST(CurrentSteps, OnceASampleLookSmooth) {
   MotionStreams streams;
   constexpr double kInterval = 5e-3;
-  streams.currents.resize(2000, 1);
+  streams.currents = StreamCurrents(2000, 1);
   for (Eigen::Index n = 0; n < 2000; ++n) {
     streams.current_stamps.push_back(static_cast<Stamp>(n) * 5'000'000);
     streams.currents(n, 0) = static_cast<float>(0.3 * std::sin(0.05 * static_cast<double>(n)));
@@ -128,7 +128,7 @@ TEST(CurrentSteps, OnceASampleLookSmooth) {
 /// A sine in steps without a lag, sampled.
 MotionStreams sineInSteps(double interval, double hold) {
   MotionStreams streams;
-  streams.currents.resize(2000, 1);
+  streams.currents = StreamCurrents(2000, 1);
   for (Eigen::Index n = 0; n < 2000; ++n) {
     const double time = static_cast<double>(n) * interval;
     const double since = hold * std::floor(time / hold + 1e-9);

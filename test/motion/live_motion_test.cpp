@@ -138,7 +138,7 @@ TEST_F(LiveMotionTest, BeginsAfterAFixtureHasTurnedTheRotor) {
       if (driven < kDriven) {
         ++driven;
         StreamCurrents& currents = slice.streams.currents;
-        currents = StreamCurrents(currents.colwise().reverse());
+        currents = StreamCurrents(currents.matrix().colwise().reverse());
         live.add(std::move(slice));
         EXPECT_FALSE(live.estimate().is_told);
       } else {

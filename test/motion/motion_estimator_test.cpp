@@ -82,8 +82,8 @@ TEST(MotionEstimator, TellsTheNoiseOfASlowTracker) {
   moving.tracker_delay = 40e-3;
   MotionRecording recording = noisy(moving.record());
   MotionStreams& streams = recording.spans.front();
-  const std::vector<Stamp> stamps = std::exchange(streams.orientation_stamps, {});
-  const std::vector<Eigen::Quaterniond> all = std::exchange(streams.orientations, {});
+  const LongSeries<Stamp> stamps = std::exchange(streams.orientation_stamps, {});
+  const LongSeries<Eigen::Quaterniond> all = std::exchange(streams.orientations, {});
   for (std::size_t n = 0; n < stamps.size(); n += kEvery) {
     streams.orientation_stamps.push_back(stamps[n]);
     streams.orientations.push_back(all[n]);
@@ -285,7 +285,7 @@ TEST(MotionEstimator, HoldsOutNothingOfAShortRecording) {
 TEST(MotionEstimator, LeavesOutWindowsWithoutCurrent) {
   MotionRecording recording = noisy(madeRotor().record());
   MotionStreams& streams = recording.spans.front();
-  streams.currents.middleRows(2000, 1000).setZero();
+  streams.currents.matrix().middleRows(2000, 1000).setZero();
   const CalibrationModel model = motionModel();
   const MotionEstimate found = estimated(model, recording);
   ASSERT_EQ(found.estimate.termination, Termination::kConverged);
@@ -299,10 +299,14 @@ TEST(MotionEstimator, LeavesOutWindowsWithoutCurrent) {
 TEST(MotionEstimator, CutsWindowsAroundHoles) {
   MotionRecording recording = madeRotor().record();
   MotionStreams& streams = recording.spans.front();
-  const auto begin = streams.joints.begin() + 2600;
-  streams.joints.erase(begin, begin + 50);
-  const auto stamps = streams.joint_stamps.begin() + 2600;
-  streams.joint_stamps.erase(stamps, stamps + 50);
+  constexpr std::size_t kFirst = 2600;
+  constexpr std::size_t kLost = 50;
+  for (std::size_t n = kFirst; n + kLost < streams.joints.size(); ++n) {
+    streams.joints[n] = streams.joints[n + kLost];
+    streams.joint_stamps[n] = streams.joint_stamps[n + kLost];
+  }
+  streams.joints.truncate(streams.joints.size() - kLost);
+  streams.joint_stamps.truncate(streams.joints.size());
   const CalibrationModel model = motionModel();
   const MotionEstimate found = estimated(model, recording);
   ASSERT_EQ(found.estimate.termination, Termination::kConverged);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/resident_memory.hpp"
+
 namespace sac {
 namespace {
 
@@ -14,6 +16,27 @@ JointMeasurement joints(Stamp stamp, double spin) {
 
 CurrentMeasurement currents(Stamp stamp) {
   return {stamp, Eigen::Vector2d(0.5, -0.25)};
+}
+
+TEST(MotionRecorder, TakesLittleMemoryForLongStreams) {
+  constexpr int kReadings = 400'000;  // of 24 coils, 40 MB, and of joints, 10 MB
+  const Eigen::VectorXd current = Eigen::VectorXd::LinSpaced(24, 0.0, 1.0);
+  MotionRecording recording;
+  const double bytes = peakBeside([&] {
+    MotionRecorder recorder(24);
+    for (int n = 0; n < kReadings; ++n) {
+      const Stamp stamp = 1'000'000LL * n;
+      recorder.add(joints(stamp, 1e-6 * n));
+      recorder.add(CurrentMeasurement{stamp, current});
+    }
+    recording = recorder.take();
+  });
+  EXPECT_LT(bytes, 25e6);
+  ASSERT_EQ(recording.spans.size(), 1U);
+  const MotionStreams& streams = recording.spans[0];
+  EXPECT_EQ(streams.joints[kReadings - 1][2], 1e-6 * (kReadings - 1));
+  EXPECT_EQ(streams.currents.rows(), kReadings);
+  EXPECT_EQ(streams.currents(kReadings / 2, 23), 1.0F);
 }
 
 TEST(MotionRecorder, TakesNoJumpOfASensorThatWrapsAround) {

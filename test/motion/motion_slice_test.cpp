@@ -101,14 +101,15 @@ TEST_F(MotionSlicerTest, ToldFromWhatIsNoWindow) {
            }),
            refusal([](MotionSlice& other) { other.streams.joints[3][1] = std::nan(""); }),
            refusal([](MotionSlice& other) { other.streams.currents(3, 1) = std::nanf(""); }),
-           refusal([](MotionSlice& other) { other.streams.currents.conservativeResize(3, 2); }),
+           refusal([](MotionSlice& other) { other.streams.currents = StreamCurrents(3, 2); }),
            refusal([](MotionSlice& other) { other.streams.orientations[1].w() = 2.0; }),
        }) {
     EXPECT_EQ(message, "A window of a motion holds none.");
   }
-  EXPECT_NE(
-      refusal([](MotionSlice& other) { other.streams.currents.setZero(); }).find("no coil is on"),
-      std::string::npos);
+  EXPECT_NE(refusal([](MotionSlice& other) {
+              other.streams.currents.matrix().setZero();
+            }).find("no coil is on"),
+            std::string::npos);
 }
 
 TEST_F(MotionSlicerTest, LeavesOutRestsHolesAndHands) {

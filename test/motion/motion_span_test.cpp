@@ -18,7 +18,7 @@ MotionStreams restThenMotion(double noise) {
   std::mt19937_64 generator(3);
   std::normal_distribution<double> error(0.0, noise);
   MotionStreams streams;
-  streams.currents = StreamCurrents::Zero(800, 1);
+  streams.currents = StreamCurrents(800, 1);
   for (int n = 0; n < 800; ++n) {
     const double t = n * kStep;
     const double q = t < kBegin ? 0.0 : 0.02 * std::sin(kFrequency * (t - kBegin));

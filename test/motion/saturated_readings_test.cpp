@@ -19,7 +19,7 @@ MotionStreams movingStreams() {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   MotionStreams streams;
-  streams.currents = StreamCurrents::Zero(kReadings, 2);
+  streams.currents = StreamCurrents(kReadings, 2);
   for (int n = 0; n < kReadings; ++n) {
     const double t = 1e-3 * n;
     const auto stamp = static_cast<Stamp>(1e9 * (10.0 + t));
@@ -39,7 +39,8 @@ MotionStreams movingStreams() {
 
 /// Told in steps of so much.
 void roundCurrents(MotionStreams& streams, float step) {
-  streams.currents = (streams.currents.array() / step).round() * step;
+  auto currents = streams.currents.matrix().array();
+  currents = (currents / step).round() * step;
 }
 
 /// Windows of a quarter of a second, and in how many of them which reading is at its end.
@@ -77,7 +78,7 @@ std::vector<MotionStreams> inSpans(const MotionStreams& streams, int length) {
   std::vector<MotionStreams> spans;
   for (int begin = 0; begin + length <= kReadings; begin += length) {
     MotionStreams part;
-    part.currents = streams.currents.middleRows(begin, length);
+    part.currents = StreamCurrents(streams.currents.matrix().middleRows(begin, length));
     for (int n = begin; n < begin + length; ++n) {
       const auto place = static_cast<std::size_t>(n);
       part.joint_stamps.push_back(streams.joint_stamps[place]);

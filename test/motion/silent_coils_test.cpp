@@ -23,19 +23,19 @@ TEST(SilentCoils, AreThoseOfWhichNoiseIsRead) {
   for (Eigen::Index n = 0; n < currents.rows(); ++n) {
     currents(n, 4) = n % 3 == 0 ? 1.2e-3F : n % 3 == 1 ? -1.5e-3F : 0.4e-3F;
   }
-  currents.col(7).setZero();
+  currents.matrix().col(7).setZero();
   EXPECT_EQ(silentCoils(recording), (std::vector<std::size_t>{4, 7}));
 }
 
 TEST(SilentCoils, AreNotThoseOfLittleCurrent) {
   MotionRecording recording = recorded();
-  recording.spans.front().currents.col(4) *= 0.02F;
+  recording.spans.front().currents.matrix().col(4) *= 0.02F;
   EXPECT_TRUE(silentCoils(recording).empty());
 }
 
 TEST(SilentCoils, AreNotAllOfThem) {
   MotionRecording recording = recorded();
-  recording.spans.front().currents.setZero();
+  recording.spans.front().currents.matrix().setZero();
   EXPECT_TRUE(silentCoils(recording).empty());
 }
 

@@ -136,8 +136,9 @@ TEST_F(WindowBalanceTest, CoversThreeSquareNoisesByItsCovariance) {
     for (Eigen::Vector3d& reading : noisy.joints) {
       reading += kJoints * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
     }
-    for (Eigen::Index n = 0; n < noisy.currents.size(); ++n) {
-      noisy.currents.data()[n] += static_cast<float>(kCurrents * normal(generator));
+    auto currents = noisy.currents.matrix();
+    for (Eigen::Index n = 0; n < currents.size(); ++n) {
+      currents.data()[n] += static_cast<float>(kCurrents * normal(generator));
     }
     WindowBalance balance;
     evaluator.evaluate(MotionSpan(noisy), windows_[1], point, {}, balance);
@@ -165,8 +166,10 @@ TEST_F(WindowBalanceTest, WindowsFillWhatHasCurrents) {
 TEST_F(WindowBalanceTest, WindowsWithoutCurrentsAreCounted) {
   MotionStreams late = recording_.spans.front();
   constexpr Eigen::Index kMissing = 600;
-  late.current_stamps.erase(late.current_stamps.begin(), late.current_stamps.begin() + kMissing);
-  late.currents = late.currents.bottomRows(late.currents.rows() - kMissing).eval();
+  const LongSeries<Stamp> stamps = late.current_stamps;
+  late.current_stamps = {stamps.begin() + kMissing, stamps.end()};
+  late.currents =
+      StreamCurrents(late.currents.matrix().bottomRows(late.currents.rows() - kMissing));
   std::vector<WindowsLeftOut> left_out;
   const std::vector<MotionWindow> windows = cutWindows({MotionSpan(late)}, options_, left_out);
   EXPECT_EQ(windows.size(), 1U);
@@ -180,13 +183,11 @@ TEST_F(WindowBalanceTest, WindowsOfFewCurrentsAreCounted) {
   for (const std::size_t every : {20U, 30U}) {  // 50 and 33 Hz
     MotionStreams some = all;
     some.current_stamps.clear();
+    some.currents = {};
     for (std::size_t n = 0; n < all.current_stamps.size(); n += every) {
-      some.currents.row(static_cast<Eigen::Index>(some.current_stamps.size())) =
-          all.currents.row(static_cast<Eigen::Index>(n));
+      some.currents.addRow(all.currents.row(static_cast<Eigen::Index>(n)));
       some.current_stamps.push_back(all.current_stamps[n]);
     }
-    some.currents.conservativeResize(static_cast<Eigen::Index>(some.current_stamps.size()),
-                                     Eigen::NoChange);
     std::vector<WindowsLeftOut> left_out;
     const std::vector<MotionWindow> windows = cutWindows({MotionSpan(some)}, options_, left_out);
     const bool is_refused = !left_out.empty() && left_out[0].reason.rfind("fewer than ten", 0) == 0;

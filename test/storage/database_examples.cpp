@@ -120,7 +120,7 @@ MotionSlice window(unsigned seed, Eigen::Index coils) {
   MotionSlice slice;
   slice.window = {60, 310};
   MotionStreams& streams = slice.streams;
-  streams.currents.resize(kReadings, coils);
+  streams.currents = StreamCurrents(kReadings, coils);
   for (int n = 0; n < kReadings; ++n) {
     const Stamp stamp = seed * kWindow + n * kStep;
     streams.joint_stamps.push_back(stamp);

@@ -110,8 +110,9 @@ inline MotionRecording noisy(MotionRecording recording, double joint_stddev = 2e
     for (Eigen::Vector3d& reading : streams.joints) {
       reading += noise(joint_stddev);
     }
-    for (Eigen::Index n = 0; n < streams.currents.size(); ++n) {
-      streams.currents.data()[n] += static_cast<float>(1e-3 * normal(generator));
+    auto currents = streams.currents.matrix();
+    for (Eigen::Index n = 0; n < currents.size(); ++n) {
+      currents.data()[n] += static_cast<float>(1e-3 * normal(generator));
     }
     for (Eigen::Quaterniond& orientation : streams.orientations) {
       orientation = Eigen::Quaterniond(rotationExp(noise(5e-4))) * orientation;

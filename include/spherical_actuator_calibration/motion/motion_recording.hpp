@@ -70,7 +70,7 @@ class MotionRecorder {
   };
 
   bool isCurrent(const Eigen::VectorXd& current) const;
-  bool isNext(Sequence& sequence, const std::vector<Stamp>& stamps, Stamp stamp, bool is_fine);
+  bool isNext(Sequence& sequence, const LongSeries<Stamp>& stamps, Stamp stamp, bool is_fine);
   static bool isSetBack(Sequence& sequence, Stamp last, Stamp stamp);
   bool isAfterPause(Stamp stamp) const;
   void endSpan();
@@ -80,9 +80,7 @@ class MotionRecorder {
   Sequence orientations_;
   Sequence coil_currents_;
   MotionStreams streams_;
-  std::vector<float> currents_;
-  std::vector<Stamp> command_stamps_;
-  std::vector<float> commands_;
+  CommandStream commands_;
   MotionRecording recording_;
 };
 

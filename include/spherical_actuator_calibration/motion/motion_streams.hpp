@@ -2,12 +2,13 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "spherical_actuator_calibration/base/long_series.hpp"
 #include "spherical_actuator_calibration/measurement/sample.hpp"
+#include "spherical_actuator_calibration/motion/stream_currents.hpp"
 
 namespace sac {
 
@@ -20,32 +21,33 @@ struct CommandResponse {
   double lateness_stddev = 0.0;
 };
 
-/// Per stamp and coil [A]. Single precision: fine to a millionth of an ampere, half the memory.
-using StreamCurrents = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// Currents for their intervals, with the steps between samples that commands tell.
 struct CommandedCurrents {
   StreamCurrents currents;
   CommandResponse response;
 };
 
+/// Currents that were commanded, each from its stamp on; stamps increase strictly.
+struct CommandStream {
+  LongSeries<Stamp> stamps;
+  StreamCurrents currents;
+};
+
 /// Streams of one span of time, each with stamps that increase strictly.
 struct MotionStreams {
-  using Currents = StreamCurrents;
-
-  std::vector<Stamp> joint_stamps;
+  LongSeries<Stamp> joint_stamps;
   /// Readings [rad], without the jumps of a sensor that wraps around.
-  std::vector<Eigen::Vector3d> joints;
-  std::vector<Stamp> current_stamps;
-  Currents currents;
+  LongSeries<Eigen::Vector3d> joints;
+  LongSeries<Stamp> current_stamps;
+  StreamCurrents currents;
   /// Known: each current counts for its interval, with the steps between samples that commands
   /// tell. Nothing: currents are as they were sampled.
   std::optional<CommandResponse> response;
   /// Where commands tell the steps, but not well: what they tell, beside the currents as sampled.
   /// Which of both the rotor felt, its motion tells.
   std::shared_ptr<const CommandedCurrents> commanded;
-  std::vector<Stamp> orientation_stamps;
-  std::vector<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
+  LongSeries<Stamp> orientation_stamps;
+  LongSeries<Eigen::Quaterniond> orientations;  ///< rotor to stator, unit
 };
 
 }  // namespace sac
