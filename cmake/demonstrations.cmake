@@ -27,7 +27,7 @@ endfunction()
 add_demonstration(demo ${laboratory} calibrate_bag generate_urdf session_recorder)
 add_demonstration(tracking_demo ${laboratory} orientation_controller)
 add_demonstration(motion_demo
-  ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder)
+  ${laboratory} calibrate_bag orientation_controller plan_motion publish_parameters session_recorder simulate_recording)
 if(LIVE_VIEW)
   add_dependencies(demo_programs visualization)
   add_dependencies(tracking_demo_programs visualization sac_rviz)
