@@ -23,9 +23,14 @@ from std_srvs.srv import SetBool, Trigger
 WATCHDOG_RATE = 20.0  # [Hz] of repeated commands
 RESPONSE_TIMEOUT = 10.0  # [s] of the joint sensor, on however busy a computer: the longest that there is
 AMPLIFIER_TIMEOUT = 1.0  # [s] the coil driver allows no more
-# [Hz] of the force/torque sensor and of the emulation, in a fixture: with noise to match it means as much as 1 kHz. Of both
-# drivers, whose noise is small beside that of what else is measured. All who listen take a third of the processor's time.
-FIXTURE_RATE = 400.0
+# [Hz] of the force/torque sensor, which is that of the emulation, and of the tracker, in a fixture: with less of this noise
+# they tell as much as at the rates of the shipped configuration.
+FIXTURE_RATES = {
+    "ft_sensor": (200.0, ("force_noise", "torque_noise")),
+    "tracker": (120.0, ("orientation_noise", "position_noise")),
+}
+# [Hz] of both drivers, whose noise is small beside that of what else is measured. All who listen take a third of the
+# processor's time.
 DRIVER_RATE = 100.0
 NEAR_BY_JOINTS, NEAR_BY_TRACKER = 1e-3, 2.5e-3  # [rad] beyond noise and quantisation of readings
 PATIENCE = 0.4  # [s] of the comparison of currents, the most that is allowed: threads of the emulator may have to wait
@@ -104,10 +109,13 @@ class EmulatedLab:
         path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), **sections}))
 
     def _slow_down(self):
-        sensor = yaml.safe_load((pathlib.Path(self.config) / "lab_emulator.yaml").read_text())["ft_sensor"]
-        share = (FIXTURE_RATE / sensor["rate"]) ** 0.5
-        noise = {key: share * sensor[key] for key in ("force_noise", "torque_noise")}
-        self.change_emulator(ft_sensor={**sensor, **noise, "rate": FIXTURE_RATE})
+        shipped = yaml.safe_load((pathlib.Path(self.config) / "lab_emulator.yaml").read_text())
+        slower = {}
+        for name, (rate, noises) in FIXTURE_RATES.items():
+            sensor = shipped[name]
+            share = (rate / sensor["rate"]) ** 0.5
+            slower[name] = {**sensor, **{key: share * sensor[key] for key in noises}, "rate": rate}
+        self.change_emulator(**slower)
 
     def use_coil_driver(self, name):
         """Another of the shipped configurations, before the start."""
