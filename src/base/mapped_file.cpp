@@ -23,8 +23,18 @@ int openNameless() {
   std::string path = wanted != nullptr && *wanted != '\0' ? wanted : "/var/tmp";
   path += "/sac_streams_XXXXXX";
   const int descriptor = ::mkostemp(path.data(), O_CLOEXEC);
-  if (descriptor >= 0) {
-    ::unlink(path.c_str());
+  if (descriptor < 0) {
+    return descriptor;
+  }
+  ::unlink(path.c_str());
+  // Others need descriptors, too: to read what is measured, and to save what is found.
+  constexpr rlim_t kShare = 4;
+  rlimit limit{};
+  const bool is_scarce = ::getrlimit(RLIMIT_NOFILE, &limit) == 0 &&
+                         static_cast<rlim_t>(descriptor) >= limit.rlim_cur / kShare;
+  if (is_scarce) {
+    ::close(descriptor);
+    return -1;
   }
   return descriptor;
 }
@@ -97,6 +107,7 @@ bool MappedFile::grow(std::size_t bytes) {
     return false;
   }
   const std::lock_guard<std::mutex> lock(ResidentPages::ofProcess().mutex());
+  auto touched = std::make_unique<std::atomic<bool>[]>(piecesOf(bytes));
   void* moved = data_ == nullptr
                     ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0)
                     : ::mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
@@ -105,7 +116,7 @@ bool MappedFile::grow(std::size_t bytes) {
   }
   data_ = static_cast<char*>(moved);
   bytes_ = bytes;
-  touched_ = std::make_unique<std::atomic<bool>[]>(pieces());
+  touched_ = std::move(touched);
   return true;
 }
 
@@ -120,7 +131,7 @@ void MappedFile::touch(std::size_t piece) {
 void MappedFile::rest() {
   if (data_ != nullptr) {
     ::madvise(data_, bytes_, MADV_DONTNEED);
-    std::fill_n(touched_.get(), pieces(), false);
+    std::fill_n(touched_.get(), piecesOf(bytes_), false);
   }
 }
 

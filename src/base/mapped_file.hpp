@@ -33,7 +33,7 @@ class MappedFile {
 
   explicit MappedFile(int descriptor);
 
-  std::size_t pieces() const { return (bytes_ + kPiece - 1) / kPiece; }
+  static std::size_t piecesOf(std::size_t bytes) { return (bytes + kPiece - 1) / kPiece; }
   void rest();
 
   int descriptor_;

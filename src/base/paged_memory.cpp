@@ -61,7 +61,9 @@ bool PagedMemory::reserveInFile(std::size_t bytes) {
     }
     PagedMemory moved;
     moved.file_ = std::move(file);
-    std::memcpy(moved.file_->data(), data_, capacity_);
+    if (capacity_ > 0) {
+      std::memcpy(moved.file_->data(), data_, capacity_);
+    }
     swap(moved);
   }
   data_ = file_->data();
