@@ -23,7 +23,8 @@ PagedMemory::PagedMemory(PagedMemory&& other) noexcept {
 }
 
 PagedMemory& PagedMemory::operator=(PagedMemory&& other) noexcept {
-  PagedMemory(std::move(other)).swap(*this);
+  PagedMemory moved(std::move(other));
+  swap(moved);
   return *this;
 }
 
