@@ -6,8 +6,8 @@
 
 namespace sac {
 
-/// A file without a name, in TMPDIR or else in /var/tmp, of which all is mapped. All such files of
-/// a process together keep 8 MiB and what was touched last in its memory.
+/// A file without a name, in TMPDIR, or in /var/tmp where that is not set, of which all is mapped.
+/// All such files of a process together keep 8 MiB and what was touched last in its memory.
 class MappedFile {
  public:
   /// Null: there can be none of that size.

@@ -51,6 +51,7 @@ void PagedMemory::reserve(std::size_t bytes) {
 }
 
 bool PagedMemory::reserveInFile(std::size_t bytes) {
+  static_assert(MappedFile::kPiece == std::size_t{1} << kPieceBits);
   if (file_ != nullptr) {
     if (!file_->grow(bytes)) {
       return false;

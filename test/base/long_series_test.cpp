@@ -67,6 +67,8 @@ TEST(LongSeries, OfManyValuesKeepsThemAllAndFewInMemory) {
   const std::size_t before = fileBytesInMemory();
   const LongSeries<double> series = counted(kMany);
   EXPECT_TRUE(isCounted(series));
+  const LongSeries<double> copy = series;
+  EXPECT_TRUE(isCounted(copy));
   EXPECT_LT(fileBytesInMemory(), before + 12'000'000);
 }
 

@@ -9,9 +9,9 @@ namespace sac {
 class MappedFile;
 
 /// Bytes in one piece, of which there may be many. Few of them lie in memory; more in a file
-/// without a name, in TMPDIR or else in /var/tmp. Of all such files of a process 8 MiB and what was
-/// used last are in its memory; the rest is in the page cache of the system, or on the disk. Where
-/// no such file can be had, as on a full disk, all bytes stay in memory.
+/// without a name, in TMPDIR, or in /var/tmp where that is not set. Of all such files of a process
+/// 8 MiB and what was used last are in its memory; the rest is in the page cache of the system, or
+/// on the disk. Where no such file can be had, as on a full disk, all bytes stay in memory.
 class PagedMemory {
  public:
   PagedMemory();
@@ -25,7 +25,6 @@ class PagedMemory {
   std::size_t capacity() const { return capacity_; }
   /// Aligned for any type; null: there is no room.
   char* data() const { return data_; }
-  bool isInFile() const { return file_ != nullptr; }
 
   /// Is to be told before a byte is used: the pages of one used without it stay in memory until
   /// enough others were used. From any thread.
