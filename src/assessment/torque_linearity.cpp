@@ -5,12 +5,13 @@
 
 #include "spherical_actuator_calibration/base/cholesky.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/base/pseudo_inverse.hpp"
 #include "spherical_actuator_calibration/base/text_format.hpp"
 #include "spherical_actuator_calibration/calibration/held_out_validation.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
+#include "spherical_actuator_calibration/estimation/damped_descent.hpp"
 #include "spherical_actuator_calibration/estimation/distributions.hpp"
 #include "spherical_actuator_calibration/estimation/same_dwell.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
@@ -84,9 +85,11 @@ std::vector<CoilAtRest> coilsAtRest(const std::vector<Sample>& rest, double thre
   return found;
 }
 
-/// Weighted fit of the law to the torques of one coil at one rest.
+/// χ² of the torques of one coil at one rest, and of what is known beforehand.
 class LinearityFit {
  public:
+  using Point = Unknowns;
+
   LinearityFit(const std::vector<Sample>& rest, const CoilAtRest& at, double default_torque_stddev)
       : coil_(at.coil), default_torque_stddev_(default_torque_stddev) {
     for (const std::size_t place : at.places) {
@@ -106,7 +109,7 @@ class LinearityFit {
   std::optional<TorqueLinearity> result() {
     const double proportional = minimise(Law::kProportional);
     const double bent = minimise(Law::kBent);
-    const Eigen::MatrixXd information = A_.transpose() * A_;
+    const Eigen::MatrixXd information = normalEquations(x_).information;
     const Unknowns stddevs = Cholesky(information).inverse().diagonal().cwiseSqrt();
     if (!(stddevs[kDeviation] <= kMostUncertain)) {
       return std::nullopt;
@@ -133,6 +136,42 @@ class LinearityFit {
     return found;
   }
 
+  double cost(const Unknowns& x) const { return normalEquations(x).cost; }
+
+  NormalEquations normalEquations(const Unknowns& x) const {
+    InformationSum sum(kUnknowns);
+    const Eigen::Vector3d g = x.head<3>();
+    for (const Sample* sample : samples_) {
+      const double share = currentOf(*sample, coil_) / full_;
+      const double bent = 1.0 + x[kDeviation] * std::abs(share) + x[kAsymmetry] * share;
+      Eigen::Matrix<double, 3, kUnknowns> J;
+      J.leftCols<3>() = share * bent * Eigen::Matrix3d::Identity();
+      J.col(kDeviation) = share * std::abs(share) * g;
+      J.col(kAsymmetry) = share * share * g;
+      if (law_ == Law::kProportional) {
+        J.middleCols<2>(kDeviation).setZero();
+      }
+      J.rightCols<3>().setIdentity();
+      const Cholesky3 noise(noiseOf(*sample));
+      const Eigen::Vector3d residual = share * bent * g + x.tail<3>() - sample->torque;
+      sum.addDense(noise.half(J).eval(), noise.half(residual).eval());
+    }
+    constexpr Eigen::Index kKnown = kUnknowns - kDeviation;
+    Eigen::Matrix<double, kKnown, 1> weight;
+    weight << 1.0 / kWidest, 1.0 / kWidest, Eigen::Vector3d::Constant(1.0 / stddev_at_zero_);
+    Eigen::Matrix<double, kKnown, kUnknowns> known;
+    known << Eigen::Matrix<double, kKnown, 3>::Zero(), Eigen::MatrixXd(weight.asDiagonal());
+    sum.addDense(known, weight.cwiseProduct(x.tail<kKnown>()).eval());
+    return {sum.squaredMisfit(), sum.gradient(), sum.information()};
+  }
+
+  static Unknowns moved(const Unknowns& x, const Eigen::VectorXd& step) { return x + step; }
+
+  static double nothing(const Unknowns& x) {
+    constexpr double kNothing = 1e-12;
+    return kNothing * (1.0 + x.norm());
+  }
+
  private:
   bool isZeroTakenOff() const { return shared_stddev_ > 0.0; }
 
@@ -142,56 +181,24 @@ class LinearityFit {
     return values - (isZeroTakenOff() ? 3 : 6);
   }
 
-  /// Gauss–Newton, from where the last fit ended. Returns the sum of squares.
+  /// From where the last fit ended. Returns χ².
   double minimise(Law law) {
-    constexpr int kMostSteps = 30;
-    constexpr double kEnough = 1e-12;
-    for (int n = 0; n < kMostSteps; ++n) {
-      linearise();
-      Eigen::MatrixXd A = A_;
-      if (law == Law::kProportional) {
-        A.topRows(rows()).middleCols<2>(kDeviation).setZero();
-      }
-      const Unknowns step = pseudoInverse(A) * b_;
-      x_ += step;
-      if (step.norm() <= kEnough * (1.0 + x_.norm())) {
-        break;
-      }
+    constexpr int kRounds = 4;  // of the noise, which hardly follows the fit
+    law_ = law;
+    DescentOptions options;
+    options.untried_length = 1e3;  // both laws are smooth
+    for (int round = 0; round < kRounds; ++round) {
+      torque_at_full_ = x_.head<3>();
+      std::vector<Unknowns> path{x_};
+      descend(*this, options, path);
+      x_ = path.back();
     }
-    linearise();
-    return b_.squaredNorm();
-  }
-
-  Eigen::Index rows() const { return 3 * static_cast<Eigen::Index>(samples_.size()); }
-
-  /// Whitened derivatives A and residuals b at x, with what is known beforehand as rows below.
-  void linearise() {
-    A_.setZero(rows() + kUnknowns - kDeviation, kUnknowns);
-    b_.setZero(A_.rows());
-    const Eigen::Vector3d g = x_.head<3>();
-    for (Eigen::Index n = 0; n < rows() / 3; ++n) {
-      const Sample& sample = *samples_[static_cast<std::size_t>(n)];
-      const double share = currentOf(sample, coil_) / full_;
-      const double bent = 1.0 + x_[kDeviation] * std::abs(share) + x_[kAsymmetry] * share;
-      Eigen::Matrix<double, 3, kUnknowns> J;
-      J.leftCols<3>() = share * bent * Eigen::Matrix3d::Identity();
-      J.col(kDeviation) = share * std::abs(share) * g;
-      J.col(kAsymmetry) = share * share * g;
-      J.rightCols<3>().setIdentity();
-      const Eigen::Vector3d residual = sample.torque - x_.tail<3>() - share * bent * g;
-      const Cholesky3 noise(noiseOf(sample, g));
-      A_.middleRows<3>(3 * n) = noise.half(J);
-      b_.segment<3>(3 * n) = noise.half(residual);
-    }
-    for (Eigen::Index p = kDeviation; p < kUnknowns; ++p) {
-      const double stddev = p < kTorqueAtZero ? kWidest : stddev_at_zero_;
-      A_(rows() + p - kDeviation, p) = 1.0 / stddev;
-      b_[rows() + p - kDeviation] = -x_[p] / stddev;
-    }
+    return cost(x_);
   }
 
   /// Of the torque itself, and of the current that goes with it.
-  Eigen::Matrix3d noiseOf(const Sample& sample, const Eigen::Vector3d& g) const {
+  Eigen::Matrix3d noiseOf(const Sample& sample) const {
+    const Eigen::Vector3d& g = torque_at_full_;
     const double stated =
         sample.torque_stddev > 0.0 ? sample.torque_stddev : default_torque_stddev_;
     const double shared = sample.torque_shared_stddev;
@@ -207,9 +214,9 @@ class LinearityFit {
   double full_ = 0.0;
   double shared_stddev_ = 0.0;
   double stddev_at_zero_ = 0.0;
+  Law law_ = Law::kProportional;
+  Eigen::Vector3d torque_at_full_ = Eigen::Vector3d::Zero();  ///< as noise sees it [N·m]
   Unknowns x_ = Unknowns::Zero();
-  Eigen::MatrixXd A_;
-  Eigen::VectorXd b_;
 };
 
 std::string percent(const UncertainValue& share) {

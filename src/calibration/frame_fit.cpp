@@ -12,6 +12,7 @@
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
+#include "spherical_actuator_calibration/estimation/damped_descent.hpp"
 
 namespace sac {
 namespace {
@@ -150,63 +151,58 @@ FrameFit::Row FrameFit::row(const ModelPoint& point,
   return row;
 }
 
-double FrameFit::cost(const Solution& at, const PoseSelection& used, double noise_scale) const {
-  const ModelPoint point = pointOf(at);
-  double sum = at.w.squaredNorm();
-  for (std::size_t n = 0; n < poses_.size(); ++n) {
-    if (used[n]) {
-      sum += row(point, at.frames, n, noise_scale, Linearized::kAtMeasurement)
-                 .whitened.residual.squaredNorm();
+/// χ² of the poses that take part, and of the machine.
+class FrameFit::Objective {
+ public:
+  using Point = Solution;
+
+  Objective(const FrameFit& fit, const PoseSelection& used, double noise_scale)
+      : fit_(fit), used_(used), noise_scale_(noise_scale) {}
+
+  double cost(const Solution& at) const { return normalEquations(at).cost; }
+
+  NormalEquations normalEquations(const Solution& at) const {
+    const ModelPoint point = fit_.pointOf(at);
+    InformationSum sum(fit_.unknowns());
+    for (std::size_t n = 0; n < used_.size(); ++n) {
+      if (used_[n]) {
+        sum.add(fit_.row(point, at.frames, n, noise_scale_, Linearized::kAtMeasurement).whitened);
+      }
     }
+    const Eigen::Index machine = at.w.size();
+    sum.addDense(Eigen::MatrixXd::Identity(fit_.unknowns(), fit_.unknowns()).bottomRows(machine),
+                 at.w);
+    return {sum.squaredMisfit(), sum.gradient(), sum.information()};
   }
-  return sum;
-}
+
+  Solution moved(Solution at, const Eigen::VectorXd& step) const {
+    at.frames.R_stator_tracker = rotationExp(step.head<3>()) * at.frames.R_stator_tracker;
+    at.frames.R_rotor_marker = rotationExp(step.segment<3>(3)) * at.frames.R_rotor_marker;
+    at.w += step.tail(at.w.size());
+    return at;
+  }
+
+  static double nothing(const Solution& /*at*/) {
+    return 1e-11;  // [rad], and standard deviations of the machine
+  }
+
+ private:
+  const FrameFit& fit_;
+  const PoseSelection& used_;
+  const double noise_scale_;
+};
 
 FrameFit::Solution FrameFit::solve(const Frames& start,
                                    const PoseSelection& used,
                                    double noise_scale) const {
-  constexpr double kConverged = 1e-11;  // of a step [rad], standard deviations
-  constexpr double kLargestDamping = 1e8;
-  constexpr double kFactor = 10.0;
-  Solution solution{start, Eigen::VectorXd::Zero(root_.cols()), 0.0};
-  solution.cost = cost(solution, used, noise_scale);
-  double damping = 1e-6;
-  for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-    const ModelPoint point = pointOf(solution);
-    InformationSum sum(unknowns());
-    for (std::size_t n = 0; n < poses_.size(); ++n) {
-      if (used[n]) {
-        sum.add(row(point, solution.frames, n, noise_scale, Linearized::kAtMeasurement).whitened);
-      }
-    }
-    Eigen::MatrixXd information = sum.information();
-    information.diagonal().tail(root_.cols()).array() += 1.0;
-    Eigen::VectorXd gradient = sum.gradient();
-    gradient.tail(root_.cols()) += solution.w;
-    bool has_improved = false;
-    double step_size = 0.0;
-    while (!has_improved && damping < kLargestDamping) {
-      Eigen::MatrixXd damped = information;
-      damped.diagonal() *= 1.0 + damping;
-      const Eigen::VectorXd step = -solveSemidefinite(damped, gradient);
-      step_size = step.norm();
-      Solution next = solution;
-      next.frames.R_stator_tracker = rotationExp(step.head<3>()) * next.frames.R_stator_tracker;
-      next.frames.R_rotor_marker = rotationExp(step.segment<3>(3)) * next.frames.R_rotor_marker;
-      next.w += step.tail(root_.cols());
-      next.cost = cost(next, used, noise_scale);
-      has_improved = next.cost < solution.cost;
-      damping = has_improved ? damping / kFactor : damping * kFactor;
-      if (has_improved) {
-        solution = std::move(next);
-      } else if (step_size < kConverged) {
-        return solution;
-      }
-    }
-    if (!has_improved || step_size < kConverged) {
-      break;
-    }
-  }
+  DescentOptions options;
+  options.max_iterations = options_.max_iterations;
+  options.first_damping = 1e-6;
+  std::vector<Solution> path{{start, Eigen::VectorXd::Zero(root_.cols()), 0.0}};
+  Objective objective(*this, used, noise_scale);
+  descend(objective, options, path);
+  Solution solution = path.back();
+  solution.cost = objective.cost(solution);
   return solution;
 }
 

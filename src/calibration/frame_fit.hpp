@@ -65,6 +65,7 @@ class FrameFit {
   const std::vector<Eigen::Matrix3d>& orientations() const { return R_stator_rotor_; }
 
  private:
+  class Objective;
   struct Row {
     Eigen::Vector3d residual;      ///< as measured [rad]
     WhitenedObservation whitened;  ///< in all unknowns (ξ, ζ, w)
@@ -79,7 +80,6 @@ class FrameFit {
           std::size_t pose,
           double noise_scale,
           Linearized at) const;
-  double cost(const Solution& at, const PoseSelection& used, double noise_scale) const;
   Eigen::Index unknowns() const { return 6 + root_.cols(); }
 
   const std::vector<TrackedPose>& poses_;

@@ -7,7 +7,7 @@
 #include "spherical_actuator_calibration/actuator/tabulated_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
-#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+#include "spherical_actuator_calibration/estimation/damped_descent.hpp"
 
 namespace sac {
 
@@ -60,14 +60,12 @@ class AxisScan {
   static double reach(double range);
 
  private:
-  struct Normal {
-    double misfit = 0.0;  ///< by the robust loss
-    InformationSum sum{2};
-  };
+  class Objective;
 
   double coarseMisfit(const Eigen::Vector2d& place) const;
-  Normal linearized(const Eigen::Vector2d& place) const;
-  Eigen::Vector2d descended(Eigen::Vector2d place, const Eigen::Matrix2d& allowed) const;
+  /// By the robust loss.
+  NormalEquations normalEquations(const Eigen::Vector2d& place) const;
+  Eigen::Vector2d descended(const Eigen::Vector2d& place, const Eigen::Matrix2Xd& directions) const;
   bool isWithin(const Eigen::Vector2d& place) const {
     return place.cwiseAbs().maxCoeff() <= range_ + step_;
   }

@@ -6,6 +6,9 @@
 
 #include <Eigen/LU>
 
+#include "spherical_actuator_calibration/estimation/damped_descent.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
+
 namespace sac {
 namespace {
 
@@ -37,8 +40,7 @@ void ResponseSearch::findSpread(const std::vector<Descent>& ends) {
   const Share share = shareOf(kQuick);
   const Share thorough = shareOf(kThorough);
   const Descent here = descend(best_.place, share, Moves::kBoth);
-  const double variance = here.square / static_cast<double>(here.left.size());
-  const double limit = here.square + 3.0 * variance * static_cast<double>(share.samples) /
+  const double limit = here.square + 3.0 * here.variance * static_cast<double>(share.samples) /
                                          static_cast<double>(thorough.samples);
   constexpr double kLeastStep = 1e-6;  // [s]
   constexpr double kMostStep = 1e-4;   // [s]
@@ -156,9 +158,13 @@ ResponseSearch::Place ResponseSearch::bestBeside(const Place& place,
   return best;
 }
 
+Eigen::Index ResponseSearch::changesIn(const Share& share) const {
+  return comparison_.coils() * static_cast<Eigen::Index>(share.stretches * (share.samples - 1));
+}
+
 Eigen::ArrayXd ResponseSearch::leftAt(const Place& place, const Share& share) const {
   const Eigen::Index coils = comparison_.coils();
-  Eigen::ArrayXd all(coils * static_cast<Eigen::Index>(share.stretches * (share.samples - 1)));
+  Eigen::ArrayXd all(changesIn(share));
   Eigen::Index next = 0;
   const SampleRange all_samples = comparison_.commanded();
   const std::size_t rest = all_samples.count() - share.samples;
@@ -176,63 +182,65 @@ Eigen::ArrayXd ResponseSearch::leftAt(const Place& place, const Share& share) co
   return all;
 }
 
-/// Levenberg–Marquardt.
+/// Squares of what is left of the changes, by delay and lag or by the lag alone.
+class ResponseSearch::Objective {
+ public:
+  using Point = Place;
+
+  Objective(const ResponseSearch& search, const Share& share, Moves moves)
+      : search_(search), share_(share), moves_(moves) {}
+
+  double cost(const Place& at) const { return search_.leftAt(at, share_).square().sum(); }
+
+  NormalEquations normalEquations(const Place& at) const {
+    constexpr double kDifference = 1e-6;  // [s]
+    const Eigen::VectorXd left = search_.leftAt(at, share_);
+    const auto by = [&](double delay, double lag) -> Eigen::VectorXd {
+      const Place aside{at.delay + delay, at.lag + lag};
+      return (search_.leftAt(aside, share_).matrix() - left) / kDifference;
+    };
+    Eigen::MatrixXd jacobian(left.size(), moves_ == Moves::kBoth ? 2 : 1);
+    jacobian.col(0) = by(0.0, kDifference);
+    if (moves_ == Moves::kBoth) {
+      jacobian.col(1) = by(kDifference, 0.0);
+    }
+    InformationSum sum(jacobian.cols());
+    sum.addDense(jacobian, left);
+    return {sum.squaredMisfit(), sum.gradient(), sum.information()};
+  }
+
+  Place moved(const Place& from, const Eigen::VectorXd& step) const {
+    return {from.delay + (moves_ == Moves::kBoth ? step[1] : 0.0),
+            std::max(kLeastLag, from.lag + step[0])};
+  }
+
+  static double nothing(const Place& /*at*/) {
+    return 1e-7;  // [s]
+  }
+
+ private:
+  const ResponseSearch& search_;
+  const Share share_;
+  const Moves moves_;
+};
+
 ResponseSearch::Descent ResponseSearch::descend(const Place& start,
                                                 const Share& share,
                                                 Moves moves) const {
-  constexpr int kMostSteps = 25;
-  Descent here;
-  here.place = start;
-  here.left = leftAt(start, share);
-  here.square = here.left.square().sum();
-  double damping = 1e-2;
-  for (int n = 0; n < kMostSteps && advance(share, moves, damping, here); ++n) {
-  }
-  return here;
-}
-
-/// One step; false where none leads on.
-bool ResponseSearch::advance(const Share& share,
-                             Moves moves,
-                             double& damping,
-                             Descent& here) const {
-  constexpr double kDifference = 1e-6;  // [s]
-  constexpr double kSmall = 1e-7;       // [s]
-  constexpr double kMostDamping = 1e6;
-  const auto by = [&](double delay, double lag) -> Eigen::ArrayXd {
-    const Place aside{here.place.delay + delay, here.place.lag + lag};
-    return (leftAt(aside, share) - here.left) / kDifference;
-  };
-  const bool moves_delay = moves == Moves::kBoth;
-  const Eigen::ArrayXd by_delay =
-      moves_delay ? by(kDifference, 0.0) : Eigen::ArrayXd::Zero(here.left.size());
-  const Eigen::ArrayXd by_lag = by(0.0, kDifference);
-  Eigen::Matrix2d information;
-  information << (moves_delay ? by_delay.square().sum() : 1.0), (by_delay * by_lag).sum(),  //
-      (by_delay * by_lag).sum(), by_lag.square().sum();
-  const Eigen::Vector2d gradient((by_delay * here.left).sum(), (by_lag * here.left).sum());
-  const double variance = here.square / static_cast<double>(here.left.size());
-  here.lateness_stddev = std::sqrt(variance * information.inverse().sum());
-  while (damping < kMostDamping) {
-    Eigen::Matrix2d damped = information;
-    damped.diagonal() *= 1.0 + damping;
-    const Eigen::Vector2d step = -damped.inverse() * gradient;
-    const Place next{here.place.delay + step[0], std::max(kLeastLag, here.place.lag + step[1])};
-    const Eigen::ArrayXd left = leftAt(next, share);
-    const double square = left.square().sum();
-    if (square < here.square) {
-      here.place = next;
-      here.left = left;
-      here.square = square;
-      damping *= 0.1;
-      return step.norm() >= kSmall;
-    }
-    damping *= 10.0;
-    if (!(step.norm() >= kSmall)) {
-      return false;
-    }
-  }
-  return false;
+  DescentOptions options;
+  options.max_iterations = 25;
+  options.first_damping = 1e-2;
+  options.untried_length = 0.0;
+  std::vector<Place> path{start};
+  Objective objective(*this, share, moves);
+  sac::descend(objective, options, path);
+  const NormalEquations end = objective.normalEquations(path.back());
+  Descent descent;
+  descent.place = path.back();
+  descent.square = end.cost;
+  descent.variance = end.cost / static_cast<double>(changesIn(share));
+  descent.lateness_stddev = std::sqrt(descent.variance * end.information.inverse().sum());
+  return descent;
 }
 
 }  // namespace sac

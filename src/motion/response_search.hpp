@@ -25,6 +25,7 @@ class ResponseSearch {
   double latenessStddev() const { return lateness_stddev_; }
 
  private:
+  class Objective;
   struct Place {
     double delay = 0.0;
     double lag = 0.0;
@@ -35,8 +36,8 @@ class ResponseSearch {
   struct Descent {
     Place place;
     double square = std::numeric_limits<double>::infinity();
+    double variance = 0.0;  ///< of a change
     double lateness_stddev = std::numeric_limits<double>::infinity();
-    Eigen::ArrayXd left;  ///< of the changes
   };
   /// Samples that count: so many in each of some stretches.
   struct Share {
@@ -47,9 +48,9 @@ class ResponseSearch {
   Share shareOf(std::size_t samples) const;
   std::vector<Place> starts() const;
   Place bestBeside(const Place& place, double reach, const Share& share) const;
+  Eigen::Index changesIn(const Share& share) const;
   Eigen::ArrayXd leftAt(const Place& place, const Share& share) const;
   Descent descend(const Place& start, const Share& share, Moves moves) const;
-  bool advance(const Share& share, Moves moves, double& damping, Descent& here) const;
   void findSpread(const std::vector<Descent>& ends);
   Place farthest(const Descent& from, double limit, double step) const;
 

@@ -7,18 +7,10 @@
 
 #include "spherical_actuator_calibration/estimation/linearization.hpp"
 #include "spherical_actuator_calibration/estimation/shared_errors.hpp"
+#include "spherical_actuator_calibration/estimation/termination.hpp"
 #include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
-
-/// How a solution ended.
-enum class Termination {
-  kConverged,
-  kIterationLimit,    ///< max_iterations reached before convergence
-  kNumericalFailure,  ///< the solver could not evaluate or factorise
-  kTooFewObservations,
-  kNothingObservable,
-};
 
 /// How much a misfit counts.
 enum class Loss {
