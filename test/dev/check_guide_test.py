@@ -127,6 +127,11 @@ class CheckGuide(unittest.TestCase):
             ['doc/architecture.md: "Add a stream" does not name config/recorded.yaml, which names its sample.'],
         )
 
+    def test_names_a_forgotten_place_that_does_not_name_the_sample(self):
+        self.replace("doc/architecture.md", "### Add a coil", "### Add a stream\n\n- `src/base/`\n\n### Add a coil")
+        self.write("msg/CalibrationSample.msg", "float64 torque\n")
+        self.assertEqual(self.complaints(), ['doc/architecture.md: "Add a stream" does not name msg/CalibrationSample.msg.'])
+
     def test_names_a_cycle_in_quotes_that_a_recipe_has_forgotten(self):
         self.replace("doc/architecture.md", "### Add a coil", "### Add a cycle\n\n- `src/base/`\n\n### Add a coil")
         self.write("src/actuator/coil.cpp", 'const char* kColumns[] = {"cycle", "coil"};\n')
