@@ -92,7 +92,7 @@ class CheckRooms(unittest.TestCase):
 
     def test_names_a_type_of_a_later_room_that_is_declared(self):
         self.write(f"{INCLUDE}/planning/plan.hpp", "struct Plan {\n  int poses;\n};\nenum class Kind : int { kOne };\n")
-        for declaration, name in (("struct Plan;\n", "Plan"), ("enum class Kind : int;\n", "Kind")):
+        for declaration, name in (("struct Plan;\n", "Plan"), ("enum class Kind : int;\n", "Kind"), ("namespace sac { struct Plan; }\n", "Plan")):
             with self.subTest(name):
                 self.write("src/streams/rest.cpp", 10 * "int a();\n" + declaration)
                 self.expect_one(f"src/streams/rest.cpp: streams must not know {name}: planning comes after it")
@@ -127,6 +127,31 @@ class CheckRooms(unittest.TestCase):
             with self.subTest(line):
                 self.write("src/base/angle.cpp", f"#define HEADER <ros/ros.h>\n{line}\n")
                 self.expect_one(f"src/base/angle.cpp: {line}: an include stands in a line of its own")
+
+    def test_names_an_include_that_goes_over_two_lines(self):
+        for line in ("#\\\ninclude <ros/ros.h>", "#include \\\n<ros/ros.h>"):
+            with self.subTest(line):
+                self.write("src/base/angle.cpp", f"{line}\n")
+                self.assertIn("an include stands in a line of its own", "\n".join(self.complaints()))
+
+    def test_names_a_library_in_a_room_that_must_not_know_it(self):
+        for header, room in (("SQLiteCpp/Database.h", "storage"), ("sqlite3.h", "storage"), ("modbus/modbus.h", "drivers")):
+            with self.subTest(header):
+                for place in ("src/rviz/list.cpp", "src/streams/list.cpp"):
+                    self.write(place, f"#include <{header}>\n")
+                    self.expect_one(f"{place}: includes {header}, which is for {room}")
+                    (self.root / place).unlink()
+                self.write(f"src/{room}/rest.cpp", 10 * "int a();\n" + f"#include <{header}>\n")
+                self.assertEqual(self.complaints(), [])
+
+    def test_names_a_library_that_may_leave_symbols_open(self):
+        option = "  target_link_options(${name} PRIVATE -Wl,--no-undefined)\n"
+        function = "function(make name)\n  add_library(${name} SHARED a.cpp)\n%sendfunction()\n"
+        alias = "function(name name)\n  add_library(sac::a ALIAS ${name})\nendfunction()\n"
+        self.write("cmake/rooms.cmake", function % option + alias)
+        self.assertEqual(self.complaints(), [])
+        self.write("cmake/rooms.cmake", function % f"  #{option}" + alias + option)
+        self.expect_one("cmake/rooms.cmake: make() links a library without -Wl,--no-undefined")
 
     def test_names_an_internal_header_of_a_later_room(self):
         self.write("src/actuator/winding.hpp", "")
