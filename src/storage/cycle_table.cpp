@@ -166,8 +166,8 @@ std::int64_t insert(const SQLite::Database& database,
                 "INSERT INTO cycles (date, software, cycle, coil, success, message, samples_used, "
                 "samples_rejected, iterations, error_measure, reduced_chi_square, "
                 "condition_number, solve_time, orientation_uncertainty, torque_uncertainty, "
-                "contradicted, degrees_of_freedom, in_force, registration) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                "contradicted, degrees_of_freedom, in_force, registration, error_unit) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.put(date)
       .put(software)
       .put(cycleName(report.cycle))
@@ -178,7 +178,7 @@ std::int64_t insert(const SQLite::Database& database,
   row.put(report.reduced_chi_square).put(report.condition_number).put(report.solve_time);
   row.put(report.orientation_uncertainty).put(report.torque_uncertainty);
   row.put(report.contradicted).put(std::int64_t{report.degrees_of_freedom}).put(in_force);
-  row.put(report.registration).write();
+  row.put(report.registration).put(unitOf(report.error_measure)).write();
   const std::int64_t id = database.getLastInsertRowid();
   insertErrors(database, id, report);
   insertEstimates(database, id, report);
@@ -188,6 +188,13 @@ std::int64_t insert(const SQLite::Database& database,
     motion_summary_table::insert(database, id, *report.motion);
   }
   return id;
+}
+
+void addErrorUnits(const SQLite::Database& database) {
+  for (const auto& [measure, word] : kErrorMeasures) {
+    RowWriter row(database, "UPDATE cycles SET error_unit = ? WHERE error_measure = ?");
+    row.put(unitOf(measure)).put(word).write();
+  }
 }
 
 std::optional<CycleReport> last(const SQLite::Database& database) {

@@ -19,6 +19,8 @@ std::int64_t insert(const SQLite::Database& database,
                     std::uint32_t in_force,
                     const std::string& software,
                     const std::string& date);
+/// To rows of formats before 10, which had none.
+void addErrorUnits(const SQLite::Database& database);
 std::optional<CycleReport> last(const SQLite::Database& database);
 /// Precondition: there is a row with this id.
 CycleReport find(const SQLite::Database& database, std::int64_t id);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "cycle_table.hpp"
 #include "row_access.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "storage_error.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 /// "SACS" in ASCII: marks the file as ours.
 constexpr std::int64_t kApplicationId = 0x53414353;
-constexpr std::int64_t kSchemaVersion = 9;
+constexpr std::int64_t kSchemaVersion = 10;
 
 // Numbers are in columns of type ANY: one of type REAL would turn −0 into 0.
 // Which cycles there are is said by cycleName() alone.
@@ -37,7 +38,8 @@ CREATE TABLE cycles (
   contradicted INTEGER NOT NULL DEFAULT 0,
   degrees_of_freedom INTEGER NOT NULL DEFAULT 0,
   in_force INTEGER,
-  registration TEXT NOT NULL DEFAULT ''
+  registration TEXT NOT NULL DEFAULT '',
+  error_unit TEXT NOT NULL DEFAULT ''
 ) STRICT;
 )sql";
 
@@ -293,7 +295,7 @@ void upgradeSessionSchema(SQLite::Database& database) {
     database.exec("CREATE TABLE earlier_cycles AS SELECT * FROM cycles; DROP TABLE cycles");
     database.exec(kCycles);
     database.exec(
-        "INSERT INTO cycles SELECT *, 0, 0, NULL, '' FROM earlier_cycles; DROP TABLE "
+        "INSERT INTO cycles SELECT *, 0, 0, NULL, '', '' FROM earlier_cycles; DROP TABLE "
         "earlier_cycles;"
         "ALTER TABLE cycle_estimates ADD COLUMN unit TEXT NOT NULL DEFAULT ''");
   } else if (version < 6) {
@@ -304,6 +306,12 @@ void upgradeSessionSchema(SQLite::Database& database) {
   }
   if (version >= 4 && version < 9) {
     database.exec("ALTER TABLE cycles ADD COLUMN registration TEXT NOT NULL DEFAULT ''");
+  }
+  if (version >= 4 && version < 10) {
+    database.exec("ALTER TABLE cycles ADD COLUMN error_unit TEXT NOT NULL DEFAULT ''");
+  }
+  if (version < 10) {
+    cycle_table::addErrorUnits(database);
   }
   if (version < 5) {
     database.exec(kMotionWindows);

@@ -107,6 +107,7 @@ TEST_F(EarlierSessionTest, OfAnEarlierFormat) {
   measure(here, {{0, 2.0}});
   database_examples::change(path(),
                             "ALTER TABLE planned_poses DROP COLUMN validation;"
+                            "ALTER TABLE cycles DROP COLUMN error_unit;"
                             "ALTER TABLE cycles DROP COLUMN registration; PRAGMA user_version = 7");
   EXPECT_EQ(load().poses.size(), 1U);
   EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "7");

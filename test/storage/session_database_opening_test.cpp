@@ -110,7 +110,7 @@ TEST_F(OpeningTest, AnotherWorkspaceIsTheSameUnit) {
 
 TEST_F(OpeningTest, ANewerFormatIsRefused) {
   make();
-  database_examples::change(path(), "PRAGMA user_version = 10");
+  database_examples::change(path(), "PRAGMA user_version = 11");
   expectRefusal("a newer version of this package made this session database");
 }
 

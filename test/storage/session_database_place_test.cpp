@@ -194,6 +194,7 @@ TEST_F(PlaceTest, RevisionsOfKnownParametersTakeLittle) {
 
 /// Cycles as formats before 6 had them.
 constexpr char kWithoutDoubts[] =
+    "ALTER TABLE cycles DROP COLUMN error_unit;"
     "ALTER TABLE cycles DROP COLUMN registration;"
     "DROP TABLE cycle_motions;"
     "DROP TABLE cycle_windows_left_out;"
@@ -248,7 +249,7 @@ TEST_F(PlaceTest, ADatabaseOfTheFirstFormatIsTakenOver) {
   }
   EXPECT_TRUE(
       database_examples::isSame(SessionDatabase(path(), identity()).current().state, state));
-  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "9");
+  EXPECT_EQ(database_examples::query(path(), "PRAGMA user_version"), "10");
 }
 
 TEST_F(PlaceTest, SamplesOfTheSecondFormatShareNothing) {
@@ -331,6 +332,7 @@ TEST_F(PlaceTest, ADatabaseOfTheSixthFormatTakesWhatMotionsTold) {
                             "DROP TABLE cycle_windows_held_out; DROP TABLE cycle_window_residuals; "
                             "DROP TABLE planned_patterns; DROP TABLE planned_poses;"
                             "ALTER TABLE cycles DROP COLUMN registration;"
+                            "ALTER TABLE cycles DROP COLUMN error_unit;"
                             "PRAGMA user_version = 6");
   SessionDatabase database(path(), identity());
   EXPECT_TRUE(database_examples::isSame(*database.lastCycle(), report));
@@ -346,6 +348,7 @@ TEST_F(PlaceTest, APlanOfTheSeventhFormatIsToCalibrateBy) {
   SessionDatabase(path(), identity()).setPlan(plan);
   database_examples::change(path(),
                             "ALTER TABLE planned_poses DROP COLUMN validation;"
+                            "ALTER TABLE cycles DROP COLUMN error_unit;"
                             "ALTER TABLE cycles DROP COLUMN registration; PRAGMA user_version = 7");
   SessionDatabase database(path(), identity());
   plan[0].validation = false;
@@ -353,6 +356,23 @@ TEST_F(PlaceTest, APlanOfTheSeventhFormatIsToCalibrateBy) {
   plan[0].validation = true;
   database.setPlan(plan);
   EXPECT_EQ(database.plan(), plan);
+}
+
+TEST_F(PlaceTest, ADatabaseOfTheNinthFormatIsToldTheUnitsOfItsErrors) {
+  CycleReport report = database_examples::report(1, 0, 73);
+  const auto units = [&] {
+    return database_examples::query(path(), "SELECT group_concat(error_unit, ' ') FROM cycles");
+  };
+  for (const ErrorMeasure measure :
+       {ErrorMeasure::kOrientation, ErrorMeasure::kTorque, ErrorMeasure::kStandardized}) {
+    report.error_measure = measure;
+    SessionDatabase(path(), identity()).addCycle(report, kDate);
+  }
+  EXPECT_EQ(units(), "rad N·m 1");
+  database_examples::change(path(),
+                            "ALTER TABLE cycles DROP COLUMN error_unit; PRAGMA user_version = 9");
+  EXPECT_TRUE(database_examples::isSame(*SessionDatabase(path(), identity()).lastCycle(), report));
+  EXPECT_EQ(units(), "rad N·m 1");
 }
 
 }  // namespace

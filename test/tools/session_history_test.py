@@ -18,7 +18,7 @@ from spherical_actuator_calibration.session_tables.history import histories_of, 
 TABLES = """
 CREATE TABLE unit (name, serial, description, effects);
 CREATE TABLE revisions (number, date, software, source, origin, predecessor, refined, cycle);
-CREATE TABLE cycles (id, date, cycle, coil, error_measure, samples_used);
+CREATE TABLE cycles (id, date, cycle, coil, error_unit, samples_used);
 CREATE TABLE cycle_errors (cycle, iteration, error);
 CREATE TABLE cycle_estimates (cycle, position, name, unit, nominal, initial, value, stddev, observable);
 """
@@ -36,9 +36,9 @@ class History(unittest.TestCase):
         with contextlib.closing(sqlite3.connect(path)) as database:
             database.executescript(TABLES)
             database.execute(f"PRAGMA application_id = {APPLICATION}")
-            database.execute("PRAGMA user_version = 4")
+            database.execute("PRAGMA user_version = 10")
             database.execute("INSERT INTO unit VALUES ('a', ?, '', '')", [serial])
-            database.execute("INSERT INTO cycles VALUES (1, ?, 'joint', 0, 'orientation', 40)", [date])
+            database.execute("INSERT INTO cycles VALUES (1, ?, 'joint', 0, 'rad', 40)", [date])
             for iteration, error in enumerate((0.05, 0.01, 0.002)):
                 database.execute("INSERT INTO cycle_errors VALUES (1, ?, ?)", [iteration, error])
             estimates = (("joint_1/offset", offset, 1e-3, 1), ("joint_2/offset", 0.3, float("inf"), 0))
@@ -72,6 +72,12 @@ class History(unittest.TestCase):
         self.assertEqual(lines[1].split(), ["0", "2026-01-02T03:04:05Z", "start"])
         self.assertIn("joint", lines[2])
         self.assertIn("50 \u2192 2 mrad, 40 samples", lines[2])
+
+    def test_lists_errors_of_an_earlier_format_in_si_units(self):
+        path = self.damaged("a.db", "ALTER TABLE cycles DROP COLUMN error_unit")
+        with contextlib.closing(sqlite3.connect(path)) as database:
+            database.execute("PRAGMA user_version = 9")
+        self.assertIn("0.05 \u2192 0.002, 40 samples", self.lines([path])[2])
 
     def test_counts_windows_of_a_motion(self):
         lines = self.lines([self.session("a.db", "2026-01-02T03:04:05Z", 0.1, origin="motion")])

@@ -21,7 +21,6 @@
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
-#include "spherical_actuator_calibration/calibration/calibration_report.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -178,9 +177,6 @@ void tellNames() {
   for (const JointAxis& joint : freeRotorJoints()) {
     tell("turn_name", joint.name);
   }
-  tell("error_unit", unitOf(ErrorMeasure::kOrientation), std::string("orientation"));
-  tell("error_unit", unitOf(ErrorMeasure::kTorque), std::string("torque"));
-  tell("error_unit", unitOf(ErrorMeasure::kStandardized), std::string("standardized"));
 }
 
 /// Whether a motion is planned as for a drawing: one axis that nobody knows is enough.

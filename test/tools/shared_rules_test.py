@@ -17,7 +17,6 @@ from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
 from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
 from spherical_actuator_calibration.session_guide.progress import Pose, are_carried, excited_coils
 from spherical_actuator_calibration.session_tables import export
-from spherical_actuator_calibration.session_tables.history import ERROR_UNITS
 from spherical_actuator_calibration.unit_quaternion import normalised
 
 EXACT = 1e-12
@@ -73,9 +72,6 @@ class SharedRules(unittest.TestCase):
 
     def test_what_is_a_unit_quaternion(self):
         self.hold("is_unit", lambda xyzw: normalised(xyzw)[0] is not None)
-
-    def test_units_of_errors(self):
-        self.hold("error_unit", ERROR_UNITS.get)
 
     def test_what_is_a_drawing(self):
         is_as_drawn = loaded("calibrate_by_motion").is_as_drawn

@@ -11,7 +11,7 @@ from spherical_actuator_calibration.srv import ListRevisions, ListRevisionsRespo
 from spherical_actuator_calibration.text_files import printable
 
 from ..session_tables.export import ExportError, Session
-from ..session_tables.history import ERROR_UNITS, UNREADABLE, histories_of, sentence_of, unit_of, why_unread
+from ..session_tables.history import UNREADABLE, histories_of, sentence_of, unit_of, why_unread
 
 DATABASE = "session.db"
 DIRECTORY = "directory"  # key of the diagnostics that tell the calibration directory
@@ -103,6 +103,6 @@ def _revision(row, path, is_present):
         origin=row["origin"],
         error_before=row["before"] if is_told else math.nan,
         error_after=row["after"] if is_told else math.nan,
-        error_unit=ERROR_UNITS.get(row["error_measure"], "") if is_told else "",
+        error_unit=row["error_unit"] if is_told else "",
         samples_used=row["samples_used"] or 0,
     )

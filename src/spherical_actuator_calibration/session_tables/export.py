@@ -13,7 +13,7 @@ from .columns import JOINTS, QUATERNION, SAMPLE_COLUMNS, TORQUE, heading
 
 APPLICATION = 0x53414353
 MAGIC = b"SQLite format 3\0"
-FORMATS = range(1, 10)
+FORMATS = range(1, 11)
 FILES = ("samples.csv", "parameters.csv", "revisions.csv", "actuator.yaml")
 PARAMETER_HEADINGS = (
     "revision", "date", "cycle", "coil", "name", "unit", "nominal", "initial", "value", "stddev", "observable"
@@ -121,6 +121,10 @@ class Session:
                 "nobody has changed."
             )
 
+    def has_format(self, number):
+        """Whether the session is of this format or a later one."""
+        return self._pragma("user_version") >= number
+
     def _pragma(self, name):
         return self._database.execute(f"PRAGMA {name}").fetchone()[0]
 
@@ -164,7 +168,7 @@ class Session:
 
     def parameters(self):
         """What each successful cycle identified, with the revision that it made."""
-        unit = "unit" if self._pragma("user_version") >= 4 else "'' AS unit"
+        unit = "unit" if self.has_format(4) else "'' AS unit"
         lines = self.rows(
             f"SELECT number, revisions.date, cycles.cycle, coil, name, {unit}, nominal, initial, value, stddev, observable "
             "FROM revisions JOIN cycles ON revisions.cycle = cycles.id "

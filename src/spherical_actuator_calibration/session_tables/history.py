@@ -9,12 +9,11 @@ from ..shown_numbers import change_of
 from .export import ExportError, Session
 
 ERRORS = """
-SELECT revisions.number, revisions.date, revisions.origin, cycles.error_measure, cycles.samples_used,
+SELECT revisions.number, revisions.date, revisions.origin, {error_unit}, cycles.samples_used,
   (SELECT error FROM cycle_errors WHERE cycle_errors.cycle = cycles.id ORDER BY iteration LIMIT 1) AS before,
   (SELECT error FROM cycle_errors WHERE cycle_errors.cycle = cycles.id ORDER BY iteration DESC LIMIT 1) AS after
 FROM revisions LEFT JOIN cycles ON revisions.cycle = cycles.id ORDER BY revisions.number
 """
-ERROR_UNITS = {"orientation": "rad", "torque": "N·m", "standardized": "1"}  # of each measure of errors
 # What a damaged session gives instead of its rows.
 UNREADABLE = (ExportError, OSError, sqlite3.Error, LookupError, TypeError, ValueError, OverflowError)
 NUMBER = (int, float, type(None))
@@ -22,7 +21,7 @@ KINDS = {  # of what a revision holds
     "number": int,
     "date": str,
     "origin": str,
-    "error_measure": (str, type(None)),
+    "error_unit": (str, type(None)),
     "samples_used": (int, type(None)),
     "before": NUMBER,
     "after": NUMBER,
@@ -30,8 +29,10 @@ KINDS = {  # of what a revision holds
 
 
 def revisions_of(session):
-    """Rows of a Session by their number: number, date, origin, error_measure, samples_used, before, after."""
-    return session.rows(ERRORS)
+    """Rows of a Session by their number: number, date, origin, error_unit, samples_used, before, after. The unit of
+    errors is empty where a session of a format before 10 was not opened since."""
+    error_unit = "cycles.error_unit" if session.has_format(10) else "'' AS error_unit"
+    return session.rows(ERRORS.format(error_unit=error_unit))
 
 
 def identified(session):
@@ -46,9 +47,8 @@ def line_of(row):
     text = f"{row['number']:4d}  {row['date']}  {row['origin']:<12}"
     if row["before"] is None or row["after"] is None:
         return text.rstrip()
-    unit = ERROR_UNITS.get(row["error_measure"], row["error_measure"] or "")
     used = "windows" if row["origin"] == "motion" else "samples"  # a motion is estimated from windows
-    return f"{text}  {change_of(row['before'], row['after'], unit)}, {row['samples_used']} {used}"
+    return f"{text}  {change_of(row['before'], row['after'], row['error_unit'])}, {row['samples_used']} {used}"
 
 
 @dataclasses.dataclass(frozen=True)
