@@ -79,7 +79,8 @@ class DampedSteps {
 /// - `cost(point)`, the same cost; the normal equations there are asked for if the step is taken,
 /// - `moved(point, step)`, where the step leads,
 /// - `nothing(point)`, the length of a step that counts as nothing there.
-/// Ends by kNumericalFailure where no step leads on: the last point is the best one then, too.
+/// Ends by kNumericalFailure where costs are not finite or no damping gives a step: the last point
+/// is the best one then, too.
 template <typename Problem>
 Termination descend(Problem& problem,
                     const DescentOptions& options,
