@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <system_error>
 
 #include <sys/stat.h>
@@ -49,6 +50,12 @@ int runTool(const char* name, const std::function<int()>& body) {
       return kToolUnusable;
     }
     return status;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr,
+                 "%s: there is not enough memory left; close other programs, or raise the limit of "
+                 "`ulimit -v`.\n",
+                 name);
+    return kToolUnusable;
   } catch (const std::exception& error) {
     std::cout.flush();
     std::fflush(stdout);

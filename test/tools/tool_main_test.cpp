@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -39,6 +40,13 @@ TEST_F(ToolMain, WhatCannotBePrintedIsAnError) {
   EXPECT_EQ(run("", "--help >/dev/null"), kToolSuccess);
   EXPECT_EQ(run("", "--help >/dev/full"), kToolUnusable);
   EXPECT_EQ(errors_, "simulate_recording: the standard output cannot be written.\n");
+}
+
+TEST_F(ToolMain, ALackOfMemoryIsTold) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(runTool("tool", []() -> int { throw std::bad_alloc(); }), kToolUnusable);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("tool: there is not enough memory left"),
+            std::string::npos);
 }
 
 TEST_F(ToolMain, NamesThatAreTooLongAreToldFirst) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -67,6 +68,8 @@ std::unique_ptr<BagFile> openBag(const std::string& path) {
   try {
     file = std::make_unique<BagFile>(path);
     file->index = readBagIndex(file->bytes);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw unreadableBag(path, error);
   }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <new>
 #include <tuple>
 #include <utility>
 
@@ -186,6 +187,8 @@ bool BagReader::next(BagMessage& message) {
     message.connection = stream.connection;
     message.time = entry.time;
     message.data = stream.records.messageAt(part.chunk->records, entry.offset);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw unreadableBag(part.chunk->file->path, error);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <new>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include "damaged_recording.hpp"
 #include "support/error_message.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -229,6 +231,13 @@ TEST_F(BagReaderTest, AnIndexThatPointsElsewhereIsTold) {
   const std::string damaged = folder_.write("damaged.bag", bytes);
   const std::string message = errorMessage<DataError>([&] { byReader({damaged}); });
   EXPECT_NE(message.find(damaged + ": cannot be read as a bag"), std::string::npos) << message;
+}
+
+TEST(DamagedRecording, ALackOfMemoryIsNoDamage) {
+  const auto reading = [](const auto& error) { readUndamaged("a.bag", [&] { throw error; }); };
+  EXPECT_THROW(reading(std::bad_alloc()), std::bad_alloc);
+  EXPECT_NE(errorMessage<DataError>([&] { reading(std::length_error("long")); }).find("is damaged"),
+            std::string::npos);
 }
 
 }  // namespace
