@@ -186,7 +186,7 @@ class LinearityFit {
     constexpr int kRounds = 4;  // of the noise, which hardly follows the fit
     law_ = law;
     DescentOptions options;
-    options.untried_length = 1e3;  // both laws are smooth
+    options.is_smooth = true;
     for (int round = 0; round < kRounds; ++round) {
       torque_at_full_ = x_.head<3>();
       std::vector<Unknowns> path{x_};

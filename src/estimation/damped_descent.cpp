@@ -17,6 +17,9 @@ constexpr double kLeastDiagonal = 1e-6;
 constexpr double kLeastGain = 1e-3;
 /// A smaller relative decrease of the cost cannot be told from its rounding.
 constexpr double kCostRounding = 1e-13;
+/// Of a smooth cost, steps of less than so many times nothing are made of rounding once they no
+/// longer shrink.
+constexpr double kFineStep = 1e3;
 
 }  // namespace
 
@@ -40,13 +43,19 @@ DampedSteps::DampedSteps(const DescentOptions& options)
 void DampedSteps::startAt(NormalEquations here, double nothing) {
   here_ = std::move(here);
   nothing_ = nothing;
-  is_refused_ = false;
+  trials_ = 0;
+  is_last_ = false;
 }
 
 std::optional<Eigen::VectorXd> DampedSteps::next() {
-  if (is_refused_) {
+  if (trials_ > 0) {
+    if (step_.norm() <= nothing_) {
+      is_last_ = true;
+      return std::nullopt;
+    }
     raiseDamping();
   }
+  is_last_ = false;
   for (; damping_ <= kLargestDamping; raiseDamping()) {
     std::optional<Eigen::VectorXd> step = dampedStep(here_, damping_);
     if (!step) {
@@ -59,14 +68,22 @@ std::optional<Eigen::VectorXd> DampedSteps::next() {
     step_ = *step;
     is_fine_ = isFine();
     is_last_ = endsHere();
-    is_refused_ = true;
+    ++trials_;
     return step;
   }
   return std::nullopt;
 }
 
-/// By the decrease of the cost over the one that the linear model promises.
+/// By the decrease of the cost over the one that the linear model promises; of a step so short that
+/// rounding would judge, none is asked.
 bool DampedSteps::takes(double cost) {
+  if (isShort()) {
+    const bool rises = !(cost <= (1.0 + kCostRounding) * here_.cost);
+    if (!rises) {
+      take(1.0);
+    }
+    return !rises;
+  }
   const double promised = -step_.dot(2.0 * here_.gradient + here_.information * step_);
   const double gain = promised > 0.0 ? (here_.cost - cost) / promised : 0.0;
   if (!(gain > kLeastGain)) {
@@ -93,15 +110,15 @@ void DampedSteps::raiseDamping() {
 /// Whether the step is too small for the cost to judge it: rounding would.
 bool DampedSteps::isFine() const {
   return -step_.dot(here_.gradient) <= kCostRounding * here_.cost ||
-         step_.norm() <= options_.untried_length * nothing_;
+         step_.norm() <= (options_.is_smooth ? kFineStep : 1.0) * nothing_;
 }
 
-/// The next steps will shrink at least as this one did against the one before; where they no longer
-/// shrink, they are rounding.
+/// The next steps will shrink at least as this one did against the one before, if it is not damping
+/// that made it short; where they no longer shrink, they are rounding.
 bool DampedSteps::endsHere() const {
   const double length = step_.norm();
-  if (length <= nothing_) {
-    return true;
+  if (length <= nothing_ || trials_ > 0) {
+    return length <= nothing_;
   }
   const bool is_first = previous_length_ == 0.0;
   const double shrinkage = is_first ? 1.0 : length / previous_length_;

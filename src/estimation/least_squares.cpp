@@ -16,8 +16,6 @@ namespace {
 /// Size of coordinates for which the relative tolerance is meant at least: a tolerance of
 /// manufacture [rad].
 constexpr double kUsualSize = 0.03;
-/// Steps of less than so many tolerances are made of rounding once they no longer shrink.
-constexpr double kFineStep = 1e3;
 /// Nearly none.
 constexpr double kLeastDamping = 1e-16;
 
@@ -206,7 +204,7 @@ LeastSquaresResult solveLeastSquares(const LeastSquaresInput& input) {
   options.max_iterations = input.max_iterations;
   // Close to Gauss–Newton: the prior lies within the basin as a rule.
   options.first_damping = 1e-8;
-  options.untried_length = kFineStep;
+  options.is_smooth = true;
   Objective objective(input);
   result.termination = descend(objective, options, result.path);
   result.solve_time =

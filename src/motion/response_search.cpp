@@ -230,7 +230,6 @@ ResponseSearch::Descent ResponseSearch::descend(const Place& start,
   DescentOptions options;
   options.max_iterations = 25;
   options.first_damping = 1e-2;
-  options.untried_length = 0.0;
   std::vector<Place> path{start};
   Objective objective(*this, share, moves);
   sac::descend(objective, options, path);

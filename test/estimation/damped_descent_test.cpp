@@ -72,26 +72,61 @@ struct Fenced : Valley {
   }
 };
 
-TEST(DampedDescent, EndsAtWhatHasNoCost) {
+TEST(DampedDescent, EndsBeforeWhatHasNoCost) {
   Fenced fenced;
   DescentOptions options;
   options.max_iterations = 1000;
   std::vector<Eigen::Vector2d> path{kStart};
   descend(fenced, options, path);
-  EXPECT_LE(path.back()[0], 0.5 + 1e-12);
+  EXPECT_TRUE(std::isfinite(Fenced::cost(path.back())));
   EXPECT_GT(path.back()[0], 0.49);
+}
+
+/// One coordinate, by its residual, where 1e-5 is nothing.
+struct Line {
+  using Point = Eigen::VectorXd;
+
+  double cost(const Point& at) const { return std::pow(residual(at[0]), 2); }
+  NormalEquations normalEquations(const Point& at) const {
+    const double r = residual(at[0]);
+    const double slope = (residual(at[0] + 1e-9) - r) / 1e-9;
+    return {r * r,
+            Eigen::VectorXd::Constant(1, slope * r),
+            Eigen::MatrixXd::Constant(1, 1, slope * slope)};
+  }
+  static Point moved(const Point& at, const Eigen::VectorXd& step) { return at + step; }
+  static double nothing(const Point& /*at*/) { return 1e-5; }
+
+  double (*residual)(double);
+};
+
+TEST(DampedDescent, DoesNotTakeADampedStepForTheLastOne) {
+  // Each step of Gauss and Newton goes far beyond the minimum at −1/8000.
+  Line line{[](double x) { return 1.0 + x + (x > 0.0 ? 0.0 : 4000.0 * x * x); }};
+  std::vector<Eigen::VectorXd> path{Eigen::VectorXd::Ones(1)};
+  descend(line, {}, path);
+  EXPECT_NEAR(path.back()[0], -1.0 / 8000.0, 2e-5);
+}
+
+TEST(DampedDescent, TriesItsLastStepWhereTheCostIsNotSmooth) {
+  Line line{[](double x) { return x > 1e-3 ? x : std::numeric_limits<double>::quiet_NaN(); }};
+  std::vector<Eigen::VectorXd> path{Eigen::VectorXd::Ones(1)};
+  DescentOptions options;
+  options.first_damping = 1e-3;  // the first step ends just before the fence
+  descend(line, options, path);
+  EXPECT_TRUE(std::isfinite(line.cost(path.back()))) << path.back();
 }
 
 /// Nothing tells of the second coordinate.
 TEST(DampedDescent, LeavesACoordinateThatNothingTells) {
-  struct Line : Valley {
+  struct Trough : Valley {
     static double cost(const Point& at) { return at[0] * at[0]; }
     static NormalEquations normalEquations(const Point& at) {
       return {cost(at), Eigen::Vector2d(at[0], 0.0), Eigen::Vector2d(1.0, 0.0).asDiagonal()};
     }
-  } line;
+  } trough;
   std::vector<Eigen::Vector2d> path{{3.0, 2.0}};
-  EXPECT_EQ(descend(line, {}, path), Termination::kConverged);
+  EXPECT_EQ(descend(trough, {}, path), Termination::kConverged);
   EXPECT_NEAR(path.back()[0], 0.0, 1e-12);
   EXPECT_EQ(path.back()[1], 2.0);
 }

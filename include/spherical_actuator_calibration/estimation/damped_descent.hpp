@@ -30,9 +30,9 @@ struct DescentOptions {
   /// Of the first step, as a share of each coordinate's own information.
   double first_damping = 1e-8;
   double longest_step = std::numeric_limits<double>::infinity();
-  /// Steps shorter than so many times what counts as nothing are taken untried: where the cost is
-  /// smooth to its last digits, rounding would judge them.
-  double untried_length = 1.0;
+  /// Whether the cost is smooth to its last digits, so that the model tells of short steps better
+  /// than rounding lets the cost do: they are taken untried.
+  bool is_smooth = false;
 };
 
 /// The steps of a descent by Levenberg and Marquardt: how much they are damped, which of them are
@@ -43,18 +43,21 @@ class DampedSteps {
 
   /// From now on steps start here, where a length of `nothing` counts as none.
   void startAt(NormalEquations here, double nothing);
-  /// The next step to try: damped more than the one before, if that was not taken. Nothing: no
-  /// damping helps.
+  /// The next step: damped more than the one before, if that was not taken. Nothing: no step leads
+  /// on from here, or none that is longer than nothing, see isLast().
   std::optional<Eigen::VectorXd> next();
-  /// Whether the step must be tried before it is taken.
-  bool isTried() const { return !is_fine_ && !is_last_; }
+  /// Whether the step must be tried before it is taken. Where one was not taken, the next are short
+  /// because they are damped, which does not make them safe.
+  bool isTried() const { return trials_ > 1 || !isShort(); }
   /// Whether a step that leads to this cost is taken.
   bool takes(double cost);
   void take() { take(1.0); }
   /// Whether nothing worth a step is left to go after the one that was taken.
+  /// Where none was taken: whether those that are left are as short as nothing.
   bool isLast() const { return is_last_; }
 
  private:
+  bool isShort() const { return is_fine_ || (is_last_ && options_.is_smooth); }
   bool isFine() const;
   bool endsHere() const;
   void take(double gain);
@@ -65,7 +68,7 @@ class DampedSteps {
   double nothing_ = 0.0;
   double damping_ = 0.0;
   double growth_ = 2.0;  ///< of the damping, at the next refusal
-  bool is_refused_ = false;
+  int trials_ = 0;       ///< from here
   Eigen::VectorXd step_;
   double previous_length_ = 0.0;  ///< 0: there was no step
   bool is_fine_ = false;
@@ -79,8 +82,9 @@ class DampedSteps {
 /// - `cost(point)`, the same cost; the normal equations there are asked for if the step is taken,
 /// - `moved(point, step)`, where the step leads,
 /// - `nothing(point)`, the length of a step that counts as nothing there.
-/// Ends by kNumericalFailure where costs are not finite or no damping gives a step: the last point
-/// is the best one then, too.
+/// Whatever ends it, the last point is the best one, but for the rounding of costs and for a step
+/// as short as nothing. Ends by kNumericalFailure where costs are not finite, or no damping gives a
+/// step.
 template <typename Problem>
 Termination descend(Problem& problem,
                     const DescentOptions& options,
@@ -95,7 +99,7 @@ Termination descend(Problem& problem,
     while (true) {
       const std::optional<Eigen::VectorXd> step = steps.next();
       if (!step) {
-        return Termination::kNumericalFailure;
+        return steps.isLast() ? Termination::kConverged : Termination::kNumericalFailure;
       }
       typename Problem::Point moved = problem.moved(path.back(), *step);
       if (!steps.isTried()) {
