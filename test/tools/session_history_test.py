@@ -73,11 +73,15 @@ class History(unittest.TestCase):
         self.assertIn("joint", lines[2])
         self.assertIn("50 \u2192 2 mrad, 40 samples", lines[2])
 
-    def test_lists_errors_of_an_earlier_format_in_si_units(self):
-        path = self.damaged("a.db", "ALTER TABLE cycles DROP COLUMN error_unit")
-        with contextlib.closing(sqlite3.connect(path)) as database:
-            database.execute("PRAGMA user_version = 9")
-        self.assertIn("0.05 \u2192 0.002, 40 samples", self.lines([path])[2])
+    def test_knows_what_earlier_formats_counted_errors_in(self):
+        for measure, told in (("orientation", "50 \u2192 2 mrad"), ("torque", "50 \u2192 2 mN·m"), ("standardized", "0.05 \u2192 0.002")):
+            with self.subTest(measure):
+                path = self.damaged(f"{measure}.db", "ALTER TABLE cycles RENAME COLUMN error_unit TO error_measure")
+                with contextlib.closing(sqlite3.connect(path)) as database:
+                    database.execute("UPDATE cycles SET error_measure = ?", [measure])
+                    database.execute("PRAGMA user_version = 9")
+                    database.commit()
+                self.assertIn(f"{told}, 40 samples", self.lines([path])[2])
 
     def test_counts_windows_of_a_motion(self):
         lines = self.lines([self.session("a.db", "2026-01-02T03:04:05Z", 0.1, origin="motion")])

@@ -14,6 +14,10 @@ SELECT revisions.number, revisions.date, revisions.origin, {error_unit}, cycles.
   (SELECT error FROM cycle_errors WHERE cycle_errors.cycle = cycles.id ORDER BY iteration DESC LIMIT 1) AS after
 FROM revisions LEFT JOIN cycles ON revisions.cycle = cycles.id ORDER BY revisions.number
 """
+# Formats before 10 do not tell it; what they meant does not change any more.
+ERROR_UNIT_BEFORE_10 = (
+    "CASE cycles.error_measure WHEN 'orientation' THEN 'rad' WHEN 'torque' THEN 'N·m' WHEN 'standardized' THEN '1' END"
+)
 # What a damaged session gives instead of its rows.
 UNREADABLE = (ExportError, OSError, sqlite3.Error, LookupError, TypeError, ValueError, OverflowError)
 NUMBER = (int, float, type(None))
@@ -29,10 +33,9 @@ KINDS = {  # of what a revision holds
 
 
 def revisions_of(session):
-    """Rows of a Session by their number: number, date, origin, error_unit, samples_used, before, after. The unit of
-    errors is empty where a session of a format before 10 was not opened since."""
-    error_unit = "cycles.error_unit" if session.has_format(10) else "'' AS error_unit"
-    return session.rows(ERRORS.format(error_unit=error_unit))
+    """Rows of a Session by their number: number, date, origin, error_unit, samples_used, before, after."""
+    error_unit = "cycles.error_unit" if session.has_format(10) else ERROR_UNIT_BEFORE_10
+    return session.rows(ERRORS.format(error_unit=f"{error_unit} AS error_unit"))
 
 
 def identified(session):
