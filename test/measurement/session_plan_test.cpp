@@ -136,7 +136,7 @@ TEST(SessionPlan, HasJointPosesOnlyWithoutTorqueModel) {
 TEST(SessionPlan, TakesTheBestPoseWhereNoneIsGood) {
   // The coil on top of the stator is out of every pole's reach.
   Actuator actuator = scenarios::paperNominal();
-  actuator.coils = {{M_PI_2, 0.0, 1.0}};
+  actuator.coils = {{0.5 * kPi, 0.0, 1.0}};
   SessionPlanOptions options;
   options.main_coil_poses = 2;
   EXPECT_EQ(planSession(actuator, options, kSeed).dwells.size(), 10U + 2U + 5U);

@@ -8,6 +8,7 @@
 
 #include "current_steps.hpp"
 #include "motion/stepping_currents.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/motion/motion_recording.hpp"
 
 namespace sac {
@@ -74,7 +75,7 @@ MotionStreams sampled(double interval, double phase) {
 
 /// Ends at zero as test functions do; its phase is that which tells a delay best.
 double weight(double time) {
-  return std::pow(std::sin(M_PI * time / kDuration), 2) * std::cos(kFirstFrequency * time);
+  return std::pow(std::sin(kPi * time / kDuration), 2) * std::cos(kFirstFrequency * time);
 }
 
 /// By how much the first coil is late where its sum over samples stands for its integral [s].

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "spherical_actuator_calibration/base/pi.hpp"
 #include "support/resident_memory.hpp"
 
 namespace sac {
@@ -47,8 +48,8 @@ TEST(MotionRecorder, TakesNoJumpOfASensorThatWrapsAround) {
   recorder.add(currents(1));
   const MotionRecording recording = recorder.take();
   ASSERT_EQ(recording.spans.size(), 1U);
-  EXPECT_NEAR(recording.spans[0].joints[1][2], 2.0 * M_PI - 3.1, 1e-12);
-  EXPECT_NEAR(recording.spans[0].joints[2][2], 2.0 * M_PI - 3.0, 1e-12);
+  EXPECT_NEAR(recording.spans[0].joints[1][2], 2.0 * kPi - 3.1, 1e-12);
+  EXPECT_NEAR(recording.spans[0].joints[2][2], 2.0 * kPi - 3.0, 1e-12);
 }
 
 TEST(MotionRecorder, DropsWhatIsOutOfOrderOrNotANumber) {

@@ -6,11 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "quantization.hpp"
+#include "spherical_actuator_calibration/base/pi.hpp"
 
 namespace sac {
 namespace {
 
-constexpr double kTwelveBits = 2.0 * 3.14159265358979323846 / 4096.0;
+constexpr double kTwelveBits = 2.0 * kPi / 4096.0;
 
 double quantized(double angle, double step) {
   return std::round(angle / step) * step;
