@@ -47,6 +47,7 @@ class Program:
 
     def __init__(self, name, folder, sources, used):
         self.name = name
+        self.folder = folder
         self.units = [f"{folder}/{source.removesuffix('.cpp')}" for source in sources.split()]
         self.uses = [word for word in used.split() if word.startswith("sac_")]
 

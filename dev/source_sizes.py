@@ -129,14 +129,18 @@ def long_shell_functions(house):
                 yield f"{file}:{begin}: {function.group(1)} has {length} lines, more than {LONGEST_FUNCTION}."
 
 
-def long_cmake_files(house):
-    folders = [house.root, *(house.root / folder for folder in (*house.folders, "cmake"))]
+def cmake_files(house):
+    """Sorted."""
+    folders = [house.root, *(house.root / folder for folder in (*house.folders, "src", "cmake"))]
     found = {file for folder in folders for file in folder.glob("**/*" if folder != house.root else "*")}
-    for file in sorted(found):
-        if file.name == "CMakeLists.txt" or file.suffix == ".cmake":
-            count = line_count(file.read_text(encoding="utf-8"))
-            if count > LONGEST_CMAKE:
-                yield f"{file.relative_to(house.root)}: has {count} lines, more than {LONGEST_CMAKE}."
+    return sorted(file for file in found if file.name == "CMakeLists.txt" or file.suffix == ".cmake")
+
+
+def long_cmake_files(house):
+    for file in cmake_files(house):
+        count = line_count(file.read_text(encoding="utf-8"))
+        if count > LONGEST_CMAKE:
+            yield f"{file.relative_to(house.root)}: has {count} lines, more than {LONGEST_CMAKE}."
 
 
 RULES = (

@@ -145,6 +145,22 @@ class CheckGuide(unittest.TestCase):
                     ['doc/architecture.md: "Add a cycle" does not name scripts/run, which names its sample.'],
                 )
 
+    def test_names_a_node_without_threads_and_a_word_without_meaning(self):
+        tables = "## Threads and locks\n\n| node | threads |\n|---|---|\n| `coil` | one |\n\n"
+        tables += "## Glossary\n\n| word | meaning |\n|---|---|\n| belief | what is known |\n\n"
+        self.replace("doc/architecture.md", "### Add a coil", tables + "### Add a coil")
+        self.write("src/nodes/CMakeLists.txt", "add_node(coil sac_core)\n")
+        self.assertEqual(self.complaints(), [])
+        self.replace("doc/architecture.md", "| `coil` | one |", "| `pole` | one |")
+        self.replace("doc/architecture.md", "| belief |", "| prior |")
+        self.assertEqual(
+            self.complaints(),
+            [
+                'doc/architecture.md: "Threads and locks" has no row of `coil`.',
+                'doc/architecture.md: "Glossary" has no row of belief.',
+            ],
+        )
+
     def test_names_a_topic_that_is_spelt_otherwise(self):
         self.write("src/base/angle.cpp", 'const char* kTopics[] = {"measured_angle", "tracker/pose", "capture"};\n')
         self.write(

@@ -152,6 +152,9 @@ class CheckRooms(unittest.TestCase):
         self.assertEqual(self.complaints(), [])
         self.write("cmake/rooms.cmake", function % f"  #{option}" + alias + option)
         self.expect_one("cmake/rooms.cmake: make() links a library without -Wl,--no-undefined")
+        self.write("cmake/rooms.cmake", function % option)
+        self.write("cmake/links.cmake", "add_link_options(-Wl,-z,undefs)\n")
+        self.expect_one("cmake/links.cmake: -z,undefs lets a library leave symbols open")
 
     def test_names_an_internal_header_of_a_later_room(self):
         self.write("src/actuator/winding.hpp", "")
