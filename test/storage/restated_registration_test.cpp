@@ -54,6 +54,7 @@ TEST_F(RestatedRegistration, OfAnEarlierFormatIsNotKnown) {
     session.run({Cycle::kJoint}, kDate);
   }
   database_examples::change(folder_.path("session.db"),
+                            "ALTER TABLE cycles DROP COLUMN error_unit;"
                             "ALTER TABLE cycles DROP COLUMN registration; PRAGMA user_version = 8");
   LiveSession session = with(2e-3);
   EXPECT_TRUE(session.lastReport()->registration.empty());
