@@ -31,11 +31,13 @@ struct Valley {
   int linearised = 0;
 };
 
-const Eigen::Vector2d kStart(-1.2, 1.0);
+Eigen::Vector2d farOff() {
+  return {-1.2, 1.0};
+}
 
 TEST(DampedDescent, GoesDownABentValleyToItsEnd) {
   Valley valley;
-  std::vector<Eigen::Vector2d> path{kStart};
+  std::vector<Eigen::Vector2d> path{farOff()};
   EXPECT_EQ(descend(valley, {}, path), Termination::kConverged);
   EXPECT_LT((path.back() - Eigen::Vector2d::Ones()).norm(), 1e-12);
   EXPECT_EQ(path.size(), static_cast<std::size_t>(valley.linearised) + 1);
@@ -48,7 +50,7 @@ TEST(DampedDescent, TakesNoLongerStepsThanItMay) {
   Valley valley;
   DescentOptions options;
   options.longest_step = 0.1;
-  std::vector<Eigen::Vector2d> path{kStart};
+  std::vector<Eigen::Vector2d> path{farOff()};
   EXPECT_EQ(descend(valley, options, path), Termination::kConverged);
   EXPECT_LT((path.back() - Eigen::Vector2d::Ones()).norm(), 1e-12);
   for (std::size_t n = 1; n < path.size(); ++n) {
@@ -60,7 +62,7 @@ TEST(DampedDescent, EndsAfterAsManyIterationsAsItMay) {
   Valley valley;
   DescentOptions options;
   options.max_iterations = 3;
-  std::vector<Eigen::Vector2d> path{kStart};
+  std::vector<Eigen::Vector2d> path{farOff()};
   EXPECT_EQ(descend(valley, options, path), Termination::kIterationLimit);
   EXPECT_EQ(path.size(), 4U);
 }
@@ -76,7 +78,7 @@ TEST(DampedDescent, EndsBeforeWhatHasNoCost) {
   Fenced fenced;
   DescentOptions options;
   options.max_iterations = 1000;
-  std::vector<Eigen::Vector2d> path{kStart};
+  std::vector<Eigen::Vector2d> path{farOff()};
   descend(fenced, options, path);
   EXPECT_TRUE(std::isfinite(Fenced::cost(path.back())));
   EXPECT_GT(path.back()[0], 0.49);
@@ -138,7 +140,7 @@ TEST(DampedDescent, SaysWhereNothingIsFinite) {
       return {nan, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity()};
     }
   } nowhere;
-  std::vector<Eigen::Vector2d> path{kStart};
+  std::vector<Eigen::Vector2d> path{farOff()};
   EXPECT_EQ(descend(nowhere, {}, path), Termination::kNumericalFailure);
   EXPECT_EQ(path.size(), 1U);
 }
