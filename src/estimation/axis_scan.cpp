@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "spherical_actuator_calibration/actuator/torque_model.hpp"
 #include "spherical_actuator_calibration/base/symmetric_matrix.hpp"
-#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 namespace {
@@ -72,12 +71,11 @@ double AxisScan::coarseMisfit(const Eigen::Vector2d& place) const {
   return limit_ * (sum + std::log(product));
 }
 
-NormalEquations AxisScan::normalEquations(const Eigen::Vector2d& place) const {
+AxisScan::Normal AxisScan::linearized(const Eigen::Vector2d& place) const {
   Eigen::Vector3d axis;
   Eigen::Matrix<double, 3, 2> d_axis;
   chart_.evaluate(place[0], place[1], axis, d_axis);
-  double misfit = 0.0;
-  InformationSum sum(2);
+  Normal normal;
   WhitenedObservation whitened;
   whitened.columns = {0, 1};
   for (const ScannedTorque& torque : scanned_.torques) {
@@ -95,64 +93,41 @@ NormalEquations AxisScan::normalEquations(const Eigen::Vector2d& place) const {
     whitened.residual = torque.whitening * rest;
     whitened.jacobian = torque.whitening * d_own * torque.to_rotor * d_axis;
     const double square = whitened.residual.squaredNorm() / limit_;
-    misfit += limit_ * std::log1p(square);
-    sum.add(whitened, 1.0 / (1.0 + square));
+    normal.misfit += limit_ * std::log1p(square);
+    normal.sum.add(whitened, 1.0 / (1.0 + square));
   }
-  return {misfit, sum.gradient(), sum.information()};
+  return normal;
 }
 
-/// The misfit along one direction or two.
-class AxisScan::Objective {
- public:
-  using Point = Eigen::Vector2d;
-
-  Objective(const AxisScan& scan, const Eigen::Matrix2Xd& directions)
-      : scan_(scan), directions_(directions) {}
-
-  /// Cost and derivatives come together.
-  double cost(const Eigen::Vector2d& place) {
-    tried_at_ = place;
-    tried_ = along(place);
-    return tried_.cost;
+/// The minimum below a place of the scan, among those that the projection `allowed` leads to.
+Eigen::Vector2d AxisScan::descended(Eigen::Vector2d place, const Eigen::Matrix2d& allowed) const {
+  constexpr int kMaxIterations = 20;
+  constexpr double kNothing = 1e-5;  // [rad]: the estimator goes on from there
+  double damping = 1e-3;
+  Normal here = linearized(place);
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    Eigen::Matrix2d damped = allowed * here.sum.information() * allowed;
+    damped.diagonal() *= 1.0 + damping;
+    damped.diagonal().array() += 1e-6;
+    Eigen::Vector2d step = damped.inverse() * (allowed * -here.sum.gradient());
+    // Beyond one step of the scan is another place of it.
+    step *= std::min(1.0, step_ / std::max(step.norm(), kNothing));
+    const Normal there = linearized(place + step);
+    if (there.misfit < here.misfit) {
+      place += step;
+      here = there;
+      damping *= 0.1;
+      if (step.norm() < kNothing) {
+        break;
+      }
+    } else {
+      damping *= 10.0;
+      if (step.norm() < kNothing) {
+        break;
+      }
+    }
   }
-
-  NormalEquations normalEquations(const Eigen::Vector2d& place) const {
-    return tried_at_ == place ? tried_ : along(place);
-  }
-
-  Eigen::Vector2d moved(const Eigen::Vector2d& place, const Eigen::VectorXd& step) const {
-    return place + directions_ * step;
-  }
-
-  static double nothing(const Eigen::Vector2d& /*place*/) {
-    return 1e-5;  // [rad]: the estimator goes on from there
-  }
-
- private:
-  NormalEquations along(const Eigen::Vector2d& place) const {
-    const NormalEquations all = scan_.normalEquations(place);
-    return {all.cost,
-            directions_.transpose() * all.gradient,
-            directions_.transpose() * all.information * directions_};
-  }
-
-  const AxisScan& scan_;
-  const Eigen::Matrix2Xd& directions_;
-  std::optional<Eigen::Vector2d> tried_at_;
-  NormalEquations tried_;
-};
-
-/// The minimum below a place of the scan, along orthonormal directions.
-Eigen::Vector2d AxisScan::descended(const Eigen::Vector2d& place,
-                                    const Eigen::Matrix2Xd& directions) const {
-  DescentOptions options;
-  options.max_iterations = 20;
-  options.first_damping = 1e-3;
-  options.longest_step = step_;  // beyond it is another place of the scan
-  std::vector<Eigen::Vector2d> path{place};
-  Objective objective(*this, directions);
-  descend(objective, options, path);
-  return path.back();
+  return place;
 }
 
 /// Places of the scan that no neighbour is better than, best first.
@@ -208,8 +183,8 @@ std::vector<Eigen::Vector2d> AxisScan::alongValley(const Eigen::Vector2d& presen
   const Eigen::Vector2d along = spectrum.vectors.col(0);
   const Eigen::Vector2d across = spectrum.vectors.col(1);
   for (double far = std::sqrt(kWithin / weakest); far < range_; far *= 2.0) {
-    places.push_back(descended(present + far * along, across));
-    places.push_back(descended(present - far * along, across));
+    places.push_back(descended(present + far * along, across * across.transpose()));
+    places.push_back(descended(present - far * along, across * across.transpose()));
   }
   return places;
 }
@@ -223,8 +198,8 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
   if (scanned_.torques.empty()) {
     return found;
   }
-  const NormalEquations here = normalEquations(present);
-  const Eigen::Matrix2d information = here.information;
+  const Normal here = linearized(present);
+  const Eigen::Matrix2d information = here.sum.information();
   const auto is_known = [&](const ScannedPlace& there) {
     const Eigen::Vector2d apart = there.place - present;
     const bool is_within = apart.dot(information * apart) < kWithin && there.gain < kFarBetter;
@@ -234,12 +209,12 @@ std::vector<ScannedPlace> AxisScan::others(const Eigen::Vector2d& present) const
            });
   };
   const auto add = [&](const Eigen::Vector2d& place) {
-    const ScannedPlace there{place, here.cost - normalEquations(place).cost};
+    const ScannedPlace there{place, here.misfit - linearized(place).misfit};
     if (isWithin(place) && !is_known(there)) {
       found.push_back(there);
     }
   };
-  const Eigen::Matrix2Xd all = Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d all = Eigen::Matrix2d::Identity();
   std::vector<Eigen::Vector2d> starts = localMinima();
   starts.resize(std::min(starts.size(), steps_ == kCoarseSteps ? kMostStarts : kMostFineStarts));
   for (const Eigen::Vector2d& start : starts) {

@@ -7,7 +7,7 @@
 #include "spherical_actuator_calibration/actuator/tabulated_curve.hpp"
 #include "spherical_actuator_calibration/actuator/torque_curve.hpp"
 #include "spherical_actuator_calibration/base/axis_chart.hpp"
-#include "spherical_actuator_calibration/estimation/damped_descent.hpp"
+#include "spherical_actuator_calibration/estimation/whitened_observation.hpp"
 
 namespace sac {
 
@@ -60,12 +60,14 @@ class AxisScan {
   static double reach(double range);
 
  private:
-  class Objective;
+  struct Normal {
+    double misfit = 0.0;  ///< by the robust loss
+    InformationSum sum{2};
+  };
 
   double coarseMisfit(const Eigen::Vector2d& place) const;
-  /// By the robust loss.
-  NormalEquations normalEquations(const Eigen::Vector2d& place) const;
-  Eigen::Vector2d descended(const Eigen::Vector2d& place, const Eigen::Matrix2Xd& directions) const;
+  Normal linearized(const Eigen::Vector2d& place) const;
+  Eigen::Vector2d descended(Eigen::Vector2d place, const Eigen::Matrix2d& allowed) const;
   bool isWithin(const Eigen::Vector2d& place) const {
     return place.cwiseAbs().maxCoeff() <= range_ + step_;
   }

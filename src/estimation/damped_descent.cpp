@@ -61,10 +61,6 @@ std::optional<Eigen::VectorXd> DampedSteps::next() {
     if (!step) {
       continue;
     }
-    const double length = step->norm();
-    if (length > options_.longest_step) {
-      *step *= options_.longest_step / length;
-    }
     step_ = *step;
     is_fine_ = isFine();
     is_last_ = endsHere();

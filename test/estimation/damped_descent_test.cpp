@@ -46,18 +46,6 @@ TEST(DampedDescent, GoesDownABentValleyToItsEnd) {
   }
 }
 
-TEST(DampedDescent, TakesNoLongerStepsThanItMay) {
-  Valley valley;
-  DescentOptions options;
-  options.longest_step = 0.1;
-  std::vector<Eigen::Vector2d> path{farOff()};
-  EXPECT_EQ(descend(valley, options, path), Termination::kConverged);
-  EXPECT_LT((path.back() - Eigen::Vector2d::Ones()).norm(), 1e-12);
-  for (std::size_t n = 1; n < path.size(); ++n) {
-    EXPECT_LE((path[n] - path[n - 1]).norm(), 0.1 + 1e-12) << n;
-  }
-}
-
 TEST(DampedDescent, EndsAfterAsManyIterationsAsItMay) {
   Valley valley;
   DescentOptions options;

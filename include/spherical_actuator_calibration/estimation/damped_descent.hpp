@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,7 +28,6 @@ struct DescentOptions {
   int max_iterations = 50;
   /// Of the first step, as a share of each coordinate's own information.
   double first_damping = 1e-8;
-  double longest_step = std::numeric_limits<double>::infinity();
   /// Whether the cost is smooth to its last digits, so that the model tells of short steps better
   /// than rounding lets the cost do: they are taken untried.
   bool is_smooth = false;
