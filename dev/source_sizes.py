@@ -131,7 +131,7 @@ def long_shell_functions(house):
 
 def cmake_files(house):
     """Sorted."""
-    folders = [house.root, *(house.root / folder for folder in (*house.folders, "src", "cmake"))]
+    folders = [house.root, *(house.root / folder for folder in (*house.folders, "cmake"))]
     found = {file for folder in folders for file in folder.glob("**/*" if folder != house.root else "*")}
     return sorted(file for file in found if file.name == "CMakeLists.txt" or file.suffix == ".cmake")
 

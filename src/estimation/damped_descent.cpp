@@ -8,7 +8,6 @@
 namespace sac {
 namespace {
 
-constexpr double kLeastDamping = 1e-16;
 constexpr double kLargestDamping = 1e16;
 /// Of a coordinate that nothing tells at some point, as of a pole that left the reach of all coils:
 /// without it there would be no step at all.

@@ -1,6 +1,5 @@
 #include "spherical_actuator_calibration/estimation/least_squares.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -16,8 +15,6 @@ namespace {
 /// Size of coordinates for which the relative tolerance is meant at least: a tolerance of
 /// manufacture [rad].
 constexpr double kUsualSize = 0.03;
-/// Nearly none.
-constexpr double kLeastDamping = 1e-16;
 
 /// ρ(s) of a squared whitened norm s, and its derivative: the weight of the observation.
 struct LossValue {
@@ -192,7 +189,7 @@ class Objective {
 
 std::optional<Eigen::VectorXd> afterOneStep(const LeastSquaresInput& input) {
   const Objective objective(input);
-  const std::optional<Eigen::VectorXd> step = dampedStep(objective.atStart(), kLeastDamping);
+  const std::optional<Eigen::VectorXd> step = dampedStep(objective.atStart());
   return step ? std::make_optional(objective.moved(input.start, *step)) : std::nullopt;
 }
 

@@ -19,9 +19,13 @@ struct NormalEquations {
   bool isFinite() const;
 };
 
+/// Nearly none.
+constexpr double kLeastDamping = 1e-16;
+
 /// The step that least squares ask for, with so much more information of each coordinate as a share
 /// of its own; nothing: none is defined.
-std::optional<Eigen::VectorXd> dampedStep(const NormalEquations& here, double damping);
+std::optional<Eigen::VectorXd> dampedStep(const NormalEquations& here,
+                                          double damping = kLeastDamping);
 
 /// How a descent goes and when it ends.
 struct DescentOptions {
