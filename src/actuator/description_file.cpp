@@ -310,6 +310,21 @@ bool isContradicted(const CalibratedDescription& description) {
          description.calibration->validation->contradicted;
 }
 
+bool isAsDrawn(const CalibratedDescription& description) {
+  const Actuator& actuator = description.actuator;
+  const ParameterStddevs& stddevs = description.stddevs;
+  const auto is_open = [](const AxisStddev& axis) { return !axis.polar || !axis.azimuth; };
+  const auto is_joint_open = [](const JointStddev& joint) {
+    return !joint.offset || !joint.axis_u || !joint.axis_v;
+  };
+  return stddevs.poles.size() != actuator.poles.size() ||
+         stddevs.coils.size() != actuator.coils.size() ||
+         (actuator.has_joints &&
+          std::any_of(stddevs.joints.begin(), stddevs.joints.end(), is_joint_open)) ||
+         std::any_of(stddevs.poles.begin(), stddevs.poles.end(), is_open) ||
+         std::any_of(stddevs.coils.begin(), stddevs.coils.end(), is_open);
+}
+
 CalibratedDescription loadDescription(const std::string& path) {
   return readDescription(YamlMap::load(path));
 }

@@ -58,11 +58,11 @@ std::string distanceInWords(double stddev, double bound) {
 }  // namespace
 
 bool PlanProgress::add(const Sample& sample) {
-  bool is_more = false;
+  bool counts = false;
   for (PoseProgress& pose : poses_) {
-    is_more = pose.add(sample, current_threshold_) || is_more;
+    counts = pose.add(sample, current_threshold_) || counts;
   }
-  return is_more;
+  return counts;
 }
 
 void PlanProgress::countAnew(const std::vector<Sample>& samples) {

@@ -6,7 +6,7 @@
 #include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/estimation/calibration_model.hpp"
-#include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/measurement/carried_currents.hpp"
 
 namespace sac {
 namespace {
@@ -38,13 +38,7 @@ std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
     }
     commanded[j] = coil.sign * planned.current;
   }
-  const CurrentTolerance tolerance = currentTolerance(current_threshold);
-  for (Eigen::Index j = 0; j < measured.size(); ++j) {
-    if (!tolerance.allows(measured[j], commanded[j])) {
-      return static_cast<std::size_t>(j);
-    }
-  }
-  return std::nullopt;
+  return coilAmiss(commanded, measured, current_threshold);
 }
 
 bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position) {

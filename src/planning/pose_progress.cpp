@@ -34,14 +34,13 @@ bool PoseProgress::add(const Sample& sample, double current_threshold) {
       std::remove_if(missing_.begin(), missing_.end(), [&](const CoilPattern& pattern) {
         return tellsTheSame(pattern, measured);
       });
-  const bool is_more = !has_sample_ || left != missing_.end();
   missing_.erase(left, missing_.end());
-  has_sample_ = true;
-  return is_more;
+  samples_.push_back(sample.id);
+  return true;
 }
 
 void PoseProgress::beginAnew() {
-  has_sample_ = false;
+  samples_.clear();
   missing_.clear();
   for (const CoilPattern& pattern : pose_.patterns) {
     const bool is_there =

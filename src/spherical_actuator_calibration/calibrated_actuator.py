@@ -65,6 +65,7 @@ class CalibratedActuator:
             raise ValueError(message)
         self.coils = int(words[1])  # 0 without a torque model
         self.has_uncertainty = words[2] == "1"  # of parameters; a description as drawn states none
+        self.is_as_drawn = words[4] == "1"  # it is not told how well each angle of its axes is known
         self.is_contradicted = words[3] == "1"  # by what was held out when the description was made
         if self.is_contradicted:
             self._warn(f"{description} was contradicted by what was held out: do not use it, calibrate anew.")

@@ -23,6 +23,7 @@
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_places.hpp"
 #include "storage_error.hpp"
 
 #include <sqlite3.h>
@@ -101,12 +102,13 @@ CoilPattern checkedPattern(const Sample& sample, const Actuator& actuator, doubl
   return pattern;
 }
 
-PoseToMeasure& poseOf(const Sample& sample, const Actuator& actuator, PosesToMeasure& poses) {
-  const auto known = std::find_if(poses.begin(), poses.end(), [&](const PoseToMeasure& pose) {
-    return pose.validation == sample.validation && isAtPose(sample, pose.joint_position);
-  });
-  if (known != poses.end()) {
-    return *known;
+PoseToMeasure& poseOf(const Sample& sample,
+                      const Actuator& actuator,
+                      SamplePlaces& places,
+                      PosesToMeasure& poses) {
+  const std::size_t place = places.placeOf(sample);
+  if (place < poses.size()) {
+    return poses[place];
   }
   if (poses.size() == kMostPoses) {
     throw DataError("it has more than " + std::to_string(kMostPoses) + " poses.");
@@ -120,12 +122,13 @@ EarlierSession sessionOf(const std::vector<Sample>& samples,
                          double threshold) {
   EarlierSession session;
   std::vector<double> currents;
+  SamplePlaces places;
   for (const Sample& sample : samples) {
     const CoilPattern pattern = checkedPattern(sample, actuator, threshold);
     for (const SignedCoil& coil : pattern) {
       currents.push_back(std::abs(sample.current[static_cast<Eigen::Index>(coil.coil)]));
     }
-    std::vector<CoilPattern>& patterns = poseOf(sample, actuator, session.poses).patterns;
+    std::vector<CoilPattern>& patterns = poseOf(sample, actuator, places, session.poses).patterns;
     if (!pattern.empty() &&
         std::find(patterns.begin(), patterns.end(), pattern) == patterns.end()) {
       patterns.push_back(pattern);

@@ -167,7 +167,7 @@ void serve(const std::string& path) {
   const CalibratedActuator actuator = CalibratedActuator::load(path);
   std::cout << "ready " << (actuator.hasTorqueModel() ? actuator.coils() : 0) << " "
             << (actuator.hasUncertainty() ? 1 : 0) << " " << (actuator.isContradicted() ? 1 : 0)
-            << std::endl;
+            << " " << (actuator.isAsDrawn() ? 1 : 0) << std::endl;
   std::string question;
   while (nextLine(question)) {
     std::string text;

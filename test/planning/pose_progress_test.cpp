@@ -1,5 +1,6 @@
 #include "spherical_actuator_calibration/planning/pose_progress.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,9 @@ TEST(PoseProgress, LacksEachPatternThatNoSampleHas) {
   EXPECT_EQ(missing(progress), (Texts{"+3", "+1 -2"}));
   // A coil that is off may show a little; neither a coil alone nor other signs are the pattern.
   EXPECT_TRUE(progress.add(sampleOf({0.01, -0.01, 2.0}), kThreshold));
-  EXPECT_FALSE(progress.add(sampleOf({2.0, 0.0, 0.0}), kThreshold));
-  EXPECT_FALSE(progress.add(sampleOf({2.0, 2.0, 0.0}), kThreshold));
-  EXPECT_FALSE(progress.add(sampleOf({2.0, -2.0, 2.0}), kThreshold));
+  EXPECT_TRUE(progress.add(sampleOf({2.0, 0.0, 0.0}), kThreshold));
+  EXPECT_TRUE(progress.add(sampleOf({2.0, 2.0, 0.0}), kThreshold));
+  EXPECT_TRUE(progress.add(sampleOf({2.0, -2.0, 2.0}), kThreshold));
   EXPECT_EQ(missing(progress), Texts{"+1 -2"});
   EXPECT_FALSE(progress.isMeasured());
   EXPECT_TRUE(progress.add(sampleOf({2.0, -2.0, 0.0}), kThreshold));
@@ -103,7 +104,6 @@ TEST(PoseProgress, WithoutPatternsIsMeasuredByAnySample) {
     EXPECT_FALSE(progress.isMeasured());
     EXPECT_TRUE(progress.add(sampleOf(currents), kThreshold));
     EXPECT_TRUE(progress.isMeasured());
-    EXPECT_FALSE(progress.add(sampleOf(currents), kThreshold));
   }
 }
 
@@ -114,6 +114,19 @@ TEST(PoseProgress, IsOfSamplesNearThePoseAFullTurnAwayToo) {
   EXPECT_FALSE(progress.add(sample, kThreshold));
   sample.joint_position.z() -= 0.002;
   EXPECT_TRUE(progress.add(sample, kThreshold));
+}
+
+TEST(PoseProgress, NamesTheSamplesThatCount) {
+  PoseProgress progress(pose());
+  std::uint32_t id = 7;
+  for (const bool validation : {false, true, false}) {
+    Sample sample = sampleOf({0.0, 0.0, 0.0}, validation);
+    sample.id = id++;
+    progress.add(sample, kThreshold);
+  }
+  EXPECT_EQ(progress.samples(), (std::vector<std::uint32_t>{7, 9}));
+  progress.beginAnew();
+  EXPECT_TRUE(progress.samples().empty());
 }
 
 TEST(PoseProgress, OpensAgainWhatARemovedSampleHad) {

@@ -130,6 +130,10 @@ class NextStep(unittest.TestCase):
         self.tells(False, True)
         self.capture(first)
         self.tells(True, True)
+        held = self.client.call("list_samples")
+        self.assertEqual([sample.id for sample in held.samples], [1, 2, 3])
+        self.assertEqual(held.places, (1, 2, 3))  # held out is another place
+        self.assertEqual([there.samples for there in self.client.latest("plan_progress").poses], [(3,), (2,)])
         self.assertTrue(self.client.call("remove_sample", id=max(self.client.held())).success)
         self.tells(False, True)
         self.says(f"joints {first[0]:.2f},")

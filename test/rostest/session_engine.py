@@ -16,7 +16,6 @@ from calibration_client import NAMESPACE, PACKAGE, wait_for
 from emulated_lab import LabCase
 from guided_program import GuidedProgram
 from spherical_actuator_calibration import msg
-from spherical_actuator_calibration.session_guide.progress import Measured, excited_coils, poses_of
 from true_parameters import expect_truth
 
 AT_ONCE = 0.3  # [s] in which currents end
@@ -154,21 +153,17 @@ class SessionEngine(LabCase):
         wait_for(lambda: self.feedback.progress.joint_stddev > 0.0, "how well the joint is known")
 
     def check_nothing_is_measured_twice(self):
-        samples = self.client.held().values()
-        status = self.client.latest("status")
-        full = max(max(map(abs, sample.current)) for sample in samples)
-        measured = [
-            Measured(tuple(s.joint_position), excited_coils(s.current, status.current_threshold), s.validation)
-            for s in samples
+        answer = self.client.call("list_samples")
+        full = max(max(map(abs, sample.current)) for sample in answer.samples)
+        patterns = {}
+        for sample, place, excited in zip(answer.samples, answer.places, answer.excited):
             # Without that of one coil at other currents.
-            if not 0.4 * full < max(map(abs, s.current)) < 0.6 * full and min(s.current) > -0.5 * full
-        ]
-        for pose in poses_of(measured, status.pose_tolerance):
-            there = [m for m in measured if m.validation == pose.validation and pose.is_at(m.joints, status.pose_tolerance)]
-            patterns = [m.pattern for m in there if m.pattern]
-            opposites = [tuple(-coil for coil in pattern) for pattern in patterns]
-            for place, pattern in enumerate(patterns):
-                self.assertNotIn(pattern, patterns[:place] + opposites[:place])
+            is_of_one = 0.4 * full < max(map(abs, sample.current)) < 0.6 * full or min(sample.current) <= -0.5 * full
+            if excited.coils and not is_of_one:
+                patterns.setdefault(place, []).append(tuple(excited.coils))
+        for place, measured in patterns.items():
+            self.assertEqual(len(measured), len(set(measured)), place)
+            self.assertFalse(set(measured) & {tuple(-coil for coil in pattern) for pattern in measured}, place)
 
     def check_linearity(self):
         """One coil at three currents in one rest, once, tells that torque is proportional to it."""
@@ -190,6 +185,9 @@ class SessionEngine(LabCase):
         wait_for(lambda: self.feedback and self.feedback.progress.carries, "excited coils")
         self.assertAlmostEqual(self.feedback.measured[2], 1.5, delta=0.1)
         self.assertAlmostEqual(self.feedback.measured[6], -1.5, delta=0.1)
+        check = rospy.wait_for_message(f"{NAMESPACE}/coil_check", msg.CoilCheck, DEADLINE.to_sec())
+        self.assertEqual([current for current in check.commanded if current], [1.5, -1.5])
+        self.assertTrue(check.carried)
         excite.cancel_goal()
         self.time_to_zero()
         self.result(excite, GoalStatus.PREEMPTED)
@@ -219,6 +217,10 @@ class SessionEngine(LabCase):
         self.send(capture, goal)
         result = self.result(capture, GoalStatus.SUCCEEDED)
         self.assertEqual(len(result.samples), 1 + len(planned.poses[0].coils))
+        held = self.client.call("list_samples")
+        self.assertEqual(set(held.places[-len(result.samples) :]), {held.places[-1]})
+        excited = [tuple(pattern.coils) for pattern in held.excited[-len(result.samples) :]]
+        self.assertEqual(excited, [(), *((coil,) for coil in planned.poses[0].coils)])
         self.send(capture, goal)
         self.assertEqual(len(self.result(capture, GoalStatus.SUCCEEDED).samples), 0)
         self.send(capture, msg.CaptureGoal(here=True, duration=0.2))

@@ -34,6 +34,22 @@ TEST(ModelError, IsThatOfADrawingWhereNothingIsKnown) {
   EXPECT_LT(likelyModelError(partly), 0.03);
 }
 
+// Of a rotor without joints nobody knows them.
+TEST(DescriptionAsDrawn, IsOneThatLeavesAnAngleOpen) {
+  EXPECT_FALSE(isAsDrawn(knownTo(1e-4)));
+  CalibratedDescription partly = knownTo(1e-4);
+  partly.stddevs.poles[2].azimuth.reset();
+  EXPECT_TRUE(isAsDrawn(partly));
+  partly = knownTo(1e-4);
+  partly.stddevs.coils[4].polar.reset();
+  EXPECT_TRUE(isAsDrawn(partly));
+  partly = knownTo(1e-4);
+  partly.stddevs.joints[1].offset.reset();
+  EXPECT_TRUE(isAsDrawn(partly));
+  partly.actuator.has_joints = false;
+  EXPECT_FALSE(isAsDrawn(partly));
+}
+
 TEST(ModelError, FollowsTheLeastKnownParameter) {
   EXPECT_EQ(likelyModelError(knownTo(1e-5)), 0.005);
   CalibratedDescription description = knownTo(1e-5);

@@ -45,6 +45,30 @@ class Asked(unittest.TestCase):
             self.assertEqual([*pose.quaternion_xyzw, pose.stddev, *made.torque, made.stddev], expected)
             self.assertFalse(actuator.has_uncertainty)
 
+    def test_what_is_a_drawing(self):
+        with open(NOMINAL, encoding="utf-8") as file:
+            described = yaml.safe_load(file)
+        angles = {"joints": ("offset", "axis_u", "axis_v"), "poles": ("polar", "azimuth"), "coils": ("polar", "azimuth")}
+        made = {"date": "2026-11-28T12:00:00Z", "revision": 1, "software": "test", "source": [], "cycles": [], "unidentified": []}
+        described["actuator"]["calibration"] = made
+        for group, known in angles.items():
+            for axis in described["actuator"][group]:
+                axis["stddev"] = dict.fromkeys(known, 1e-4)
+        self.assertFalse(self.is_as_drawn(described))
+        del described["actuator"]["coils"][7]["stddev"]["azimuth"]
+        self.assertTrue(self.is_as_drawn(described))
+        with opened(NOMINAL) as actuator:
+            self.assertTrue(actuator.is_as_drawn)
+
+    @staticmethod
+    def is_as_drawn(described):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "calibrated.yaml")
+            with open(path, "w", encoding="utf-8") as file:
+                yaml.safe_dump(described, file)
+            with opened(path) as actuator:
+                return actuator.is_as_drawn
+
     def test_a_description_that_was_contradicted_is_told(self):
         with open(NOMINAL, encoding="utf-8") as file:
             described = yaml.safe_load(file)

@@ -17,6 +17,7 @@ class Bench:
 
     def __init__(self):
         self.held = []
+        self._places = {}  # by joint angles
         self.asked = []  # for how many poses
         self.in_force = []  # poses of the plan
 
@@ -27,17 +28,19 @@ class Bench:
     def parameters():
         return SimpleNamespace(coils=[1, 2])
 
-    @staticmethod
-    def pose_tolerance():
-        return 0.05
-
     def progress_of(self, poses):
         return [self._progress_of(pose) for pose in poses]
 
     def _progress_of(self, pose):
-        there = {sample.pattern for sample in self.held if sample.joints == pose.joints}
-        missing = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations if pattern not in there]
-        return PoseProgress(has_sample=bool(there), is_measured=bool(there) and not missing, missing=missing)
+        there = [sample for sample in self.held if sample.place == self._places.get(pose.joints)]
+        patterns = [sample.pattern for sample in there]
+        missing = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations if pattern not in patterns]
+        return PoseProgress(
+            samples=[sample.number for sample in there],
+            has_sample=bool(there),
+            is_measured=bool(there) and not missing,
+            missing=missing,
+        )
 
     def begun(self):
         there = zip(self.in_force, self.progress_of(self.in_force))
@@ -51,7 +54,8 @@ class Bench:
         return chosen, "Planned."
 
     def capture(self, pose, *patterns):
-        self.held += [Measured(pose.joints, pattern, pose.validation) for pattern in patterns]
+        place = self._places.setdefault(pose.joints, len(self._places) + 1)
+        self.held += [Measured(len(self.held) + n, place, pattern, pose.validation) for n, pattern in enumerate(patterns, 1)]
 
     @staticmethod
     def load_plan(_source):

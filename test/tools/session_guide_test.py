@@ -10,13 +10,13 @@ from unittest import mock
 
 import actionlib
 import rospy
-from spherical_actuator_calibration.msg import CoilPattern, JointAxis, PoseProgress
+from spherical_actuator_calibration.msg import CoilCheck, CoilPattern, JointAxis, PoseProgress
 from spherical_actuator_calibration.session_guide import client, laboratory, progress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.calibration import excitations_of, message_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
-from spherical_actuator_calibration.session_guide.progress import Measured, Pose, Progress
+from spherical_actuator_calibration.session_guide.progress import Pose, Progress
 from spherical_actuator_calibration.session_guide.task import Task
 from spherical_actuator_calibration.terminal import Terminal
 
@@ -65,6 +65,12 @@ class KnownJoint(unittest.TestCase):
         self.assertEqual(progress.joint_stddev(self.joints), 0.0)
 
 
+class Words(unittest.TestCase):
+    def test_of_coils(self):
+        self.assertEqual(progress.in_words((3,)), "Coil 3")
+        self.assertEqual(progress.in_words((1, -4, 12)), "Coils +1 -4 +12")
+
+
 class PlannedPatterns(unittest.TestCase):
     def test_without_patterns_each_coil_is_alone(self):
         self.assertEqual(excitations_of(SimpleNamespace(coils=[2, 5], patterns=[])), ((2,), (5,)))
@@ -72,6 +78,36 @@ class PlannedPatterns(unittest.TestCase):
     def test_patterns_have_their_signs(self):
         patterns = [SimpleNamespace(current=[2.0, -2.0, 0.0]), SimpleNamespace(current=[0.0, 2.0, 2.0])]
         self.assertEqual(excitations_of(SimpleNamespace(coils=[1, 2, 3], patterns=patterns)), ((1, -2), (2, 3)))
+
+
+class CarriedCurrents(unittest.TestCase):
+    """By what the calibration node says, of what is commanded now."""
+
+    def setUp(self):
+        self.bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
+        self.bench._lock = threading.Lock()
+        self.bench._command = [1.5, 0.0]
+        self.bench._check, self.bench._checked = CoilCheck(), -math.inf
+
+    def told(self, carried=True, commanded=(1.5, 0.0), measured=(1.4, 0.1)):
+        self.bench._keep_check(CoilCheck(carried=carried, commanded=list(commanded), measured=list(measured)))
+        return self.bench.carries()
+
+    def test_are_not_known_before_it_says_so(self):
+        self.assertFalse(self.bench.carries())
+        self.assertEqual(self.bench.currents(), ())
+
+    def test_are_those_of_the_command_in_force(self):
+        self.assertTrue(self.told())
+        self.assertEqual(self.bench.currents(), (1.4, 0.1))
+        self.assertFalse(self.told(carried=False))
+        self.assertFalse(self.told(commanded=(0.0, 1.5)))
+
+    def test_are_not_known_any_more_where_it_is_silent(self):
+        self.assertTrue(self.told())
+        self.bench._checked -= laboratory.LATEST + 0.1
+        self.assertFalse(self.bench.carries())
+        self.assertEqual(self.bench.currents(), ())
 
 
 class Excitation(unittest.TestCase):
@@ -138,19 +174,7 @@ class WayToAPose(unittest.TestCase):
         pose = Pose((0.0, 0.0, 3.1), ())
         way = progress.way_to(pose, ("a", "b", "c"), (0.0, 0.0, -3.0), TOLERANCE)
         self.assertEqual(way, "c by -10.5\N{DEGREE SIGN}")
-        self.assertTrue(pose.is_at((0.0, 0.0, 3.1 - 2.0 * math.pi), TOLERANCE))
-
-
-class PosesOf(unittest.TestCase):
-    def test_counts_places_not_samples(self):
-        samples = [
-            Measured((0.0, 0.0, 0.0), (), False),
-            Measured((0.001, 0.0, 0.0), (4,), False),
-            Measured((0.3, 0.0, 0.0), (), False),
-            Measured((0.3, 0.0, 0.0), (1, -2), True),
-        ]
-        places = progress.poses_of(samples, TOLERANCE)
-        self.assertEqual([p.validation for p in places], [False, False, True])
+        self.assertEqual(progress.way_to(pose, ("a", "b", "c"), (0.0, 0.0, 3.1 - 2.0 * math.pi), TOLERANCE), "")
 
 
 class Cycles(unittest.TestCase):

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """How a guided session measures one coil at three currents in one rest, without ROS."""
 
+import dataclasses
 import unittest
 from collections import Counter
 from types import SimpleNamespace
 
+from spherical_actuator_calibration.msg import PoseProgress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.linearity import LinearityTest
 from spherical_actuator_calibration.session_guide.options import Options
@@ -17,10 +19,10 @@ PATTERNS = Pose((0.1, 0.0, 0.0), ((3, -5), (4, 6)))
 
 
 class Bench:
-    """A calibration node that holds samples, at one pose; rests are interrupted before the captures of `interrupted`."""
+    """A calibration node that holds samples, each place by the first joint angle of its pose; rests are interrupted before the captures of `interrupted`."""
 
     def __init__(self, held, interrupted=(), least_current=0.09):
-        self.held = list(held)
+        self.held = [dataclasses.replace(sample, number=n) for n, sample in enumerate(held, 1)]
         self.rest = max((sample.rest for sample in held), default=1.0)
         self.captured = []
         self._interrupted = set(interrupted)
@@ -38,20 +40,24 @@ class Bench:
     def measured(self):
         return self.held
 
-    @staticmethod
-    def pose_tolerance():
-        return 0.05
+    def progress_of(self, poses):
+        return [PoseProgress(samples=[s.number for s in self.held if is_of(s, pose)]) for pose in poses]
 
     def capture(self, current, pose, pattern):
         if len(self.captured) in self._interrupted:
             self.rest += 1.0
         self.captured.append((pattern, current))
         # What is measured is not quite what was commanded.
-        self.held.append(Measured(pose.joints, pattern, False, 1.03 * current, 0.1, self.rest))
+        self.held.append(Measured(len(self.held) + 1, pose.joints[0], pattern, False, 1.03 * current, 0.1, self.rest))
+
+
+def is_of(measured, pose):
+    """Whether it counts for the pose."""
+    return (measured.place, measured.validation) == (pose.joints[0], pose.validation)
 
 
 def sample(pattern, torque=0.1, current=FULL, rest=1.0, joints=POSE.joints, validation=False):
-    return Measured(joints, pattern, validation, current, torque, rest)
+    return Measured(0, joints[0], pattern, validation, current, torque, rest)
 
 
 SINGLY = (sample((), current=0.0), sample((3,), torque=0.2), sample((5,), torque=0.4))

@@ -11,11 +11,9 @@ import unittest
 
 import numpy
 import yaml
-from program_module import loaded
 from spherical_actuator_calibration import bounded_links, rotor_readings, text_files
 from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
 from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
-from spherical_actuator_calibration.session_guide.progress import Pose, are_carried, excited_coils
 from spherical_actuator_calibration.session_tables import export
 from spherical_actuator_calibration.unit_quaternion import normalised
 
@@ -26,8 +24,7 @@ SOURCE = pathlib.Path(os.environ["SOURCE"])
 class SharedRules(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        drawing = SOURCE / "config" / "pm_spherical_8x24.yaml"
-        told = subprocess.run([os.environ["SHARED_RULES"], drawing], stdout=subprocess.PIPE, check=True, text=True).stdout
+        told = subprocess.run([os.environ["SHARED_RULES"]], stdout=subprocess.PIPE, check=True, text=True).stdout
         cls.cases = {}
         for line in told.splitlines():
             case = json.loads(line)
@@ -48,15 +45,6 @@ class SharedRules(unittest.TestCase):
             with self.subTest(rule=rule, given=given):
                 numpy.testing.assert_allclose(answer(*given), expected, rtol=0.0, atol=EXACT)
 
-    def test_a_coil_carries_its_current(self):
-        self.hold("are_carried", are_carried)
-
-    def test_a_coil_counts_as_excited(self):
-        self.hold("excited_coils", lambda *given: list(excited_coils(*given)))
-
-    def test_a_reading_is_at_a_pose(self):
-        self.hold("is_at", lambda pose, reading, tolerance: Pose(pose, ()).is_at(reading, tolerance))
-
     def test_turns_of_a_rotor_without_joints(self):
         self.hold_angles("turns_of", lambda xyzw: rotor_readings.turns_of(*xyzw))
         self.assertEqual(list(rotor_readings.TURNS), [name for _, name in self.cases["turn_name"]])
@@ -72,11 +60,6 @@ class SharedRules(unittest.TestCase):
 
     def test_what_is_a_unit_quaternion(self):
         self.hold("is_unit", lambda xyzw: normalised(xyzw)[0] is not None)
-
-    def test_what_is_a_drawing(self):
-        is_as_drawn = loaded("calibrate_by_motion").is_as_drawn
-        self.hold("is_as_drawn", lambda text: is_as_drawn(yaml.safe_load(text)))
-        self.assertIn(False, [answer for _, answer in self.cases["is_as_drawn"]])
 
     def test_defaults(self):
         self.hold("default", lambda name: Options().excitation if name == "current" else getattr(Options(), name))

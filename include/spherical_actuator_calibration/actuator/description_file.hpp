@@ -21,6 +21,10 @@ struct CalibratedDescription {
 /// Whether samples that were held out contradicted a description when it was made: not to be used.
 bool isContradicted(const CalibratedDescription& description);
 
+/// Whether a description does not tell how well each angle of its axes is known: nobody has
+/// calibrated it, or not all of it.
+bool isAsDrawn(const CalibratedDescription& description);
+
 /// Reads a description file, nominal or calibrated: one form for both. Joint axes that are unit to
 /// 1e-3 only are normalised. Throws ConfigError that names file, line and key for anything unknown,
 /// missing, repeated, of the wrong type or out of range.

@@ -42,6 +42,9 @@ class CalibratedActuator {
   /// deviations are zero then.
   bool hasUncertainty() const { return predictor_.hasUncertainty(); }
 
+  /// Whether it is not told how well each angle of its axes is known: see isAsDrawn().
+  bool isAsDrawn() const { return sac::isAsDrawn(description_); }
+
   /// Whether samples that were held out contradicted the description when it was made: its numbers
   /// and their standard deviations are not to be trusted.
   bool isContradicted() const { return sac::isContradicted(description_); }

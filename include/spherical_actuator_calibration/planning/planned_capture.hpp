@@ -13,8 +13,8 @@
 namespace sac {
 
 /// Joint angles that differ by at most this from those of a planned pose are at it [rad], as a hand
-/// meets it: half of the least spacing of planned poses (PosePlanOptions). Panel and guided session
-/// have it from the message CalibrationStatus.
+/// meets it: half of the least spacing of planned poses (PosePlanOptions). Who leads a hand there
+/// has it from the message CalibrationStatus.
 inline constexpr double kPoseTolerance = 0.05;
 
 /// What is captured at one time: a pattern of a planned pose, without current where it has no coil.
@@ -40,7 +40,7 @@ enum class CaptureFlaw {
 CoilPattern patternOf(const Sample& sample, double current_threshold);
 
 /// The first coil, counted from 0, that does not carry what the capture has it commanded, none for
-/// most; nothing where all do. `measured` [A], one per coil: see currentTolerance().
+/// most; nothing where all do. `measured` [A], one per coil.
 std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
                                      const Eigen::VectorXd& measured,
                                      double current_threshold);

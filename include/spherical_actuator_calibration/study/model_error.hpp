@@ -5,8 +5,8 @@
 namespace sac {
 
 /// By how much each axis and offset of an actuator may be off its description [rad], for rehearsals
-/// of a motion that goes by it. 30 mrad for a drawing, and wherever a standard deviation is not
-/// stated; else four of the largest, between 5 and 30 mrad.
+/// of a motion that goes by it. 30 mrad for a drawing (isAsDrawn());
+/// else four of the largest, between 5 and 30 mrad.
 double likelyModelError(const CalibratedDescription& description);
 
 }  // namespace sac

@@ -13,7 +13,10 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
+#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_places.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/utc_date.hpp"
 #include "spherical_actuator_calibration/ros/recording/report_page.hpp"
 
@@ -114,9 +117,18 @@ bool CalibrationNode::capture(msg::Capture::Request& request, msg::Capture::Resp
 
 bool CalibrationNode::listSamples(msg::ListSamples::Request& /*request*/,
                                   msg::ListSamples::Response& response) {
-  const std::lock_guard<std::mutex> lock(session_mutex_);
-  for (const Sample& sample : session_.calibration().samples()) {
+  std::vector<Sample> samples;
+  {
+    const std::lock_guard<std::mutex> lock(session_mutex_);
+    samples = session_.calibration().samples();
+  }
+  // The configuration never changes while the node runs.
+  const double threshold = options_.calibration.estimation.current_threshold;
+  SamplePlaces places;
+  for (const Sample& sample : samples) {
     response.samples.push_back(topics_.sampleMessage(sample));
+    response.excited.push_back(patternToRos(patternOf(sample, threshold)));
+    response.places.push_back(static_cast<std::uint32_t>(numberOf(places.placeOf(sample))));
   }
   return true;
 }

@@ -1,12 +1,16 @@
 #include "spherical_actuator_calibration/ros/calibration_node/measurement_intake.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 #include <ros/init.h>
+#include <ros/time.h>
+#include <spherical_actuator_calibration/CoilCheck.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/measurement/carried_currents.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
@@ -28,6 +32,7 @@ constexpr StreamLimits kLimits = {20.0, 0.5};
 constexpr double kStreamsEnded = 2.0;
 
 constexpr double kCapturePoll = 0.01;  // [s]
+constexpr double kCheckPeriod = 0.05;  // [s] of coil_check
 
 }  // namespace
 
@@ -35,6 +40,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
     : has_joints_(nominal.has_joints),
+      current_threshold_(config.estimation.current_threshold),
       merger_(config.samples.clock_reset),
       builder_(config.samples, modelledCoils(nominal), nominal.has_joints),
       motion_(modelledCoils(nominal)),
@@ -53,9 +59,11 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
   subscribe<geometry_msgs::QuaternionStamped>(orientations_);
   subscribe<geometry_msgs::Vector3Stamped>(torques_);
   subscribe<msg::CoilCurrents>(currents_);
-  if (has_joints_) {
-    subscribeCommands();
-  }
+  subscribeCommands();
+  coil_check_ = node_.advertise<msg::CoilCheck>("coil_check", 1);
+  check_timer_ =
+      node_.createWallTimer(ros::WallDuration(kCheckPeriod),
+                            [this](const ros::WallTimerEvent& /*event*/) { checkCoils(); });
   receiver_.start();
 }
 
@@ -89,7 +97,10 @@ void MeasurementIntake::subscribeCommands() {
   const auto receive = [this](const msg::CoilCurrents::ConstPtr& message) {
     const CurrentCommand& command = reader_.readCommand(*message);
     const std::lock_guard<std::mutex> lock(mutex_);
-    motion_.add(command);
+    newest_command_ = command.current;
+    if (has_joints_) {
+      motion_.add(command);
+    }
   };
   subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(node_,
                                                              topic,
@@ -221,6 +232,7 @@ void MeasurementIntake::build(const AnyMeasurement& measurement) {
   } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
     follow(*current);
     newest_currents_ = current->current;
+    currents_arrived_ = steadySeconds();
     build(*current, report.currents, currents_);
   }
 }
@@ -248,6 +260,30 @@ void MeasurementIntake::build(const Measurement& measurement,
     }
   }
   monitor.accept(stampToRos(measurement.stamp));
+}
+
+// In the receiving thread: however long services take, it is told.
+void MeasurementIntake::checkCoils() {
+  if (coil_check_.getNumSubscribers() == 0) {
+    return;
+  }
+  Eigen::VectorXd commanded;
+  Eigen::VectorXd measured;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    commanded = newest_command_;
+    if (steadySeconds() - currents_arrived_ <= kStreamsEnded) {
+      measured = newest_currents_;
+    }
+  }
+  msg::CoilCheck message;
+  message.header.stamp = ros::Time::now();
+  message.commanded.assign(commanded.data(), commanded.data() + commanded.size());
+  message.measured.assign(measured.data(), measured.data() + measured.size());
+  message.carried =
+      static_cast<std::uint8_t>(measured.size() > 0 && measured.size() == commanded.size() &&
+                                !coilAmiss(commanded, measured, current_threshold_));
+  coil_check_.publish(message);
 }
 
 void MeasurementIntake::diagnoseDwells(DiagnosticStatus& status) {

@@ -14,16 +14,19 @@ namespace {
 std::vector<msg::CoilPattern> patternsToRos(const std::vector<CoilPattern>& patterns) {
   std::vector<msg::CoilPattern> messages;
   messages.reserve(patterns.size());
-  for (const CoilPattern& pattern : patterns) {
-    msg::CoilPattern& message = messages.emplace_back();
-    for (const SignedCoil& coil : pattern) {
-      message.coils.push_back(coil.sign * static_cast<std::int32_t>(numberOf(coil.coil)));
-    }
-  }
+  std::transform(patterns.begin(), patterns.end(), std::back_inserter(messages), patternToRos);
   return messages;
 }
 
 }  // namespace
+
+msg::CoilPattern patternToRos(const CoilPattern& pattern) {
+  msg::CoilPattern message;
+  for (const SignedCoil& coil : pattern) {
+    message.coils.push_back(coil.sign * static_cast<std::int32_t>(numberOf(coil.coil)));
+  }
+  return message;
+}
 
 CoilPattern patternFromRos(const std::vector<std::int32_t>& signed_numbers, std::size_t coils) {
   CoilPattern pattern;
@@ -69,6 +72,7 @@ msg::PosePatterns poseToRos(const PoseToMeasure& pose) {
 msg::PoseProgress progressToRos(const PoseProgress& progress) {
   msg::PoseProgress message;
   message.pose = poseToRos(progress.pose());
+  message.samples = progress.samples();
   message.has_sample = static_cast<std::uint8_t>(progress.hasSample());
   message.is_measured = static_cast<std::uint8_t>(progress.isMeasured());
   message.missing = patternsToRos(progress.missing());

@@ -50,11 +50,8 @@ class _AtTheBench:
 
     def _progress(self, account):
         message = account.message(self._laboratory.readings.fresh())
-        message.carries = self._carry(message.coils, message.current)
+        message.carries = self._laboratory.carries()
         return message
-
-    def _carry(self, pattern, current):
-        return self._calibration.carry(self._laboratory.currents(), pattern, current)
 
 
 class SessionAction(_AtTheBench):
@@ -167,7 +164,7 @@ class ExciteAction(_AtTheBench):
         was_there = False
         while task.time() < begin + duration:
             task.pause(POLL)
-            is_there = self._carry(pattern, goal.current)
+            is_there = self._laboratory.carries()
             if not is_there and (was_there or task.time() > begin + SLOW):
                 complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
                 raise RuntimeError(f"{in_words(pattern)}: {self._missed(goal.current, pattern)}: {complaint}.")

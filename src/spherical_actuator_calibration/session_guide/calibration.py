@@ -22,7 +22,7 @@ from spherical_actuator_calibration.srv import (
 )
 from std_srvs.srv import Trigger
 
-from .progress import Measured, Pose, are_carried, excited_coils, service_of
+from .progress import Measured, Pose, service_of
 from .task import Task
 
 SERVICES = {
@@ -157,28 +157,10 @@ class Calibration:
         service, coil = service_of(cycle)
         return self.call(service, coil=coil)
 
-    def carry(self, currents, pattern, current):
-        """Whether each coil carries what it is commanded: `current` [A] those of the pattern, with their signs, the others
-        none. Not before the first status."""
-        status = self._latest[CalibrationStatus]
-        return status is not None and are_carried(
-            currents, pattern, current, status.current_tolerance, status.current_tolerance_share
-        )
-
     def measured(self):
         """Samples that are held."""
-        return [self._measured(sample) for sample in self.call("list_samples").samples]
-
-    def _measured(self, sample):
-        torque = sample.torque
-        return Measured(
-            tuple(sample.joint_position),
-            excited_coils(sample.current, self.status().current_threshold),
-            sample.validation,
-            max(map(abs, sample.current), default=0.0),
-            math.hypot(torque.x, torque.y, torque.z),
-            sample.dwell.to_sec(),
-        )
+        answer = self.call("list_samples")
+        return [_measured(*each) for each in zip(answer.samples, answer.places, answer.excited)]
 
     def progress_of(self, poses):
         """A PoseProgress of each pose: what the samples that are held now lack there. Asked for, not listened to: what
@@ -238,6 +220,19 @@ class Calibration:
         return [pose_of(pose) for pose in answer.poses], answer.current
 
 
+def _measured(sample, place, excited):
+    torque = sample.torque
+    return Measured(
+        sample.id,
+        place,
+        tuple(excited.coils),
+        sample.validation,
+        max(map(abs, sample.current), default=0.0),
+        math.hypot(torque.x, torque.y, torque.z),
+        sample.dwell.to_sec(),
+    )
+
+
 def message_of(pose):
     """The PosePatterns of a Pose."""
     patterns = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations]
@@ -259,4 +254,9 @@ def excitations_of(planned):
     """Patterns of a PlannedPose."""
     if not planned.patterns:
         return tuple((coil,) for coil in planned.coils)
-    return tuple(excited_coils(pattern.current, 1e-9) for pattern in planned.patterns)
+    return tuple(_signed_coils(pattern.current) for pattern in planned.patterns)
+
+
+def _signed_coils(currents):
+    """Numbers of the coils that are to have current, negative where that is."""
+    return tuple(coil if current > 0.0 else -coil for coil, current in enumerate(currents, 1) if current)

@@ -1,29 +1,32 @@
 """The laboratory as a session sees it: where the rotor is, currents, and what moves and excites the rotor."""
 
+import math
 import threading
 import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from spherical_actuator_calibration.msg import CoilCurrents
+from spherical_actuator_calibration.msg import CoilCheck, CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
 from .task import LOOK
 
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 FIRST = 1.0  # [s] for the first reading and currents
+LATEST = 2.0  # [s] after which what the calibration node has told of the coils says nothing any more
 
 
 class Laboratory:
-    """While it is held it commands coils and fixture, and keeps the last currents; else nobody here listens to the
-    streams: at 1 kHz that alone takes a fifth of a processor. `readings`: of rotor_readings, not listening."""
+    """While it is held it commands coils and fixture, and hears from the calibration node what the coils carry; else
+    nobody here listens. `readings`: of rotor_readings, not listening."""
 
     def __init__(self, ns, coils, readings):
         self._ns = ns
         self._coils = coils
         self.readings = readings
         self._listeners = []
-        self._currents = None
+        self._check = CoilCheck()
+        self._checked = -math.inf  # [s] when that came
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
         self._command = [0.0] * coils
@@ -34,9 +37,10 @@ class Laboratory:
         self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics)
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
 
-    def _keep_currents(self, message):
+    def _keep_check(self, message):
         with self._lock:
-            self._currents = tuple(message.current)
+            self._check = message
+            self._checked = time.monotonic()
 
     def _keep_diagnostics(self, message):
         for status in message.status:
@@ -65,9 +69,9 @@ class Laboratory:
 
     def _listen(self):
         self.readings.listen()
-        currents = rospy.Subscriber(self._ns + "/coil_currents", CoilCurrents, self._keep_currents)
+        check = rospy.Subscriber(self._ns + "/coil_check", CoilCheck, self._keep_check)
         with self._lock:
-            self._listeners = [self.readings.close, currents.unregister]
+            self._listeners = [self.readings.close, check.unregister]
         end = time.monotonic() + FIRST
         while time.monotonic() < end and not (self.readings.fresh() and self.currents()):
             time.sleep(LOOK)
@@ -75,7 +79,7 @@ class Laboratory:
     def _stop_listening(self):
         with self._lock:
             listeners, self._listeners = self._listeners, []
-            self._currents = None
+            self._checked = -math.inf
         for close in listeners:
             close()
 
@@ -92,7 +96,16 @@ class Laboratory:
     def currents(self):
         """The last measured ones [A]; empty before the first, and while it is not held."""
         with self._lock:
-            return self._currents or ()
+            return tuple(self._check.measured) if self._is_told() else ()
+
+    def carries(self):
+        """Whether all coils carry what is commanded now, as the calibration node judges."""
+        with self._lock:
+            is_of_now = list(self._check.commanded) == self._command
+            return self._is_told() and is_of_now and bool(self._check.carried)
+
+    def _is_told(self):
+        return time.monotonic() - self._checked <= LATEST
 
     def driver_complaint(self):
         """What the coil driver says is wrong; empty when it says nothing."""

@@ -52,9 +52,9 @@ class LinearityTest:
 
     def _missing(self, pose):
         """The same of the coil that makes most torque, in the last rest at a pose."""
-        tolerance = self._calibration.pose_tolerance()
+        (progress,) = self._calibration.progress_of([pose])
         measured = self._calibration.measured()
-        there = [s for s in measured if not s.validation and pose.is_at(s.joints, tolerance)]
+        there = [sample for sample in measured if sample.number in progress.samples]
         excited = [s for s in there if s.pattern]
         alone = [s for s in excited if len(s.pattern) == 1] or excited
         if not alone:

@@ -17,10 +17,6 @@ class Pose:
     excitations: tuple
     validation: bool = False
 
-    def is_at(self, joints, tolerance):
-        """Whether joint angles [rad] differ from the pose by no more than the tolerance."""
-        return distance(self.joints, joints) <= tolerance
-
     def way_from(self, joints):
         """[rad] by which each joint is to turn from these angles, the shorter way round."""
         return [difference(wanted, angle) for wanted, angle in zip(self.joints, joints)]
@@ -28,32 +24,16 @@ class Pose:
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here: where, which pattern, whether held out, at which current, and in which rest."""
+    """What counts of a sample here, as the calibration node tells it (list_samples): which one, the number of its place,
+    the coils that it excites, whether held out, at which current, and in which rest."""
 
-    joints: tuple
+    number: int
+    place: int
     pattern: tuple
     validation: bool
     current: float = 0.0  # [A] the largest |current| of a coil
     torque: float = 0.0  # [N·m] its length
     rest: float = 0.0  # [s] when that began; later ones are newer
-
-
-def excited_coils(currents, threshold):
-    """The pattern of the coils that count as excited."""
-    return tuple(n if i > 0.0 else -n for n, i in enumerate(currents, 1) if abs(i) >= threshold)
-
-
-def are_carried(currents, pattern, current, tolerance, share):
-    """Whether measured currents [A] are those commanded: `current` of each coil of the pattern, with its sign, none of the
-    others. `tolerance` [A], or a share of the command where that is more: see CalibrationStatus."""
-    commanded = [0.0] * len(currents)
-    for coil in pattern:
-        if abs(coil) > len(currents):
-            return False
-        commanded[abs(coil) - 1] = math.copysign(current, coil)
-    return bool(currents) and all(
-        abs(measured - wanted) <= max(tolerance, share * abs(wanted)) for measured, wanted in zip(currents, commanded)
-    )
 
 
 def joint_stddev(joints):
@@ -88,17 +68,6 @@ def way_to(pose, names, joints, tolerance):
     """What is left to turn: "joint_1 by +4.8°, joint_3 by -30.0°"; empty at the pose."""
     left = zip(names, pose.way_from(joints))
     return ", ".join(f"{name} by {in_degrees(way)}" for name, way in left if abs(way) > tolerance)
-
-
-def poses_of(measured, tolerance):
-    """Different places of samples, in the order of their first sample."""
-    places = []
-    for sample in measured:
-        pose = Pose(sample.joints, (), sample.validation)
-        known = (p for p in places if p.is_at(sample.joints, tolerance) and p.validation == sample.validation)
-        if next(known, None) is None:
-            places.append(pose)
-    return places
 
 
 def patterns_to_capture(there):

@@ -82,10 +82,10 @@ class Session:
         current tells nothing of poles and coils: a calibration of the joint is no part of the session."""
         excites = bool(self._calibration.parameters().coils)
         measured = [one for one in self._calibration.measured() if not one.validation and (one.pattern or not excites)]
-        tolerance = self._calibration.pose_tolerance()
-        done = progress.poses_of(measured, tolerance)
-        begun = [pose for pose in interrupted if not any(one.is_at(pose.joints, tolerance) for one in done)]
-        return len(done) + len(begun)
+        counted = {one.number for one in measured}
+        begun = self._calibration.progress_of(interrupted) if interrupted else []
+        others = [pose for pose in begun if counted.isdisjoint(pose.samples)]
+        return len({one.place for one in measured}) + len(others)
 
     def _poses_of_files(self):
         source = self._options.plan or self._options.repeat

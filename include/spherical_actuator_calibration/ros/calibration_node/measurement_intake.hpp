@@ -8,8 +8,10 @@
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
+#include <ros/wall_timer.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
@@ -26,7 +28,8 @@ namespace sac {
 
 /// Receives the four streams of measurements (joint_states, measured_orientation, measured_torque,
 /// coil_currents) in a thread of its own, so that nothing else delays them, and makes samples of
-/// them; for motions it hears coil_command as well. Of a rotor without joints there are three:
+/// them. It hears coil_command as well, for motions, and to tell whether the coils carry what they
+/// are commanded (topic coil_check). Of a rotor without joints there are three:
 /// joint_states are not waited for, and no motion is kept. All member functions may be called from
 /// any thread.
 class MeasurementIntake {
@@ -80,17 +83,23 @@ class MeasurementIntake {
              const StreamStatistics& statistics,
              StreamMonitor& monitor);
 
+  /// Publishes coil_check, if somebody listens.
+  void checkCoils();
+
   CaptureProgress capture(Stamp from, double duration) const;
   std::optional<Stamp> newest() const;
   void diagnoseDwells(DiagnosticStatus& status);
 
   const bool has_joints_;
+  const double current_threshold_;  ///< [A]
   std::atomic<std::uint64_t> received_{0};
 
   mutable std::mutex mutex_;  ///< of all down to finished_
   StreamMerger merger_;
   SampleBuilder builder_;
   Eigen::VectorXd newest_currents_;
+  double currents_arrived_ = 0.0;  ///< when these came, by a clock that never jumps [s]
+  Eigen::VectorXd newest_command_;
   MotionMemory motion_;
   MotionSlicer slicer_;
   ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
@@ -106,6 +115,8 @@ class MeasurementIntake {
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   std::vector<ros::Subscriber> subscribers_;
+  ros::Publisher coil_check_;
+  ros::WallTimer check_timer_;
   ros::AsyncSpinner receiver_;
 };
 

@@ -16,6 +16,8 @@ namespace sac {
 /// ConfigError where an actuator with so many coils has no such, or they do not ascend.
 CoilPattern patternFromRos(const std::vector<std::int32_t>& signed_numbers, std::size_t coils);
 
+msg::CoilPattern patternToRos(const CoilPattern& pattern);
+
 /// Likewise; each pattern has a coil.
 PoseToMeasure poseFromRos(const msg::PosePatterns& message, std::size_t coils);
 msg::PosePatterns poseToRos(const PoseToMeasure& pose);
