@@ -34,6 +34,21 @@ struct CurrentReading {
   double step() const { return 0.5 * (before + after); }
 };
 
+/// Readings [first, last) of the currents within a window, whose stamps are later by `delay` [s]
+/// than what they tell: each has `beside` others on both sides.
+struct CurrentRange {
+  CurrentRange(const MotionSpan& span, const MotionWindow& window, double delay, std::size_t beside)
+      : first(
+            std::max(span.current_times.firstAfter(span.track.time(window.first) + delay), beside)),
+        last(std::min(span.current_times.firstFrom(span.track.time(window.last) + delay),
+                      std::max(span.current_times.size(), beside) - beside)) {}
+
+  std::size_t size() const { return last > first ? last - first : 0; }
+
+  std::size_t first;
+  std::size_t last;
+};
+
 /// Calls visit(CurrentReading) for every `stride`th of a part of those within a window, whose
 /// stamps are later by `delay` [s] than what they tell. Each has neighbours on both sides, and
 /// readings of the joints around it.
@@ -45,13 +60,10 @@ void visitCurrents(const MotionSpan& span,
                    const WindowPart& part,
                    const Visit& visit) {
   const StampTimes& times = span.current_times;
-  const std::size_t first =
-      std::max(times.firstAfter(span.track.time(window.first) + delay), stride);
-  const std::size_t last = std::min(times.firstFrom(span.track.time(window.last) + delay),
-                                    std::max(times.size(), stride) - stride);
-  const std::size_t count = last > first ? (last - first + stride - 1) / stride : 0;
+  const CurrentRange range(span, window, delay, stride);
+  const std::size_t count = (range.size() + stride - 1) / stride;
   for (std::size_t m = beginOf(count, part); m < endOf(count, part); ++m) {
-    const std::size_t n = first + m * stride;
+    const std::size_t n = range.first + m * stride;
     const std::optional<TrackPoint> track = span.track.at(times[n] - delay);
     if (track) {
       visit(CurrentReading{

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "spherical_actuator_calibration/base/median.hpp"
 
 namespace sac {
@@ -59,22 +61,58 @@ std::size_t JointTrack::rateReach() const {
   return static_cast<std::size_t>(kSpan / (2.0 * step_));
 }
 
-std::optional<TrackPoint> JointTrack::at(double time) const {
-  constexpr std::size_t kStencil = 4;
+std::optional<TrackPoint> JointTrack::begun(double time, std::size_t count) const {
   const std::size_t above = times_.firstAfter(time);
-  if (times_.size() < kStencil || above == 0 || above == times_.size()) {
+  if (times_.size() < count || above == 0 || above == times_.size()) {
     return std::nullopt;
   }
-  const std::size_t n = above - 1;
   TrackPoint point;
-  point.first = std::min(n == 0 ? 0 : n - 1, times_.size() - kStencil);
-  for (std::size_t k = 0; k + 1 < kStencil; ++k) {
+  point.first = std::min(above - std::min(above, count / 2), times_.size() - count);
+  point.count = count;
+  for (std::size_t k = 0; k + 1 < count; ++k) {
     if (!isWhole(point.first + k)) {
       return std::nullopt;
     }
   }
   point.position.setZero();
   point.velocity.setZero();
+  return point;
+}
+
+std::optional<TrackPoint> JointTrack::smoothAt(double time, double length) const {
+  const auto around = static_cast<std::size_t>(length / step_ + 0.5);
+  const std::size_t count = std::min(kMostShares, around);
+  if (count <= kStencil) {
+    return at(time);
+  }
+  std::optional<TrackPoint> point = begun(time, count);
+  if (!point) {
+    return point;
+  }
+  // Powers of time, in steps from where it is asked for.
+  Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, kMostShares> powers(4, point->count);
+  for (std::size_t a = 0; a < point->count; ++a) {
+    const double t = (times_[point->first + a] - time) / step_;
+    powers.col(static_cast<Eigen::Index>(a)) << 1.0, t, t * t, t * t * t;
+  }
+  const Eigen::Matrix4d squares = powers * powers.transpose();
+  const Eigen::Matrix<double, 4, 2> wanted = Eigen::Matrix<double, 4, 2>::Identity();
+  const Eigen::Matrix<double, 4, 2> factors = Eigen::LDLT<Eigen::Matrix4d>(squares).solve(wanted);
+  for (std::size_t a = 0; a < point->count; ++a) {
+    const Eigen::Vector2d weights = factors.transpose() * powers.col(static_cast<Eigen::Index>(a));
+    point->share[a] = weights[0];
+    point->position += weights[0] * reading(point->first + a);
+    point->velocity += (weights[1] / step_) * reading(point->first + a);
+  }
+  return point;
+}
+
+std::optional<TrackPoint> JointTrack::at(double time) const {
+  std::optional<TrackPoint> found = begun(time, kStencil);
+  if (!found) {
+    return found;
+  }
+  TrackPoint& point = *found;
   std::array<double, kStencil> times{};
   for (std::size_t a = 0; a < kStencil; ++a) {
     times[a] = times_[point.first + a];
@@ -96,7 +134,7 @@ std::optional<TrackPoint> JointTrack::at(double time) const {
     point.position += value * reading(point.first + a);
     point.velocity += slope * reading(point.first + a);
   }
-  return point;
+  return found;
 }
 
 }  // namespace sac

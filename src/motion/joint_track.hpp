@@ -12,12 +12,16 @@
 
 namespace sac {
 
+/// Of so many readings a TrackPoint may be made.
+constexpr std::size_t kMostShares = 9;
+
 /// Joint angles at a time between readings.
 struct TrackPoint {
-  Eigen::Vector3d position;       ///< [rad]
-  Eigen::Vector3d velocity;       ///< [rad/s]
-  std::size_t first = 0;          ///< of the four readings that it is made of
-  std::array<double, 4> share{};  ///< of each in `position`
+  Eigen::Vector3d position;                 ///< [rad]
+  Eigen::Vector3d velocity;                 ///< [rad/s]
+  std::size_t first = 0;                    ///< of the readings that it is made of
+  std::size_t count = 0;                    ///< of these
+  std::array<double, kMostShares> share{};  ///< of each in `position`
 };
 
 /// The readings of one span as a smooth motion: cubic through the nearest four readings.
@@ -41,8 +45,16 @@ class JointTrack {
 
   /// Nothing where readings are missing.
   std::optional<TrackPoint> at(double time) const;
+  /// The same by the cubic that is nearest to all readings of so long a time [s], at most
+  /// kMostShares: with less noise than one reading has.
+  std::optional<TrackPoint> smoothAt(double time, double length) const;
 
  private:
+  static constexpr std::size_t kStencil = 4;  ///< readings that a cubic goes through
+
+  /// `count` readings around a time; nothing where some are missing.
+  std::optional<TrackPoint> begun(double time, std::size_t count) const;
+
   const MotionStreams* streams_;
   StampTimes times_;
   double step_ = 0.0;

@@ -26,6 +26,14 @@ std::vector<Eigen::Index> uncertain(std::vector<Eigen::Index> coordinates,
   return coordinates;
 }
 
+/// Always of the same readings, or their noise would look like an error of derivatives.
+BalanceOrder orderOf(bool with_covariance) {
+  BalanceOrder order;
+  order.covariance = with_covariance;
+  order.at_nodes = true;
+  return order;
+}
+
 }  // namespace
 
 LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
@@ -48,6 +56,7 @@ LiveMotionWork::LiveMotionWork(const CalibrationModel& model,
       anchor_(prior_.x),
       balance_(prior_.x.size()),
       orientation_(static_cast<Eigen::Index>(orienting_.size())),
+      means_(orientation_),
       frozen_balance_(prior_.x.size()),
       frozen_orientation_(static_cast<Eigen::Index>(orienting_.size())),
       frozen_at_(prior_.x),
@@ -152,8 +161,7 @@ double LiveMotionWork::linearizeKept(bool with_covariance) {
     LiveWindow& window = kept_[n];
     const bool is_first = window.linearizedAt().size() == 0;
     const Eigen::VectorXd expected = is_first ? Eigen::VectorXd() : window.balanceAt(x_);
-    BalanceOrder order;
-    order.covariance = with_covariance || is_first;
+    const BalanceOrder order = orderOf(with_covariance || is_first);
     window.linearize(point, order, evaluators_[worker]);
     if (order.covariance) {
       window.whiten(factors_.joints, factors_.currents * noise_.current * noise_.current);
@@ -213,6 +221,10 @@ void LiveMotionWork::addTo(InformationSum& balance,
   orientation.addAt(all, moved);
 }
 
+void LiveMotionWork::addMean(const LiveWindow& window, double weight) {
+  window.addMeanTo(means_, anchor_(orienting_), weight);
+}
+
 /// All that is kept and all that was, at the estimate of now.
 void LiveMotionWork::sumUp() {
   anchor_ = x_;
@@ -221,8 +233,10 @@ void LiveMotionWork::sumUp() {
   balance_.moveBy(apart);
   orientation_ = frozen_orientation_;
   orientation_.moveBy(apart(orienting_));
+  means_ = InformationSum(orientation_.gradient().size());
   for (const LiveWindow& window : kept_) {
     addTo(balance_, orientation_, window);
+    addMean(window, 1.0);
   }
 }
 
@@ -258,7 +272,7 @@ bool LiveMotionWork::misleads() {
   const LiveWindow& window = kept_[next_probe_ % kept_.size()];
   next_probe_ += 7;
   window.evaluate(
-      MotionPoint(*model_, places_, x_, &tabulated_), {}, evaluators_, [] {}, probe_);
+      MotionPoint(*model_, places_, x_, &tabulated_), orderOf(false), evaluators_, [] {}, probe_);
   const double wrong = window.whitened(probe_.residual - window.balanceAt(x_)).squaredNorm();
   return wrong * static_cast<double>(kept_.size()) > live_.tolerance * live_.tolerance;
 }
@@ -284,9 +298,7 @@ bool LiveMotionWork::contradicts(const LiveWindow& window) const {
 /// A window that just came.
 void LiveMotionWork::take(LiveWindow& window) {
   const MotionPoint point(*model_, places_, x_, &tabulated_);
-  BalanceOrder order;
-  order.covariance = true;
-  window.linearize(point, order, evaluators_, [&] {
+  window.linearize(point, orderOf(true), evaluators_, [&] {
     window.linearizeOrientations(*model_, places_, orienting_, x_, noise_.orientation);
     steps_.add(window.streams());
     silent_coils_.add(window.streams());
@@ -298,6 +310,7 @@ void LiveMotionWork::take(LiveWindow& window) {
   window.term.active = !contradicts(window);
   lately_left_out_ += window.term.active ? 0 : 1;
   addTo(balance_, orientation_, window);
+  addMean(window, 1.0);
 }
 
 /// Where more than the last ones are kept.
@@ -307,6 +320,7 @@ void LiveMotionWork::freezeOldest() {
   }
   const LiveWindow& oldest = kept_.front();
   if (estimate_.is_told) {
+    addMean(oldest, -1.0);
     std::swap(anchor_, frozen_at_);
     addTo(frozen_balance_, frozen_orientation_, oldest);
     std::swap(anchor_, frozen_at_);

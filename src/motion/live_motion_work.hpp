@@ -43,11 +43,14 @@ class LiveMotionWork {
   bool misleads();
   Eigen::VectorXd residualOf(const LiveWindow& window) const { return window.residualAt(x_); }
   bool contradicts(const LiveWindow& window) const;
+  /// To the means; `weight` −1 takes it off again.
+  void addMean(const LiveWindow& window, double weight);
   void addTo(InformationSum& balance, InformationSum& orientation, const LiveWindow& window) const;
   Eigen::MatrixXd information() const;
   void solve();
   Eigen::MatrixXd orientingColumns(const Eigen::MatrixXd& of_free) const;
   void tell(const Eigen::MatrixXd& inverse);
+  void tellBesideHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own);
   void tellWithHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own);
   double squares() const;
   double freedom() const;
@@ -86,6 +89,7 @@ class LiveMotionWork {
   Eigen::VectorXd anchor_;
   InformationSum balance_;
   InformationSum orientation_;
+  InformationSum means_;  ///< of orientations over each window that is kept
   // Of windows that are not kept any more, at `frozen_at_`.
   InformationSum frozen_balance_;
   InformationSum frozen_orientation_;

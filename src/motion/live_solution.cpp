@@ -46,14 +46,14 @@ double LiveMotionWork::freedom() const {
 
 /// Reduced, of the tracker's means over the windows that are kept.
 double LiveMotionWork::orientationChiSquare() const {
-  const Eigen::VectorXd x = x_(orienting_);
-  double squares = 0.0;
   double freedom = -static_cast<double>(model_->space().pole(0));
   for (const LiveWindow& window : kept_) {
-    squares += window.meanSquare(x);
     freedom += window.orientations > 0 ? 3.0 : 0.0;
   }
-  return freedom > 2.0 ? squares / freedom : 0.0;
+  const Eigen::VectorXd apart = x_ - anchor_;
+  InformationSum here = means_;
+  here.moveBy(apart(orienting_));
+  return freedom > 2.0 ? here.squaredMisfit() / freedom : 0.0;
 }
 
 void LiveMotionWork::countServing() {
@@ -97,22 +97,31 @@ void LiveMotionWork::tell(const Eigen::MatrixXd& inverse) {
   }
   ParameterBelief& belief = estimate_.belief;
   belief.x = x_;
-  belief.covariance = prior_.covariance;
-  for (const Eigen::Index p : free_) {
-    belief.covariance.row(p).setZero();
-    belief.covariance.col(p).setZero();
-  }
-  if (!holds_uncertain_) {
-    belief.covariance(free_, free_) = own;
+  if (static_cast<Eigen::Index>(free_.size()) == x_.size()) {
+    belief.covariance = own;
   } else {
-    tellWithHeld(inverse, own);
+    tellBesideHeld(inverse, own);
   }
   const double noise = std::sqrt(factors_.currents) * noise_.current;
   by_steps_ = steps_.widen(model_->space(), noise, belief);
 }
 
-/// What is held is as uncertain as before, and what is estimated because of it, too. `own`: the
-/// covariance of what is free, without that.
+/// `own`: the covariance of what is free, without what is held.
+void LiveMotionWork::tellBesideHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own) {
+  Eigen::MatrixXd& covariance = estimate_.belief.covariance;
+  covariance = prior_.covariance;
+  for (const Eigen::Index p : free_) {
+    covariance.row(p).setZero();
+    covariance.col(p).setZero();
+  }
+  if (holds_uncertain_) {
+    tellWithHeld(inverse, own);
+  } else {
+    covariance(free_, free_) = own;
+  }
+}
+
+/// What is held is as uncertain as before, and what is estimated because of it, too.
 void LiveMotionWork::tellWithHeld(const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& own) {
   ParameterBelief& belief = estimate_.belief;
   Eigen::MatrixXd others = information()(free_, Eigen::all);

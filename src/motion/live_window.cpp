@@ -9,12 +9,10 @@
 namespace sac {
 
 LiveWindow::LiveWindow(MotionSlice slice)
-    : streams_(std::make_unique<const MotionStreams>(std::move(slice.streams))), span_(*streams_) {
+    : streams_(std::make_unique<const MotionStreams>(std::move(slice.streams))),
+      span_(*streams_),
+      duration_(span_.track.time(slice.window.last) - span_.track.time(slice.window.first)) {
   term.window = {0, slice.window.first, slice.window.last};
-}
-
-double LiveWindow::duration() const {
-  return span_.track.time(term.window.last) - span_.track.time(term.window.first);
 }
 
 void LiveWindow::linearize(const MotionPoint& point,
@@ -90,11 +88,13 @@ void LiveWindow::linearizeOrientations(const CalibrationModel& model,
   orientation.addDense(jacobian.topRows(rows), residual.head(rows));
 }
 
-double LiveWindow::meanSquare(const Eigen::VectorXd& x) const {
-  return orientations == 0 ? 0.0
-                           : (orientation_residual_ + orientation_jacobian_ * (x - orientation_at_))
-                                     .squaredNorm() /
-                                 static_cast<double>(orientations);
+void LiveWindow::addMeanTo(InformationSum& sum, const Eigen::VectorXd& x, double weight) const {
+  if (orientations == 0) {
+    return;
+  }
+  const Eigen::Vector3d residual =
+      orientation_residual_ + orientation_jacobian_ * (x - orientation_at_);
+  sum.addDense(orientation_jacobian_, residual, weight / static_cast<double>(orientations));
 }
 
 void LiveWindow::whiten(double joint_factor, double current_variance) {

@@ -20,7 +20,7 @@ class LiveWindow {
   const MotionSpan& span() const { return span_; }
   const MotionStreams& streams() const { return *streams_; }
   WindowRange range() const { return {term.window.first, term.window.last}; }
-  double duration() const;
+  double duration() const { return duration_; }
 
   /// Linearises its balance at a point; its whitening as well where the order says so.
   void linearize(const MotionPoint& point, const BalanceOrder& order, BalanceEvaluator& evaluator);
@@ -58,9 +58,10 @@ class LiveWindow {
     return term.whitening.triangularView<Eigen::Lower>() * term.balance.jacobian;
   }
   const Eigen::VectorXd& linearizedAt() const { return linearized_at_; }
-  /// Squared norm of the sum of whitened orientation residuals at x, over their number: three on
-  /// average where their noise is white. `x`: of the coordinates that orientations tell of.
-  double meanSquare(const Eigen::VectorXd& x) const;
+  /// Adds the sum of whitened orientation residuals at x, over the root of their number, whose
+  /// square is three on average where their noise is white. `x`: of the coordinates that
+  /// orientations tell of.
+  void addMeanTo(InformationSum& sum, const Eigen::VectorXd& x, double weight) const;
 
   WindowTerm term;
   InformationSum orientation{0};  ///< at the place of linearisation
@@ -69,6 +70,7 @@ class LiveWindow {
  private:
   std::unique_ptr<const MotionStreams> streams_;  ///< does not move with the window
   MotionSpan span_;
+  double duration_;  ///< [s]
   Eigen::VectorXd linearized_at_;
   // Of whitened orientations, summed up.
   Eigen::Vector3d orientation_residual_ = Eigen::Vector3d::Zero();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "interval_momentum.hpp"
+#include "node_currents.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
 
 namespace sac {
@@ -196,6 +197,12 @@ void BalanceEvaluator::addImpulse(const MotionSpan& span,
                                   const MotionPoint& point,
                                   const BalanceOrder& order,
                                   const WindowPart& part) {
+  const std::size_t every = order.at_nodes ? nodeStride(span) : 1;
+  thinning_ = static_cast<double>(std::max(order.stride, every));
+  if (every > 1) {
+    addNodes(span, point, part, every);
+    return;
+  }
   const TestFunctions functions(
       span.track.time(window_.first), span.track.time(window_.last), options_.test_functions);
   const auto& all = span.streams->currents;
@@ -209,15 +216,39 @@ void BalanceEvaluator::addImpulse(const MotionSpan& span,
             ((at(row + step) - at(row)) / now.after - (at(row) - at(row - step)) / now.before);
     current_ = at(row) + point.currentDispersion() * bend_;
     functions.evaluate(now.time, test_);
-    addCurrents(now.track, point, now.step(), order);
+    addCurrents(now.track, point, now.step());
   };
   visitCurrents(span, window_, point.currentDelay(), order.stride, part, add);
 }
 
-void BalanceEvaluator::addCurrents(const TrackPoint& track,
-                                   const MotionPoint& point,
-                                   double step,
-                                   const BalanceOrder& order) {
+/// The same by the currents of `every` readings at a time.
+void BalanceEvaluator::addNodes(const MotionSpan& span,
+                                const MotionPoint& point,
+                                const WindowPart& part,
+                                std::size_t every) {
+  const TestFunctions functions(
+      span.track.time(window_.first), span.track.time(window_.last), options_.test_functions);
+  const CurrentRange range(span, window_, point.currentDelay(), 1);
+  const std::size_t first = (range.first + every - 1) / every;
+  const std::size_t count = (range.last + every - 1) / every - first;
+  NodeCurrents nodes(span, every);
+  for (std::size_t n = beginOf(count, part); n < endOf(count, part); ++n) {
+    const std::size_t row = (first + n) * every;
+    const double time = span.current_times[row] - point.currentDelay();
+    // Positions of the readings between nodes count, too.
+    const auto track = span.track.smoothAt(time, nodes.reach());
+    if (!track) {
+      continue;
+    }
+    nodes.gather(row, range.first, range.last);
+    bend_ = nodes.bend();
+    current_ = nodes.current() + point.currentDispersion() * bend_;
+    functions.evaluate(time, test_);
+    addCurrents(*track, point, nodes.step());
+  }
+}
+
+void BalanceEvaluator::addCurrents(const TrackPoint& track, const MotionPoint& point, double step) {
   point.turn(track.position, between_);
   point.torque(between_.R_stator_rotor, current_, torque_);
   for (std::size_t t = 0; t < point.turning().size(); ++t) {
@@ -242,14 +273,14 @@ void BalanceEvaluator::addCurrents(const TrackPoint& track,
   column.tail<3>() = torque_.torque;
   impulse_.factors() = -step * test_.value.transpose();
   impulse_.next();
-  if (order.covariance) {
-    addNoise(track, step, order);
+  if (wants_noise_) {
+    addNoise(track, step);
   }
 }
 
-void BalanceEvaluator::addNoise(const TrackPoint& track, double step, const BalanceOrder& order) {
+void BalanceEvaluator::addNoise(const TrackPoint& track, double step) {
   const Eigen::Matrix3d by_reading = torque_.d_turn * between_.d_reading;
-  for (std::size_t m = 0; m < track.share.size(); ++m) {
+  for (std::size_t m = 0; m < track.count; ++m) {
     const std::size_t reading = track.first + m;
     if (reading + 2 < window_.first || reading > window_.last + 2) {
       continue;
@@ -260,8 +291,8 @@ void BalanceEvaluator::addNoise(const TrackPoint& track, double step, const Bala
       noise_.block<3, 3>(3 * k, n) -= test_.value[k] * share;
     }
   }
-  const Eigen::Matrix3d squares = (step * step / static_cast<double>(order.stride)) *
-                                  torque_.d_coil.lazyProduct(torque_.d_coil.transpose());
+  const Eigen::Matrix3d squares =
+      (step * step / thinning_) * torque_.d_coil.lazyProduct(torque_.d_coil.transpose());
   current_noise_.column() = Eigen::Map<const Eigen::VectorXd>(squares.data(), squares.size());
   auto factors = current_noise_.factors();
   for (Eigen::Index l = 0, n = 0; l < count_; n += count_ - l, ++l) {

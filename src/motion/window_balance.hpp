@@ -24,6 +24,8 @@ struct BalanceOrder {
   bool covariance = false;
   /// Of so many currents one serves: quick and coarse.
   std::size_t stride = 1;
+  /// The torque is evaluated at nodes, see NodeCurrents: as good, in less time. Not with a stride.
+  bool at_nodes = false;
 };
 
 /// Evaluates windows of one recording (doc/motion.md). Storage is reused from window to window.
@@ -92,14 +94,15 @@ class BalanceEvaluator {
                   const MotionPoint& point,
                   const BalanceOrder& order,
                   const WindowPart& part);
-  void addCurrents(const TrackPoint& track,
-                   const MotionPoint& point,
-                   double step,
-                   const BalanceOrder& order);
+  void addNodes(const MotionSpan& span,
+                const MotionPoint& point,
+                const WindowPart& part,
+                std::size_t every);
+  void addCurrents(const TrackPoint& track, const MotionPoint& point, double step);
   Fading fadingAt(const JointTrack& track, std::size_t place) const;
   double neighbourShare(std::size_t place, double neighbour) const;
   void setMomentumFactors(std::size_t place);
-  void addNoise(const TrackPoint& track, double step, const BalanceOrder& order);
+  void addNoise(const TrackPoint& track, double step);
   void finishNoise(WindowBalance& out);
 
   const MotionOptions& options_;
@@ -107,6 +110,7 @@ class BalanceEvaluator {
 
   MotionWindow window_;
   bool wants_noise_ = false;
+  double thinning_ = 1.0;                   ///< readings of the currents for each torque
   Eigen::Index count_ = 0;                  ///< of test functions
   Eigen::Index turning_ = 0;                ///< rows of what turns the rotor
   std::vector<TurnedRotor> turned_;         ///< at the readings, one more on either side

@@ -94,6 +94,31 @@ TEST_F(WindowBalanceTest, IsTheSameByEvaluatorsThatShareTheWindow) {
   }
 }
 
+// Currents may do anything between nodes; the torque of each is smooth.
+TEST_F(WindowBalanceTest, AtNodesIsThatOfAllCurrents) {
+  const CalibrationModel model = WindowBalanceTest::model({});
+  const MotionPoint point(model, MotionPlaces(model.space()), somewhere(model.space()));
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> normal;
+  auto currents = recording_.spans.front().currents.matrix();
+  for (Eigen::Index n = 0; n < currents.size(); ++n) {
+    currents.data()[n] += static_cast<float>(0.02 * normal(generator));
+  }
+  BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(1e-5));
+  for (const MotionWindow& window : windows_) {
+    WindowBalance all;
+    WindowBalance nodes;
+    evaluator.evaluate(spans_[0], window, point, {true, 1, false}, all);
+    evaluator.evaluate(spans_[0], window, point, {true, 1, true}, nodes);
+    // Of currents that are as exact as readings of joints.
+    const Eigen::LLT<Eigen::MatrixXd> factor(all.by_joints + 1e-6 * all.by_currents);
+    EXPECT_LT(factor.matrixL().solve(nodes.residual - all.residual).cwiseAbs().maxCoeff(), 0.05);
+    EXPECT_TRUE(nodes.jacobian.isApprox(all.jacobian, 1e-3));
+    EXPECT_TRUE(nodes.by_currents.isApprox(all.by_currents, 1e-3));
+    EXPECT_TRUE(nodes.by_joints.isApprox(all.by_joints, 0.15));
+  }
+}
+
 TEST_F(WindowBalanceTest, IsZeroForTheRotorThatMoved) {
   const CalibrationModel model = WindowBalanceTest::model({});
   const MotionPlaces places(model.space());
@@ -123,30 +148,33 @@ TEST_F(WindowBalanceTest, CoversThreeSquareNoisesByItsCovariance) {
   constexpr double kJoints = 2e-5;
   constexpr double kCurrents = 2e-3;
   BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(kJoints));
-  WindowBalance exact;
-  evaluator.evaluate(spans_[0], windows_[1], point, {true, 1}, exact);
-  const Eigen::MatrixXd covariance = exact.by_joints + kCurrents * kCurrents * exact.by_currents;
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  std::mt19937_64 generator(5);
-  std::normal_distribution<double> normal;
-  double squares = 0.0;
-  constexpr int kTrials = 60;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    MotionStreams noisy = recording_.spans.front();
-    for (Eigen::Vector3d& reading : noisy.joints) {
-      reading += kJoints * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+  for (const bool at_nodes : {false, true}) {
+    WindowBalance exact;
+    evaluator.evaluate(spans_[0], windows_[1], point, {true, 1, at_nodes}, exact);
+    const Eigen::MatrixXd covariance = exact.by_joints + kCurrents * kCurrents * exact.by_currents;
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    std::mt19937_64 generator(5);
+    std::normal_distribution<double> normal;
+    double squares = 0.0;
+    constexpr int kTrials = 60;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      MotionStreams noisy = recording_.spans.front();
+      for (Eigen::Vector3d& reading : noisy.joints) {
+        reading +=
+            kJoints * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+      }
+      auto currents = noisy.currents.matrix();
+      for (Eigen::Index n = 0; n < currents.size(); ++n) {
+        currents.data()[n] += static_cast<float>(kCurrents * normal(generator));
+      }
+      WindowBalance balance;
+      evaluator.evaluate(MotionSpan(noisy), windows_[1], point, {false, 1, at_nodes}, balance);
+      squares += factor.matrixL().solve(balance.residual - exact.residual).squaredNorm();
     }
-    auto currents = noisy.currents.matrix();
-    for (Eigen::Index n = 0; n < currents.size(); ++n) {
-      currents.data()[n] += static_cast<float>(kCurrents * normal(generator));
-    }
-    WindowBalance balance;
-    evaluator.evaluate(MotionSpan(noisy), windows_[1], point, {}, balance);
-    squares += factor.matrixL().solve(balance.residual - exact.residual).squaredNorm();
+    // χ² with 60 × 18 degrees of freedom: within 4 of its standard deviations.
+    const double freedom = kTrials * static_cast<double>(exact.residual.size());
+    EXPECT_NEAR(squares / freedom, 1.0, 4.0 * std::sqrt(2.0 / freedom)) << at_nodes;
   }
-  // χ² with 60 × 18 degrees of freedom: within 4 of its standard deviations.
-  const double freedom = kTrials * static_cast<double>(exact.residual.size());
-  EXPECT_NEAR(squares / freedom, 1.0, 4.0 * std::sqrt(2.0 / freedom));
 }
 
 // Beside the largest delay of the currents at both ends, nothing is lost.
