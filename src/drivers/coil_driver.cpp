@@ -125,6 +125,7 @@ bool CoilDriver::follow(const BeatClock& clock, Beat& result) {
   const OutputStages stages = may_flow ? OutputStages::kOn : OutputStages::kOff;
   const AmplifierReading reading =
       amplifier_.exchange(limiter_.setpoints(), stages, heartbeat(now));
+  result.set_at = clock.now() - reading.since_set;
   observe(reading, clock, result);
   return reading.tripped;
 }

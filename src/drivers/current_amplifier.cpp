@@ -247,8 +247,12 @@ AmplifierReading CurrentAmplifier::exchange(const Eigen::VectorXd& currents,
                                             OutputStages stages,
                                             Heartbeat heartbeat) {
   if (!options_.one_request || stages_ != stages) {
+    const Clock::time_point begin = Clock::now();
     write(currents, stages, heartbeat);
-    return read();
+    const double writing = secondsSince(begin);
+    AmplifierReading reading = read();
+    reading.since_set = secondsSince(begin) - 0.5 * writing;
+    return reading;
   }
   Words words = setpointWords(currents);
   if (options_.heartbeat_address && heartbeat == Heartbeat::kGiven) {
@@ -261,6 +265,7 @@ AmplifierReading CurrentAmplifier::exchange(const Eigen::VectorXd& currents,
                                                                joined_->address,
                                                                joined_->count));
   reading.duration = secondsSince(begin);
+  reading.since_set = 0.5 * reading.duration;
   return reading;
 }
 

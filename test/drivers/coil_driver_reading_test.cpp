@@ -33,5 +33,24 @@ TEST(CoilDriverReading, KnowsWhenItWas) {
   EXPECT_LE(after_the_trip, whole.count());
 }
 
+// Stamps of setpoints follow from it.
+TEST(CoilDriverReading, KnowsWhenItHasSet) {
+  constexpr double kSlow = 0.02;
+  constexpr int kCurrents = 0;
+  using Clock = std::chrono::steady_clock;
+  ScriptedTransport bus;
+  CoilDriver driver(
+      readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")), 24, bus);
+  driver.beat(100.0);
+  bus.setSlow(kCurrents, kSlow);
+  const Clock::time_point begin = Clock::now();
+  const CoilDriver::Beat beat = driver.beat(100.005);
+  const std::chrono::duration<double> whole = Clock::now() - begin;
+  ASSERT_TRUE(beat.set_at.has_value());
+  EXPECT_GE(*beat.set_at, 100.005);
+  EXPECT_LE(*beat.set_at, 100.005 + whole.count() - kSlow);
+  EXPECT_LT(*beat.set_at, beat.measured_at);
+}
+
 }  // namespace
 }  // namespace sac

@@ -22,8 +22,9 @@ def write_bag(path, recording, coils):
         add("joint_states", JointState(name=["joint_1", "joint_2", "joint_3"], position=list(q)), t)
     for t, current in zip(*recording["currents"]):
         add("coil_currents", CoilCurrents(current=list(current)), t)
-    for t, current in zip(*recording.get("commands", ((), ()))):
-        add("coil_command", CoilCurrents(current=list(current)), t)
+    for topic, key in (("coil_command", "commands"), ("coil_setpoints", "setpoints")):
+        for t, current in zip(*recording.get(key, ((), ()))):
+            add(topic, CoilCurrents(current=list(current)), t)
     for t, R in zip(*recording["orientations"]):
         message = QuaternionStamped()
         message.header.frame_id = "stator"

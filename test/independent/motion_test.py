@@ -66,6 +66,20 @@ class Motion(RecordedMotion):
             if rate > 1.0 / self.MACHINE.step:
                 self.assertLess(stddev, largest)
 
+    def test_what_a_driver_has_set_goes_before_what_it_was_asked_for(self):
+        recording = self.record(has_commands=True)
+        stamps, values = recording["setpoints"] = recording["commands"]
+        recording["commands"] = stamps, np.roll(values, 5, axis=0)
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "motion.bag")
+            write_bag(bag, recording, len(self.unit.coils))
+            report = os.path.join(folder, "report")
+            result = self.calibrate_bags(folder, "motion", [bag], "--report", report)
+            told = read_yaml(os.path.join(report, "report.yaml"))["calibration_report"]["cycles"][-1]["estimates"]
+        (delay,) = [one for one in told if one["name"] == "current_delay"]
+        self.assertLess(abs(delay["value"]), 1e-5, result.stdout)
+        self.assertLess(delay["stddev"], 1e-5)
+
     def test_windows_as_they_come_tell_what_all_at_once_do(self):
         for streams in ({"current_delay": -0.02}, {"joint_rate": 200.0, "current_rate": 200.0}):
             outcome = calibrate(self.record(**streams), options=["--live"])

@@ -127,6 +127,9 @@ class CoilDriver(unittest.TestCase):
         self.assertEqual(len(self.measured[-1].current), COILS)
         stamps = [message.header.stamp for message in self.measured]
         self.assertEqual(stamps, sorted(set(stamps)))
+        told = [rospy.wait_for_message(NAMESPACE + "/coil_setpoints", CoilCurrents, PATIENT) for _ in range(2)]
+        self.assertEqual([one.current[2] for one in told], [1.5, 1.5])
+        self.assertLess(told[0].header.stamp, told[1].header.stamp)
         self.device.holding.are_applied = True
         self.follow(3, -0.7)
         wait_for(lambda: self.device.holding_at(ENABLE) == [1], "stages that are on")

@@ -30,6 +30,8 @@ class CoilDriver {
     bool fault = false;       ///< the device is the reason, not the want of commands
     /// The middle of the request that read the currents [s].
     double measured_at = 0.0;
+    /// The middle of the request that wrote the setpoints, those of limiter() [s].
+    std::optional<double> set_at = std::nullopt;
     /// Of a command when it was set for the first time, since its stamp [s].
     std::optional<double> command_age = std::nullopt;
   };

@@ -55,6 +55,8 @@ struct AmplifierReading {
   Eigen::VectorXd currents;  ///< measured, of every coil [A]
   bool tripped = false;      ///< it said so in the same answer
   double duration = 0.0;     ///< of the requests that read the currents [s]
+  /// From the middle of the requests that wrote the setpoints to the end; 0: none was written [s].
+  double since_set = 0.0;
 };
 
 /// The current amplifier over a Modbus link. Not thread-safe.

@@ -33,7 +33,8 @@ struct CurrentMeasurement {
   Eigen::VectorXd current;
 };
 
-/// Currents that were commanded, in description order (topic coil_command) [A].
+/// Currents that a driver has set, or was commanded, in description order (topics coil_setpoints,
+/// coil_command) [A].
 struct CurrentCommand {
   Stamp stamp = 0;
   Eigen::VectorXd current;

@@ -51,6 +51,13 @@ CoilCommand commandFromRos(const msg::CoilCurrents& message, const MessageSender
   return command;
 }
 
+msg::CoilCurrents currentsToRos(const Eigen::VectorXd& currents, const ros::Time& stamp) {
+  msg::CoilCurrents message;
+  message.header.stamp = stamp;
+  message.current.assign(currents.begin(), currents.end());
+  return message;
+}
+
 const Actuator& withCoils(const Actuator& actuator) {
   if (actuator.coils.empty()) {
     throw ConfigError("The description of " + actuator.name + " has no coils to drive.");
@@ -89,6 +96,7 @@ CoilDriverNode::CoilDriverNode(const ros::NodeHandle& node,
   ros::NodeHandle handle = node;
   constexpr std::uint32_t kQueueLength = 10000;
   publisher_ = handle.advertise<msg::CoilCurrents>("coil_currents", kQueueLength);
+  setpoints_publisher_ = handle.advertise<msg::CoilCurrents>("coil_setpoints", kQueueLength);
   diagnostics_.add(link_diagnostics_);
   diagnostics_.add("output", [this](DiagnosticStatus& status) { diagnoseOutput(status); });
   diagnostics_.add(currents_);
@@ -198,8 +206,13 @@ void CoilDriverNode::beat() {
     const double begin = steadySeconds();
     const CoilDriver::Beat beat = driver_.beat(begin);
     const double end = steadySeconds();
+    // What the beat did since then must not make a stamp late.
+    if (beat.set_at && setpoints_publisher_.getNumSubscribers() > 0) {
+      setpoints_publisher_.publish(
+          currentsToRos(driver_.limiter().setpoints(),
+                        timeBefore(ros::Time::now(), steadySeconds() - *beat.set_at)));
+    }
     if (beat.measured) {
-      // What the beat did since it read them must not make the stamp late.
       publish(*beat.measured, timeBefore(ros::Time::now(), steadySeconds() - beat.measured_at));
       timing_.add({begin, end, beat.command_age});
     } else {
@@ -234,10 +247,7 @@ void CoilDriverNode::tell(const CoilDriver::Beat& beat) {
 }
 
 void CoilDriverNode::publish(const Eigen::VectorXd& currents, const ros::Time& stamp) {
-  msg::CoilCurrents message;
-  message.header.stamp = stamp;
-  message.current.assign(currents.begin(), currents.end());
-  publisher_.publish(message);
+  publisher_.publish(currentsToRos(currents, stamp));
   currents_.accept(stamp);
 }
 

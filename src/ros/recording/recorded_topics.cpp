@@ -43,6 +43,7 @@ const std::array<TopicType, kTopicRoles>& topicTypes() {
       topicType<msg::CalibrationSample>("samples"),
       topicType<msg::ActuatorParameters>("parameters"),
       topicType<msg::CoilCurrents>("coil_command"),
+      topicType<msg::CoilCurrents>("coil_setpoints"),
   };
   return types;
 }

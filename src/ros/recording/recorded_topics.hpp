@@ -19,8 +19,9 @@ enum class TopicRole {
   kSamples,
   kParameters,
   kCommands,
+  kSetpoints,
 };
-inline constexpr std::size_t kTopicRoles = 7;
+inline constexpr std::size_t kTopicRoles = 8;
 
 /// The topics of one actuator in recordings.
 class RecordedTopics {

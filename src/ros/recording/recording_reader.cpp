@@ -68,7 +68,8 @@ class Reader {
                         (options_.motion == MotionUse::kWithoutTorques &&
                          !topics_.isRecorded(group, TopicRole::kTorque)));
     streams_.keepSamples(!from_samples);
-    readUndamaged(pathsOf(group), [&] { readMessages(group, rolesToRead(from_samples), step); });
+    readUndamaged(pathsOf(group),
+                  [&] { readMessages(group, rolesToRead(group, from_samples), step); });
     streams_.finish();
     append(streams_.takeSamples());
     append(recorded_samples_.takeSamples());
@@ -120,13 +121,17 @@ class Reader {
     return samples;
   }
 
-  std::vector<TopicRole> rolesToRead(bool from_samples) const {
+  std::vector<TopicRole> rolesToRead(const BagGroup& group, bool from_samples) const {
+    // What a driver has set tells what currents do better than what it was asked for.
+    const TopicRole commands = topics_.isRecorded(group, TopicRole::kSetpoints)
+                                   ? TopicRole::kSetpoints
+                                   : TopicRole::kCommands;
     if (from_samples && options_.motion == MotionUse::kAlways) {
       return {TopicRole::kSamples,
               TopicRole::kJointStates,
               TopicRole::kOrientation,
               TopicRole::kCurrents,
-              TopicRole::kCommands};
+              commands};
     }
     if (from_samples) {
       return {TopicRole::kSamples};
@@ -138,7 +143,7 @@ class Reader {
             TopicRole::kOrientation,
             TopicRole::kTorque,
             TopicRole::kCurrents,
-            TopicRole::kCommands};
+            commands};
   }
 
   void readMessages(const BagGroup& group, const std::vector<TopicRole>& roles, const Step& step) {
@@ -175,6 +180,7 @@ class Reader {
       case TopicRole::kCurrents:
         return streams_.add(decoder_.decode(message.data, currents_));
       case TopicRole::kCommands:
+      case TopicRole::kSetpoints:
         return streams_.addCommand(decoder_.decode(message.data, currents_));
       case TopicRole::kSamples:
         return recorded_samples_.add(decodeSample(message));

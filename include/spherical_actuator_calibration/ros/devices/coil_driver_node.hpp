@@ -30,7 +30,8 @@ struct MessageSender;
 /// the key.
 CurrentAmplifierOptions loadCurrentAmplifierOptions(const ros::NodeHandle& private_node);
 
-/// Follows `coil_command` within the limits and publishes the measured `coil_currents`: a command
+/// Follows `coil_command` within the limits and publishes the measured `coil_currents`, and where
+/// somebody listens what it has set, `coil_setpoints`, stamped when it did: a command
 /// that counts is set as soon as it comes, see PeriodicThread::wake(). See
 /// CoilDriver for when currents are zero; they are, too, when the node ends in any way but a kill,
 /// which only the amplifier's own watchdog can answer. Commands are judged by the wall clock, even
@@ -78,6 +79,7 @@ class CoilDriverNode {
   std::size_t told_clamped_ = 0;  ///< of these when diagnostics last looked
 
   ros::Publisher publisher_;
+  ros::Publisher setpoints_publisher_;
   StreamMonitor commands_;
   StreamMonitor currents_;
   TimingDiagnostics timing_;
