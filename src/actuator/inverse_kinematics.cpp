@@ -9,6 +9,7 @@
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/base/number_text.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/turns.hpp"
 
 namespace sac {
 
@@ -35,12 +36,7 @@ std::optional<Eigen::Vector3d> jointAngles(const JointGeometry& joints,
 }
 
 Eigen::Vector3d freeRotorAngles(const Eigen::Matrix3d& R_stator_rotor) {
-  const Eigen::Matrix3d& R = R_stator_rotor;
-  const double q1 = std::atan2(-R(1, 2), R(2, 2));
-  // Of e^{−x̂q₁}R the second row is (sin q₃, cos q₃, 0) whatever q₁ is made of: near q₂ = ±π/2 that
-  // is rounding errors.
-  const Eigen::RowVector3d row = std::cos(q1) * R.row(1) + std::sin(q1) * R.row(2);
-  return {q1, std::atan2(R(0, 2), std::hypot(R(1, 2), R(2, 2))), std::atan2(row[0], row[1])};
+  return turnsOf(R_stator_rotor);
 }
 
 Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor) {
@@ -48,7 +44,7 @@ Eigen::Vector3d freeRotorAngles(const Eigen::Quaterniond& q_stator_rotor) {
     throw DataError("The quaternion has norm " + shortestText(q_stator_rotor.norm()) +
                     " instead of 1.");
   }
-  return freeRotorAngles(q_stator_rotor.normalized().toRotationMatrix());
+  return turnsOf(q_stator_rotor.normalized().toRotationMatrix());
 }
 
 Eigen::Vector3d nearestTurns(const Eigen::Vector3d& angles, const Eigen::Vector3d& others) {

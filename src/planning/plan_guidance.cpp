@@ -58,11 +58,11 @@ std::string distanceInWords(double stddev, double bound) {
 }  // namespace
 
 bool PlanProgress::add(const Sample& sample) {
-  bool counts = false;
+  bool is_more = false;
   for (PoseProgress& pose : poses_) {
-    counts = pose.add(sample, current_threshold_) || counts;
+    is_more = pose.add(sample, current_threshold_) || is_more;
   }
-  return counts;
+  return is_more;
 }
 
 void PlanProgress::countAnew(const std::vector<Sample>& samples) {

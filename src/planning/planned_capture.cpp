@@ -1,12 +1,10 @@
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/estimation/calibration_model.hpp"
 #include "spherical_actuator_calibration/measurement/carried_currents.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 namespace {
@@ -18,14 +16,6 @@ bool holdsZeroOf(const Sample& sample, const std::vector<Sample>& held, double c
 }
 
 }  // namespace
-
-CoilPattern patternOf(const Sample& sample, double current_threshold) {
-  CoilPattern pattern;
-  for (const Excitation& excitation : excitedCoils(sample, current_threshold)) {
-    pattern.push_back({excitation.coil, excitation.current < 0.0 ? -1 : 1});
-  }
-  return pattern;
-}
 
 std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
                                      const Eigen::VectorXd& measured,
@@ -39,14 +29,6 @@ std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
     commanded[j] = coil.sign * planned.current;
   }
   return coilAmiss(commanded, measured, current_threshold);
-}
-
-bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position) {
-  const auto is_near = [&](Eigen::Index k) {
-    const double apart = angleDifference(sample.joint_position[k], joint_position[k]);
-    return std::abs(apart) <= kPoseTolerance;
-  };
-  return is_near(0) && is_near(1) && is_near(2);
 }
 
 CaptureFlaw captureFlaw(const Sample& sample,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 namespace {
@@ -34,13 +34,17 @@ bool PoseProgress::add(const Sample& sample, double current_threshold) {
       std::remove_if(missing_.begin(), missing_.end(), [&](const CoilPattern& pattern) {
         return tellsTheSame(pattern, measured);
       });
+  const bool is_first_current = !has_current_ && !measured.empty();
+  const bool is_more = !has_sample_ || is_first_current || left != missing_.end();
   missing_.erase(left, missing_.end());
-  samples_.push_back(sample.id);
-  return true;
+  has_sample_ = true;
+  has_current_ = has_current_ || is_first_current;
+  return is_more;
 }
 
 void PoseProgress::beginAnew() {
-  samples_.clear();
+  has_sample_ = false;
+  has_current_ = false;
   missing_.clear();
   for (const CoilPattern& pattern : pose_.patterns) {
     const bool is_there =

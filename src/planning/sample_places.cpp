@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 

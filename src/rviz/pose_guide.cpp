@@ -6,28 +6,22 @@
 #include <cstdlib>
 #include <iterator>
 
+#include <Eigen/Geometry>
+
 #include "signed_degrees.hpp"
 #include "spherical_actuator_calibration/base/angle_difference.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
+#include "spherical_actuator_calibration/base/turns.hpp"
 
 namespace sac {
 namespace {
 
-/// Turns about x, then y, then z [rad] of a unit quaternion.
+/// Of a unit quaternion.
 std::array<double, 3> turnsOf(const geometry_msgs::Quaternion& q) {
-  const double r12 = 2.0 * (q.y * q.z - q.w * q.x);
-  const double r22 = 1.0 - 2.0 * (q.x * q.x + q.y * q.y);
-  const double first = std::atan2(-r12, r22);
-  const double second = std::atan2(2.0 * (q.x * q.z + q.w * q.y), std::hypot(r12, r22));
-  // The second row of what is left after the first turn was taken back.
-  const double sine = std::sin(first);
-  const double cosine = std::cos(first);
-  const double left_0 =
-      cosine * 2.0 * (q.x * q.y + q.w * q.z) + sine * 2.0 * (q.x * q.z - q.w * q.y);
-  const double left_1 =
-      cosine * (1.0 - 2.0 * (q.x * q.x + q.z * q.z)) + sine * 2.0 * (q.y * q.z + q.w * q.x);
-  return {first, second, std::atan2(left_0, left_1)};
+  const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+  const Eigen::Vector3d turns = sac::turnsOf(rotation.normalized().toRotationMatrix());
+  return {turns[0], turns[1], turns[2]};
 }
 
 std::array<double, 3> jointsOf(const msg::PoseProgress& pose) {

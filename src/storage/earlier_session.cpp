@@ -22,7 +22,7 @@
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/median.hpp"
 #include "spherical_actuator_calibration/base/numbering.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 #include "spherical_actuator_calibration/planning/sample_places.hpp"
 #include "storage_error.hpp"
 

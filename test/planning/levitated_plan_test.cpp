@@ -6,7 +6,7 @@
 #include "planning/plan_step.hpp"
 #include "planning/planning_fixture.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 #include "support/error_message.hpp"
 
 namespace sac {

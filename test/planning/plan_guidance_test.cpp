@@ -8,9 +8,9 @@
 
 #include "planning/current_threshold.hpp"
 #include "planning/plan_step.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planned_pose.hpp"
 #include "spherical_actuator_calibration/planning/pose_plan.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 namespace {

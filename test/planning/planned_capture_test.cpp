@@ -6,6 +6,7 @@
 
 #include "planning/current_threshold.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 namespace {

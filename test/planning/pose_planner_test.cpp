@@ -15,7 +15,7 @@
 #include "spherical_actuator_calibration/actuator/spherical_joint.hpp"
 #include "spherical_actuator_calibration/base/error.hpp"
 #include "spherical_actuator_calibration/measurement/torque_pose_sampler.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 #include "spherical_actuator_calibration/study/cramer_rao_bound.hpp"
 #include "support/scenarios.hpp"
 

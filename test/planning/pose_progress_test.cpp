@@ -1,6 +1,5 @@
 #include "spherical_actuator_calibration/planning/pose_progress.hpp"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@
 #include "planning/current_threshold.hpp"
 #include "spherical_actuator_calibration/base/pi.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 
 namespace sac {
 namespace {
@@ -48,9 +47,9 @@ TEST(PoseProgress, LacksEachPatternThatNoSampleHas) {
   EXPECT_EQ(missing(progress), (Texts{"+3", "+1 -2"}));
   // A coil that is off may show a little; neither a coil alone nor other signs are the pattern.
   EXPECT_TRUE(progress.add(sampleOf({0.01, -0.01, 2.0}), kThreshold));
-  EXPECT_TRUE(progress.add(sampleOf({2.0, 0.0, 0.0}), kThreshold));
-  EXPECT_TRUE(progress.add(sampleOf({2.0, 2.0, 0.0}), kThreshold));
-  EXPECT_TRUE(progress.add(sampleOf({2.0, -2.0, 2.0}), kThreshold));
+  EXPECT_FALSE(progress.add(sampleOf({2.0, 0.0, 0.0}), kThreshold));
+  EXPECT_FALSE(progress.add(sampleOf({2.0, 2.0, 0.0}), kThreshold));
+  EXPECT_FALSE(progress.add(sampleOf({2.0, -2.0, 2.0}), kThreshold));
   EXPECT_EQ(missing(progress), Texts{"+1 -2"});
   EXPECT_FALSE(progress.isMeasured());
   EXPECT_TRUE(progress.add(sampleOf({2.0, -2.0, 0.0}), kThreshold));
@@ -104,6 +103,7 @@ TEST(PoseProgress, WithoutPatternsIsMeasuredByAnySample) {
     EXPECT_FALSE(progress.isMeasured());
     EXPECT_TRUE(progress.add(sampleOf(currents), kThreshold));
     EXPECT_TRUE(progress.isMeasured());
+    EXPECT_FALSE(progress.add(sampleOf(currents), kThreshold));
   }
 }
 
@@ -116,17 +116,15 @@ TEST(PoseProgress, IsOfSamplesNearThePoseAFullTurnAwayToo) {
   EXPECT_TRUE(progress.add(sample, kThreshold));
 }
 
-TEST(PoseProgress, NamesTheSamplesThatCount) {
+TEST(PoseProgress, KnowsWhetherAnySampleHasCurrent) {
   PoseProgress progress(pose());
-  std::uint32_t id = 7;
-  for (const bool validation : {false, true, false}) {
-    Sample sample = sampleOf({0.0, 0.0, 0.0}, validation);
-    sample.id = id++;
-    progress.add(sample, kThreshold);
-  }
-  EXPECT_EQ(progress.samples(), (std::vector<std::uint32_t>{7, 9}));
+  progress.add(sampleOf({0.0, 0.0, 0.0}), kThreshold);
+  EXPECT_FALSE(progress.hasCurrent());
+  // No pattern of the pose; it counts all the same.
+  EXPECT_TRUE(progress.add(sampleOf({2.0, 0.0, 0.0}), kThreshold));
+  EXPECT_TRUE(progress.hasCurrent());
   progress.beginAnew();
-  EXPECT_TRUE(progress.samples().empty());
+  EXPECT_FALSE(progress.hasCurrent());
 }
 
 TEST(PoseProgress, OpensAgainWhatARemovedSampleHad) {

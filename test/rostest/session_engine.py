@@ -2,6 +2,7 @@
 """The engine of guided sessions by its actions alone: a whole session, cancelled, its client killed, a second one
 refused, and nothing measured twice; coils excited for a look; plans and files."""
 
+import math
 import pathlib
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 
 import actionlib
+import rosgraph
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
@@ -185,9 +187,8 @@ class SessionEngine(LabCase):
         wait_for(lambda: self.feedback and self.feedback.progress.carries, "excited coils")
         self.assertAlmostEqual(self.feedback.measured[2], 1.5, delta=0.1)
         self.assertAlmostEqual(self.feedback.measured[6], -1.5, delta=0.1)
-        check = rospy.wait_for_message(f"{NAMESPACE}/coil_check", msg.CoilCheck, DEADLINE.to_sec())
-        self.assertEqual([current for current in check.commanded if current], [1.5, -1.5])
-        self.assertTrue(check.carried)
+        self.strangers_change_nothing()
+        self.node_goes_and_comes_back()
         excite.cancel_goal()
         self.time_to_zero()
         self.result(excite, GoalStatus.PREEMPTED)
@@ -197,6 +198,36 @@ class SessionEngine(LabCase):
         self.send(excite, msg.ExciteGoal(coils=[25], current=1.5))
         self.assertIn("numbers from 1 to 24", self.result(excite, GoalStatus.ABORTED).message)
         self.engine_ends(excite)
+
+    def strangers_change_nothing(self):
+        """Whose commands the driver refuses."""
+        publisher = rospy.Publisher(f"{NAMESPACE}/coil_command", msg.CoilCurrents, queue_size=1)
+        wait_for(publisher.get_num_connections, "the driver")
+        for currents in ([0.0] * 24, [math.nan] * 24, [1.0], []):
+            publisher.publish(msg.CoilCurrents(current=currents))
+        told = self.feedback.progress
+        wait_for(lambda: self.feedback.progress is not told and self.feedback.progress.carries, "excited coils")
+        publisher.unregister()
+
+    def is_judged(self, before):
+        """Whether another process than before says that coils 3 and 7 carry what they are commanded."""
+        try:
+            carried = self.client.call("check_coils", coils=[3, -7], current=1.5).carried
+            return carried and self.lab.process_of("calibration") != before
+        except (rospy.ServiceException, rosgraph.MasterError, OSError):
+            return False
+
+    def node_goes_and_comes_back(self):
+        """It judges what the coils carry, and is started again: the coils wait for it."""
+        before = self.lab.process_of("calibration")
+        self.lab.kill("calibration")
+        wait_for(lambda: self.is_judged(before), "another node that judges")
+        wait_for(lambda: self.feedback.progress.carries, "excited coils")
+        answer = self.client.call("check_coils", coils=[3], current=1.5)
+        self.assertRegex(answer.message, r"^Coil 7 carries -1\.\d+ A where 0\.000 A are commanded")
+        for coils, current in (([25], 1.0), ([3], math.nan), ([3], math.inf), ([3], 0.0)):
+            answer = self.client.call("check_coils", coils=coils, current=current)
+            self.assertFalse(answer.success or answer.carried)
 
     def engine_ends(self, excite):
         """In order: its client hears of it, and it is started again."""

@@ -36,8 +36,8 @@ class Bench:
         patterns = [sample.pattern for sample in there]
         missing = [CoilPattern(coils=list(pattern)) for pattern in pose.excitations if pattern not in patterns]
         return PoseProgress(
-            samples=[sample.number for sample in there],
             has_sample=bool(there),
+            has_current=any(patterns),
             is_measured=bool(there) and not missing,
             missing=missing,
         )
@@ -55,7 +55,7 @@ class Bench:
 
     def capture(self, pose, *patterns):
         place = self._places.setdefault(pose.joints, len(self._places) + 1)
-        self.held += [Measured(len(self.held) + n, place, pattern, pose.validation) for n, pattern in enumerate(patterns, 1)]
+        self.held += [Measured(place, pattern, pose.validation) for pattern in patterns]
 
     @staticmethod
     def load_plan(_source):

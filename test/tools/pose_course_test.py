@@ -169,7 +169,7 @@ class Bench:
         flaw = next(self._flaws)
         self.log.append(pattern)
         if not flaw and not (flaw is None and self.loses):
-            self.held.append(Measured(len(self.held) + 1, 1, pattern, pose.validation))
+            self.held.append(Measured(1, pattern, pose.validation))
         if flaw is None:
             return None
         return SimpleNamespace(success=not flaw, message=f"Flaw: {flaw}.", flaw=flaw, sample=(pose, pattern))

@@ -4,20 +4,22 @@
 import io
 import math
 import threading
+import time
 import unittest
 from types import SimpleNamespace
 from unittest import mock
 
 import actionlib
 import rospy
-from spherical_actuator_calibration.msg import CoilCheck, CoilPattern, JointAxis, PoseProgress
-from spherical_actuator_calibration.session_guide import client, laboratory, progress
+from spherical_actuator_calibration.msg import CoilPattern, JointAxis, PoseProgress
+from spherical_actuator_calibration.session_guide import client, coil_watch, laboratory, progress
 from spherical_actuator_calibration.session_guide.account import Account
 from spherical_actuator_calibration.session_guide.calibration import excitations_of, message_of
 from spherical_actuator_calibration.session_guide.options import OptionError, Options, parse
 from spherical_actuator_calibration.session_guide.pose_course import PoseCourse
 from spherical_actuator_calibration.session_guide.progress import Pose, Progress
 from spherical_actuator_calibration.session_guide.task import Task
+from spherical_actuator_calibration.srv import CheckCoilsResponse
 from spherical_actuator_calibration.terminal import Terminal
 
 TOLERANCE = 0.05  # [rad] of one pose
@@ -80,34 +82,60 @@ class PlannedPatterns(unittest.TestCase):
         self.assertEqual(excitations_of(SimpleNamespace(coils=[1, 2, 3], patterns=patterns)), ((1, -2), (2, 3)))
 
 
+class Judge:
+    """Of what coils carry, in the place of a node's service."""
+
+    def __init__(self):
+        self.asked = []
+        self.answer = CheckCoilsResponse(success=True, carried=True, measured=[1.4, 0.1])
+
+    def __call__(self, coils, current):
+        self.asked.append((tuple(coils), current))
+        if self.answer is None:
+            raise rospy.ServiceException("gone")
+        return self.answer
+
+    def close(self):
+        """Nothing is open."""
+
+
 class CarriedCurrents(unittest.TestCase):
     """By what the calibration node says, of what is commanded now."""
 
     def setUp(self):
-        self.bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
-        self.bench._lock = threading.Lock()
-        self.bench._command = [1.5, 0.0]
-        self.bench._check, self.bench._checked = CoilCheck(), -math.inf
+        self.judge = Judge()
+        for target, fake in ((rospy, "ServiceProxy"), (coil_watch, "LATEST"), (coil_watch, "PERIOD")):
+            value = {"ServiceProxy": lambda *_, **__: self.judge, "LATEST": 0.5, "PERIOD": 0.001}[fake]
+            patch = mock.patch.object(target, fake, value)
+            patch.start()
+            self.addCleanup(patch.stop)
+        self.watch = coil_watch.CoilWatch("/actuator")
+        self.addCleanup(self.watch.end)
 
-    def told(self, carried=True, commanded=(1.5, 0.0), measured=(1.4, 0.1)):
-        self.bench._keep_check(CoilCheck(carried=carried, commanded=list(commanded), measured=list(measured)))
-        return self.bench.carries()
-
-    def test_are_not_known_before_it_says_so(self):
-        self.assertFalse(self.bench.carries())
-        self.assertEqual(self.bench.currents(), ())
+    def becomes(self, carried, currents):
+        end = time.monotonic() + 30.0
+        while (self.watch.carries(), self.watch.currents()) != (carried, currents):
+            self.assertLess(time.monotonic(), end, (self.watch.carries(), self.watch.currents()))
+            time.sleep(0.001)
 
     def test_are_those_of_the_command_in_force(self):
-        self.assertTrue(self.told())
-        self.assertEqual(self.bench.currents(), (1.4, 0.1))
-        self.assertFalse(self.told(carried=False))
-        self.assertFalse(self.told(commanded=(0.0, 1.5)))
+        self.assertIsNone(self.watch.carries())
+        self.watch.begin()
+        self.watch.expect((1, -3), 1.5)
+        self.becomes(True, (1.4, 0.1))
+        self.assertEqual(self.judge.asked[-1], ((1, -3), 1.5))
+        self.judge.answer = CheckCoilsResponse(success=True, carried=False, measured=[0.0, 0.1])
+        self.becomes(False, (0.0, 0.1))
+        self.judge.answer = None
+        self.watch.expect((2,), 1.5)
+        self.assertIsNone(self.watch.carries())  # that was of another command
+        self.becomes(None, ())
 
-    def test_are_not_known_any_more_where_it_is_silent(self):
-        self.assertTrue(self.told())
-        self.bench._checked -= laboratory.LATEST + 0.1
-        self.assertFalse(self.bench.carries())
-        self.assertEqual(self.bench.currents(), ())
+    def test_are_not_known_any_more_at_the_end(self):
+        self.watch.begin()
+        self.becomes(True, (1.4, 0.1))
+        self.watch.end()
+        self.assertEqual((self.watch.carries(), self.watch.currents()), (None, ()))
 
 
 class Excitation(unittest.TestCase):
@@ -115,7 +143,7 @@ class Excitation(unittest.TestCase):
         commanded = []
         bench = laboratory.Laboratory.__new__(laboratory.Laboratory)
         bench._coils, bench._lock, bench._is_held = 4, threading.Lock(), False
-        bench._listeners = [lambda: None]  # it listens already
+        bench._is_listening, bench._watch = True, coil_watch.CoilWatch("/actuator")
         bench._commands = SimpleNamespace(publish=lambda message: commanded.append(message.current))
         bench.excite((1,), 1.5)
         self.assertEqual((bench._command, commanded), ([0.0] * 4, []))

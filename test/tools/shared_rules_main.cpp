@@ -3,6 +3,7 @@
 // holds both against each other.
 
 #include <cstdio>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -11,6 +12,7 @@
 
 #include "announced_lengths.hpp"
 #include "spherical_actuator_calibration/actuator/inverse_kinematics.hpp"
+#include "spherical_actuator_calibration/actuator/unit_identity.hpp"
 #include "spherical_actuator_calibration/actuator/usual_currents.hpp"
 #include "spherical_actuator_calibration/base/input_file.hpp"
 #include "spherical_actuator_calibration/base/rotations.hpp"
@@ -86,6 +88,26 @@ void tellNames() {
   }
 }
 
+/// Whose unit something is; an empty list: it may be one's own.
+void tellUnits() {
+  for (const char* own_serial : {"", "unit-1"}) {
+    Actuator own;
+    own.name = "cube";
+    own.serial = own_serial;
+    for (const char* name : {"", "cube", "sphere"}) {
+      for (const char* serial : {"", "unit-1", "unit-2"}) {
+        const std::optional<OtherUnit> other = otherUnit(own, name, serial);
+        tell("other_unit",
+             other ? other->kind + " " + other->its + "|" + other->own : std::string(),
+             std::string(name),
+             std::string(serial),
+             own.name,
+             own.serial);
+      }
+    }
+  }
+}
+
 void tellDefaults() {
   const PosePlanOptions defaults;
   tell("default", static_cast<double>(defaults.max_poses), std::string("poses"));
@@ -116,6 +138,7 @@ int main() {
   sac::Trials trials;
   sac::tellOrientations(trials);
   sac::tellNames();
+  sac::tellUnits();
   sac::tellDefaults();
   sac::tellLimits();
   return 0;

@@ -15,6 +15,7 @@ from spherical_actuator_calibration import bounded_links, rotor_readings, text_f
 from spherical_actuator_calibration.calibrated_actuator import COIL_CURRENT
 from spherical_actuator_calibration.session_guide.options import TOTAL_CURRENT, Options
 from spherical_actuator_calibration.session_tables import export
+from spherical_actuator_calibration.unit_identity import other_unit
 from spherical_actuator_calibration.unit_quaternion import normalised
 
 EXACT = 1e-12
@@ -60,6 +61,9 @@ class SharedRules(unittest.TestCase):
 
     def test_what_is_a_unit_quaternion(self):
         self.hold("is_unit", lambda xyzw: normalised(xyzw)[0] is not None)
+
+    def test_whose_unit_something_is(self):
+        self.hold("other_unit", lambda *given: "|".join(other_unit(*given) or ()))
 
     def test_defaults(self):
         self.hold("default", lambda name: Options().excitation if name == "current" else getattr(Options(), name))

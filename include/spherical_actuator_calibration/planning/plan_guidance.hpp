@@ -22,7 +22,7 @@ class PlanProgress {
 
   /// One more pose, before any sample.
   void addPose(PoseToMeasure pose) { poses_.emplace_back(std::move(pose)); }
-  /// Returns whether it counts for any pose.
+  /// Returns whether more is told now.
   bool add(const Sample& sample);
   /// All samples in use, in the place of those that were added.
   void countAnew(const std::vector<Sample>& samples);

@@ -12,11 +12,6 @@
 
 namespace sac {
 
-/// Joint angles that differ by at most this from those of a planned pose are at it [rad], as a hand
-/// meets it: half of the least spacing of planned poses (PosePlanOptions). Who leads a hand there
-/// has it from the message CalibrationStatus.
-inline constexpr double kPoseTolerance = 0.05;
-
 /// What is captured at one time: a pattern of a planned pose, without current where it has no coil.
 struct PlannedCapture {
   Eigen::Vector3d joint_position = Eigen::Vector3d::Zero();  ///< raw sensor angles q [rad]
@@ -35,18 +30,11 @@ enum class CaptureFlaw {
   kRest,         ///< no sample without current is held of its rest
 };
 
-/// Coils that count as excited in a sample, with their signs; one below `current_threshold` [A] is
-/// off.
-CoilPattern patternOf(const Sample& sample, double current_threshold);
-
 /// The first coil, counted from 0, that does not carry what the capture has it commanded, none for
 /// most; nothing where all do. `measured` [A], one per coil.
 std::optional<std::size_t> coilAmiss(const PlannedCapture& planned,
                                      const Eigen::VectorXd& measured,
                                      double current_threshold);
-
-/// Whether a sample was taken at planned joint angles, see kPoseTolerance.
-bool isAtPose(const Sample& sample, const Eigen::Vector3d& joint_position);
 
 /// Judges a sample that is not held yet. What acts without current is taken off the torques of its
 /// rest: where no held sample of that rest is without current, they still contain it.

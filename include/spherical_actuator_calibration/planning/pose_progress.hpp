@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "spherical_actuator_calibration/measurement/coil_pattern.hpp"
@@ -20,24 +19,25 @@ class PoseProgress {
  public:
   explicit PoseProgress(PoseToMeasure pose);
 
-  /// `current_threshold` [A]: a coil below it counts as off. Returns whether the sample counts.
+  /// `current_threshold` [A]: a coil below it counts as off. Returns whether more is told now.
   bool add(const Sample& sample, double current_threshold);
   /// As before the first sample.
   void beginAnew();
 
   const PoseToMeasure& pose() const { return pose_; }
-  /// Numbers of the samples that count, in the order in which they came.
-  const std::vector<std::uint32_t>& samples() const { return samples_; }
   /// Some sample counts: the pose was begun.
-  bool hasSample() const { return !samples_.empty(); }
+  bool hasSample() const { return has_sample_; }
+  /// Some sample that counts has a coil excited, of a pattern or not.
+  bool hasCurrent() const { return has_current_; }
   /// Patterns that no sample has, in the order of the pose; of a pattern and its opposite one.
   const std::vector<CoilPattern>& missing() const { return missing_; }
-  bool isMeasured() const { return missing_.empty() && hasSample(); }
+  bool isMeasured() const { return missing_.empty() && has_sample_; }
 
  private:
   PoseToMeasure pose_;
   std::vector<CoilPattern> missing_;
-  std::vector<std::uint32_t> samples_;
+  bool has_sample_ = false;
+  bool has_current_ = false;
 };
 
 }  // namespace sac

@@ -13,7 +13,7 @@
 #include "spherical_actuator_calibration/base/printable_text.hpp"
 #include "spherical_actuator_calibration/base/version.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
-#include "spherical_actuator_calibration/planning/planned_capture.hpp"
+#include "spherical_actuator_calibration/planning/sample_at_pose.hpp"
 #include "spherical_actuator_calibration/planning/sample_places.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
 #include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
@@ -74,6 +74,7 @@ void CalibrationNode::advertiseServices() {
   };
   advertise("capture", &CalibrationNode::capture);
   advertise("capture_planned", &CalibrationNode::capturePlanned);
+  advertise("linearity_captures", &CalibrationNode::linearityCaptures);
   advertise("list_samples", &CalibrationNode::listSamples);
   advertise("remove_sample", &CalibrationNode::removeSample);
   advertise("set_auto_capture", &CalibrationNode::setAutoCapture);

@@ -17,6 +17,7 @@
 #include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/current_tolerance.hpp"
 #include "spherical_actuator_calibration/measurement/validation_poses.hpp"
+#include "spherical_actuator_calibration/planning/linearity_plan.hpp"
 #include "spherical_actuator_calibration/planning/plan_guidance.hpp"
 #include "spherical_actuator_calibration/planning/planned_capture.hpp"
 #include "spherical_actuator_calibration/planning/planning_problem.hpp"
@@ -184,6 +185,31 @@ bool CalibrationNode::missingPatterns(msg::MissingPatterns::Request& request,
     }
     progress.countAnew(samples);
     response.poses = progressToRos(progress.poses());
+    response.success = 1;
+  } catch (const std::exception& error) {
+    response.message = printable(error.what());
+  }
+  return true;
+}
+
+bool CalibrationNode::linearityCaptures(msg::LinearityCaptures::Request& request,
+                                        msg::LinearityCaptures::Response& response) {
+  try {
+    const CalibrationSession& calibration = session_.calibration();
+    const PoseToMeasure pose = poseFromRos(request.pose, calibration.start().actuator.coils.size());
+    requireInRange("current", request.current, ValueRange::positive("A"));
+    const std::lock_guard<std::mutex> lock(session_mutex_);
+    if (!session_.linearity()) {
+      const LinearityPlan plan = linearityPlan(calibration.samples(),
+                                               pose,
+                                               request.current,
+                                               calibration.config().estimation.current_threshold);
+      response.captures = static_cast<std::uint32_t>(plan.captures);
+      for (const PlannedCapture& capture : plan.missing) {
+        response.patterns.push_back(patternToRos(capture.pattern));
+        response.currents.push_back(capture.current);
+      }
+    }
     response.success = 1;
   } catch (const std::exception& error) {
     response.message = printable(error.what());

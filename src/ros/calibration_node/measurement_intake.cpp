@@ -2,17 +2,23 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
 #include <string>
 #include <utility>
 
 #include <ros/init.h>
-#include <ros/time.h>
-#include <spherical_actuator_calibration/CoilCheck.h>
+#include <ros/this_node.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
+#include "spherical_actuator_calibration/base/error.hpp"
+#include "spherical_actuator_calibration/base/numbering.hpp"
+#include "spherical_actuator_calibration/base/printable_text.hpp"
+#include "spherical_actuator_calibration/base/text_format.hpp"
+#include "spherical_actuator_calibration/base/value_range.hpp"
 #include "spherical_actuator_calibration/measurement/carried_currents.hpp"
 #include "spherical_actuator_calibration/ros/conversion/checked_subscriber.hpp"
 #include "spherical_actuator_calibration/ros/conversion/messages.hpp"
+#include "spherical_actuator_calibration/ros/conversion/progress_conversion.hpp"
 #include "spherical_actuator_calibration/ros/conversion/time_conversion.hpp"
 #include "spherical_actuator_calibration/ros/node/periodic_thread.hpp"
 #include "spherical_actuator_calibration/ros/node/termination.hpp"
@@ -32,7 +38,6 @@ constexpr StreamLimits kLimits = {20.0, 0.5};
 constexpr double kStreamsEnded = 2.0;
 
 constexpr double kCapturePoll = 0.01;  // [s]
-constexpr double kCheckPeriod = 0.05;  // [s] of coil_check
 
 }  // namespace
 
@@ -40,6 +45,7 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
                                      const Actuator& nominal,
                                      const CalibrationConfig& config)
     : has_joints_(nominal.has_joints),
+      coils_(modelledCoils(nominal)),
       current_threshold_(config.estimation.current_threshold),
       merger_(config.samples.clock_reset),
       builder_(config.samples, modelledCoils(nominal), nominal.has_joints),
@@ -59,11 +65,11 @@ MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
   subscribe<geometry_msgs::QuaternionStamped>(orientations_);
   subscribe<geometry_msgs::Vector3Stamped>(torques_);
   subscribe<msg::CoilCurrents>(currents_);
-  subscribeCommands();
-  coil_check_ = node_.advertise<msg::CoilCheck>("coil_check", 1);
-  check_timer_ =
-      node_.createWallTimer(ros::WallDuration(kCheckPeriod),
-                            [this](const ros::WallTimerEvent& /*event*/) { checkCoils(); });
+  if (has_joints_) {
+    subscribeCommands();
+  }
+  coil_check_ = node_.advertiseService(
+      ros::this_node::getName() + "/check_coils", &MeasurementIntake::checkCoils, this);
   receiver_.start();
 }
 
@@ -91,16 +97,26 @@ void MeasurementIntake::subscribe(StreamMonitor& monitor) {
                                                    ros::TransportHints().tcpNoDelay()));
 }
 
-// They tell what currents do between samples, and are not waited for.
+// They tell what currents do between samples, and are not waited for. What a driver has set tells
+// it better than what it was asked for.
 void MeasurementIntake::subscribeCommands() {
-  const std::string topic = "coil_command";
-  const auto receive = [this](const msg::CoilCurrents::ConstPtr& message) {
-    const CurrentCommand& command = reader_.readCommand(*message);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    newest_command_ = command.current;
-    if (has_joints_) {
+  subscribeCommands("coil_command", [this](const CurrentCommand& command) {
+    if (!hears_setpoints_) {
       motion_.add(command);
     }
+  });
+  subscribeCommands("coil_setpoints", [this](const CurrentCommand& setpoints) {
+    hears_setpoints_ = true;
+    motion_.add(setpoints);
+  });
+}
+
+void MeasurementIntake::subscribeCommands(
+    const char* topic, const std::function<void(const CurrentCommand& command)>& take) {
+  const auto receive = [this, take](const msg::CoilCurrents::ConstPtr& message) {
+    const CurrentCommand& command = reader_.readCommand(*message);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    take(command);
   };
   subscribers_.push_back(subscribeChecked<msg::CoilCurrents>(node_,
                                                              topic,
@@ -168,7 +184,8 @@ std::optional<Stamp> MeasurementIntake::newest() const {
 
 Eigen::VectorXd MeasurementIntake::currents() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return newest_currents_;
+  return steadySeconds() - currents_arrived_ <= kStreamsEnded ? newest_currents_
+                                                              : Eigen::VectorXd();
 }
 
 MotionRecording MeasurementIntake::motion() {
@@ -231,8 +248,7 @@ void MeasurementIntake::build(const AnyMeasurement& measurement) {
     build(*torque, report.torques, torques_);
   } else if (const auto* current = std::get_if<CurrentMeasurement>(&measurement)) {
     follow(*current);
-    newest_currents_ = current->current;
-    currents_arrived_ = steadySeconds();
+    keepNewest(current->current);
     build(*current, report.currents, currents_);
   }
 }
@@ -262,28 +278,42 @@ void MeasurementIntake::build(const Measurement& measurement,
   monitor.accept(stampToRos(measurement.stamp));
 }
 
-// In the receiving thread: however long services take, it is told.
-void MeasurementIntake::checkCoils() {
-  if (coil_check_.getNumSubscribers() == 0) {
-    return;
+void MeasurementIntake::keepNewest(const Eigen::VectorXd& currents) {
+  if (currents.size() == static_cast<Eigen::Index>(coils_) && currents.allFinite()) {
+    newest_currents_ = currents;
+    currents_arrived_ = steadySeconds();
   }
-  Eigen::VectorXd commanded;
-  Eigen::VectorXd measured;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    commanded = newest_command_;
-    if (steadySeconds() - currents_arrived_ <= kStreamsEnded) {
-      measured = newest_currents_;
+}
+
+bool MeasurementIntake::checkCoils(msg::CheckCoils::Request& request,
+                                   msg::CheckCoils::Response& response) {
+  try {
+    Eigen::VectorXd commanded = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coils_));
+    for (const SignedCoil& coil : patternFromRos(request.coils, coils_)) {
+      requireInRange("current", request.current, ValueRange::positive("A"));
+      commanded[static_cast<Eigen::Index>(coil.coil)] = coil.sign * request.current;
     }
+    const Eigen::VectorXd measured = currents();
+    if (measured.size() == 0) {
+      throw DataError("No currents are measured: check the coil driver.");
+    }
+    response.success = 1;
+    response.measured.assign(measured.data(), measured.data() + measured.size());
+    const std::optional<std::size_t> coil = coilAmiss(commanded, measured, current_threshold_);
+    response.carried = coil ? 0 : 1;
+    if (coil) {
+      const auto j = static_cast<Eigen::Index>(*coil);
+      response.message = format(
+          "Coil %zu carries %.3f A where %.3f A are commanded: check the "
+          "amplifier and the coil driver.",
+          static_cast<std::size_t>(numberOf(*coil)),
+          measured[j],
+          commanded[j]);
+    }
+  } catch (const std::exception& error) {
+    response.message = printable(error.what());
   }
-  msg::CoilCheck message;
-  message.header.stamp = ros::Time::now();
-  message.commanded.assign(commanded.data(), commanded.data() + commanded.size());
-  message.measured.assign(measured.data(), measured.data() + measured.size());
-  message.carried =
-      static_cast<std::uint8_t>(measured.size() > 0 && measured.size() == commanded.size() &&
-                                !coilAmiss(commanded, measured, current_threshold_));
-  coil_check_.publish(message);
+  return true;
 }
 
 void MeasurementIntake::diagnoseDwells(DiagnosticStatus& status) {

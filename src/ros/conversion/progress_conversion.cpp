@@ -72,7 +72,7 @@ msg::PosePatterns poseToRos(const PoseToMeasure& pose) {
 msg::PoseProgress progressToRos(const PoseProgress& progress) {
   msg::PoseProgress message;
   message.pose = poseToRos(progress.pose());
-  message.samples = progress.samples();
+  message.has_current = static_cast<std::uint8_t>(progress.hasCurrent());
   message.has_sample = static_cast<std::uint8_t>(progress.hasSample());
   message.is_measured = static_cast<std::uint8_t>(progress.isMeasured());
   message.missing = patternsToRos(progress.missing());

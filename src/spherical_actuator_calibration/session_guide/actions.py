@@ -50,7 +50,7 @@ class _AtTheBench:
 
     def _progress(self, account):
         message = account.message(self._laboratory.readings.fresh())
-        message.carries = self._laboratory.carries()
+        message.carries = self._laboratory.carries() is True
         return message
 
 
@@ -160,11 +160,16 @@ class ExciteAction(_AtTheBench):
         course.require_current([Pose((), (pattern,))])
         account.set(stage=MeasurementProgress.EXCITING)
         course.excite(pattern)
-        begin = task.time()
+        begin = heard = task.time()
         was_there = False
         while task.time() < begin + duration:
             task.pause(POLL)
             is_there = self._laboratory.carries()
+            if is_there is None:
+                if task.time() > heard + SLOW:
+                    raise RuntimeError(f"{in_words(pattern)}: {self._laboratory.trouble()}")
+                continue
+            heard = task.time()
             if not is_there and (was_there or task.time() > begin + SLOW):
                 complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
                 raise RuntimeError(f"{in_words(pattern)}: {self._missed(goal.current, pattern)}: {complaint}.")

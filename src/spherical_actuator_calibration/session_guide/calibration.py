@@ -1,7 +1,5 @@
 """The calibration node as a session sees it: its services and latched topics, through its restarts."""
 
-import math
-
 import rospy
 from spherical_actuator_calibration.msg import (
     ActuatorParameters,
@@ -15,6 +13,7 @@ from spherical_actuator_calibration.srv import (
     Capture,
     CapturePlanned,
     DrawValidationPoses,
+    LinearityCaptures,
     ListSamples,
     LoadPlan,
     MissingPatterns,
@@ -32,6 +31,7 @@ SERVICES = {
     "capture": Capture,
     "capture_planned": CapturePlanned,
     "draw_validation_poses": DrawValidationPoses,
+    "linearity_captures": LinearityCaptures,
     "list_samples": ListSamples,
     "load_plan": LoadPlan,
     "missing_patterns": MissingPatterns,
@@ -160,7 +160,8 @@ class Calibration:
     def measured(self):
         """Samples that are held."""
         answer = self.call("list_samples")
-        return [_measured(*each) for each in zip(answer.samples, answer.places, answer.excited)]
+        told = zip(answer.places, answer.excited, answer.samples)
+        return [Measured(place, tuple(excited.coils), bool(sample.validation)) for place, excited, sample in told]
 
     def progress_of(self, poses):
         """A PoseProgress of each pose: what the samples that are held now lack there. Asked for, not listened to: what
@@ -169,6 +170,13 @@ class Calibration:
         if not answer.success:
             raise RuntimeError(answer.message)
         return answer.poses
+
+    def linearity_captures(self, pose, current):
+        """What it takes there to tell whether torque is proportional to current, for coils at so much current [A]."""
+        answer = self.call("linearity_captures", pose=message_of(pose), current=current)
+        if not answer.success:
+            raise RuntimeError(answer.message)
+        return answer
 
     def pose_tolerance(self):
         """Joint angles that differ by no more than this from a pose are at it [rad]."""
@@ -218,19 +226,6 @@ class Calibration:
         if not answer.success:
             raise PlanError(answer.message)
         return [pose_of(pose) for pose in answer.poses], answer.current
-
-
-def _measured(sample, place, excited):
-    torque = sample.torque
-    return Measured(
-        sample.id,
-        place,
-        tuple(excited.coils),
-        sample.validation,
-        max(map(abs, sample.current), default=0.0),
-        math.hypot(torque.x, torque.y, torque.z),
-        sample.dwell.to_sec(),
-    )
 
 
 def message_of(pose):

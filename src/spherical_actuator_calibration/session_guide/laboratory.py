@@ -1,32 +1,30 @@
 """The laboratory as a session sees it: where the rotor is, currents, and what moves and excites the rotor."""
 
-import math
 import threading
 import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from spherical_actuator_calibration.msg import CoilCheck, CoilCurrents
+from spherical_actuator_calibration.msg import CoilCurrents
 from spherical_actuator_calibration.wall_stamp import wall_stamp
 
+from .coil_watch import CoilWatch
 from .task import LOOK
 
 COMMAND_RATE = 20.0  # [Hz]; above the coil driver's watchdog
 FIRST = 1.0  # [s] for the first reading and currents
-LATEST = 2.0  # [s] after which what the calibration node has told of the coils says nothing any more
 
 
 class Laboratory:
-    """While it is held it commands coils and fixture, and hears from the calibration node what the coils carry; else
-    nobody here listens. `readings`: of rotor_readings, not listening."""
+    """While it is held it commands coils and fixture, and asks the calibration node what the coils carry; else nobody here
+    listens or asks. `readings`: of rotor_readings, not listening."""
 
     def __init__(self, ns, coils, readings):
         self._ns = ns
         self._coils = coils
         self.readings = readings
-        self._listeners = []
-        self._check = CoilCheck()
-        self._checked = -math.inf  # [s] when that came
+        self._is_listening = False
+        self._watch = CoilWatch(ns)
         self._driver = f"{ns[1:]}/coil_driver: output"
         self._driver_status = None
         self._command = [0.0] * coils
@@ -36,11 +34,6 @@ class Laboratory:
         self._targets = rospy.Publisher(f"{ns}/{readings.fixture}", readings.target_type, queue_size=1, latch=True)
         self._subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self._keep_diagnostics)
         self._timer = rospy.Timer(rospy.Duration(1.0 / COMMAND_RATE), self._repeat)
-
-    def _keep_check(self, message):
-        with self._lock:
-            self._check = message
-            self._checked = time.monotonic()
 
     def _keep_diagnostics(self, message):
         for status in message.status:
@@ -61,33 +54,34 @@ class Laboratory:
     def hold(self):
         """From now on currents are commanded, zero at first; others may not command then. Returns when readings and
         currents come, or do not for FIRST."""
-        if not self._listeners:
+        if not self._is_listening:
             self._listen()
         with self._lock:
             self._command = [0.0] * self._coils
+            self._watch.expect((), 0.0)
             self._is_held = True
 
     def _listen(self):
+        self._is_listening = True
         self.readings.listen()
-        check = rospy.Subscriber(self._ns + "/coil_check", CoilCheck, self._keep_check)
-        with self._lock:
-            self._listeners = [self.readings.close, check.unregister]
+        self._watch.begin()
         end = time.monotonic() + FIRST
         while time.monotonic() < end and not (self.readings.fresh() and self.currents()):
             time.sleep(LOOK)
 
     def _stop_listening(self):
         with self._lock:
-            listeners, self._listeners = self._listeners, []
-            self._checked = -math.inf
-        for close in listeners:
-            close()
+            was_listening, self._is_listening = self._is_listening, False
+        if was_listening:
+            self._watch.end()
+            self.readings.close()
 
     def excite(self, pattern, current):
         """Only the coils of a pattern: numbers from 1, negative where the current is; empty: none. Without effect
         unless the laboratory is held."""
         with self._lock:
             self._command = [0.0] * self._coils
+            self._watch.expect(pattern if self._is_held else (), current)
             for coil in pattern if self._is_held else ():
                 self._command[abs(coil) - 1] = current if coil > 0 else -current
             if self._is_held:
@@ -95,17 +89,15 @@ class Laboratory:
 
     def currents(self):
         """The last measured ones [A]; empty before the first, and while it is not held."""
-        with self._lock:
-            return tuple(self._check.measured) if self._is_told() else ()
+        return self._watch.currents()
 
     def carries(self):
-        """Whether all coils carry what is commanded now, as the calibration node judges."""
-        with self._lock:
-            is_of_now = list(self._check.commanded) == self._command
-            return self._is_told() and is_of_now and bool(self._check.carried)
+        """Whether all coils carry what is commanded now; None while the calibration node does not tell."""
+        return self._watch.carries()
 
-    def _is_told(self):
-        return time.monotonic() - self._checked <= LATEST
+    def trouble(self):
+        """Why it does not, in a sentence."""
+        return self._watch.trouble()
 
     def driver_complaint(self):
         """What the coil driver says is wrong; empty when it says nothing."""

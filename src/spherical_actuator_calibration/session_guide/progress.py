@@ -24,16 +24,12 @@ class Pose:
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """What counts of a sample here, as the calibration node tells it (list_samples): which one, the number of its place,
-    the coils that it excites, whether held out, at which current, and in which rest."""
+    """What counts of a sample here, as the calibration node tells it (list_samples): the number of its place, the coils
+    that it excites, and whether it is held out."""
 
-    number: int
     place: int
     pattern: tuple
     validation: bool
-    current: float = 0.0  # [A] the largest |current| of a coil
-    torque: float = 0.0  # [N·m] its length
-    rest: float = 0.0  # [s] when that began; later ones are newer
 
 
 def joint_stddev(joints):

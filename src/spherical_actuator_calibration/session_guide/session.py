@@ -82,9 +82,8 @@ class Session:
         current tells nothing of poles and coils: a calibration of the joint is no part of the session."""
         excites = bool(self._calibration.parameters().coils)
         measured = [one for one in self._calibration.measured() if not one.validation and (one.pattern or not excites)]
-        counted = {one.number for one in measured}
         begun = self._calibration.progress_of(interrupted) if interrupted else []
-        others = [pose for pose in begun if counted.isdisjoint(pose.samples)]
+        others = [pose for pose in begun if not (pose.has_current or not excites)]
         return len({one.place for one in measured}) + len(others)
 
     def _poses_of_files(self):

@@ -16,6 +16,7 @@
 #include <spherical_actuator_calibration/CapturePlanned.h>
 #include <spherical_actuator_calibration/Diagnose.h>
 #include <spherical_actuator_calibration/DrawValidationPoses.h>
+#include <spherical_actuator_calibration/LinearityCaptures.h>
 #include <spherical_actuator_calibration/ListSamples.h>
 #include <spherical_actuator_calibration/LoadPlan.h>
 #include <spherical_actuator_calibration/MissingPatterns.h>
@@ -87,6 +88,8 @@ class CalibrationNode {
   void adopt(const std::vector<PoseToMeasure>& poses);
   bool missingPatterns(msg::MissingPatterns::Request& request,
                        msg::MissingPatterns::Response& response);
+  bool linearityCaptures(msg::LinearityCaptures::Request& request,
+                         msg::LinearityCaptures::Response& response);
   /// What of a plan is left to be measured.
   void followPlan(const std::vector<PoseToMeasure>& poses);
   /// The plan that was followed before a restart.

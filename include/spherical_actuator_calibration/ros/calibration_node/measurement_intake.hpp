@@ -1,17 +1,19 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/publisher.h>
+#include <ros/service_server.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
-#include <ros/wall_timer.h>
+#include <spherical_actuator_calibration/CheckCoils.h>
 
 #include "spherical_actuator_calibration/actuator/actuator.hpp"
 #include "spherical_actuator_calibration/calibration/calibration_config.hpp"
@@ -28,10 +30,9 @@ namespace sac {
 
 /// Receives the four streams of measurements (joint_states, measured_orientation, measured_torque,
 /// coil_currents) in a thread of its own, so that nothing else delays them, and makes samples of
-/// them. It hears coil_command as well, for motions, and to tell whether the coils carry what they
-/// are commanded (topic coil_check). Of a rotor without joints there are three:
-/// joint_states are not waited for, and no motion is kept. All member functions may be called from
-/// any thread.
+/// them, and answers `check_coils` of its node there. For motions it hears coil_setpoints, or
+/// without them coil_command, as well. Of a rotor without joints there are three: joint_states are
+/// not waited for, and no motion is kept. All member functions may be called from any thread.
 class MeasurementIntake {
  public:
   /// Subscribes below the namespace of `node`, and receives from then on.
@@ -51,7 +52,7 @@ class MeasurementIntake {
   /// why they do not: see SampleBuilder::capture(). Never kWaiting.
   CaptureProgress waitForCapture(double duration) const;
 
-  /// Currents that were measured last [A], one per coil; none before any came.
+  /// Currents that were measured last [A], one per coil; none where none came for two seconds.
   Eigen::VectorXd currents() const;
 
   /// How the rotor moved with currents lately: see MotionMemory.
@@ -69,6 +70,9 @@ class MeasurementIntake {
   template <typename Message>
   void subscribe(StreamMonitor& monitor);
   void subscribeCommands();
+  /// `take`: a message, while mutex_ is held.
+  void subscribeCommands(const char* topic,
+                         const std::function<void(const CurrentCommand& command)>& take);
   void merge(AnyMeasurement measurement);
   // Precondition of these: mutex_ is held.
   bool haveStreamsEnded();
@@ -83,14 +87,17 @@ class MeasurementIntake {
              const StreamStatistics& statistics,
              StreamMonitor& monitor);
 
-  /// Publishes coil_check, if somebody listens.
-  void checkCoils();
+  /// In the receiving thread: however long other services take, it answers.
+  bool checkCoils(msg::CheckCoils::Request& request, msg::CheckCoils::Response& response);
 
+  /// Of the right number and finite; others are refused elsewhere.
+  void keepNewest(const Eigen::VectorXd& currents);
   CaptureProgress capture(Stamp from, double duration) const;
   std::optional<Stamp> newest() const;
   void diagnoseDwells(DiagnosticStatus& status);
 
   const bool has_joints_;
+  const std::size_t coils_;
   const double current_threshold_;  ///< [A]
   std::atomic<std::uint64_t> received_{0};
 
@@ -99,7 +106,7 @@ class MeasurementIntake {
   SampleBuilder builder_;
   Eigen::VectorXd newest_currents_;
   double currents_arrived_ = 0.0;  ///< when these came, by a clock that never jumps [s]
-  Eigen::VectorXd newest_command_;
+  bool hears_setpoints_ = false;
   MotionMemory motion_;
   MotionSlicer slicer_;
   ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
@@ -115,8 +122,7 @@ class MeasurementIntake {
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   std::vector<ros::Subscriber> subscribers_;
-  ros::Publisher coil_check_;
-  ros::WallTimer check_timer_;
+  ros::ServiceServer coil_check_;
   ros::AsyncSpinner receiver_;
 };
 
