@@ -95,7 +95,7 @@ std::string alignmentInWords(const ResidualAlignment& alignment) {
   return format(
       "What is left over moves the parameters %.2f times as far as noise of single readings would "
       "(told from %.2f times on), and standard deviations count that: currents step between their "
-      "readings, a clock jumps, or something is not modelled. Record coil_command, read currents "
+      "readings, a clock jumps, or something is not modelled. Record coil_setpoints, read currents "
       "more often than they are set, and check clocks and joint sensors.",
       std::sqrt(alignment.ratio),
       std::sqrt(alignment.limit()));

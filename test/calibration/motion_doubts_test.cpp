@@ -29,7 +29,7 @@ TEST(MotionDoubts, SayWhatToDoWhereResidualsLeanOnTheParameters) {
   found.alignment = {1.44, 0.05};
   expectOne(found, "moves the parameters 1.20 times as far");
   expectOne(found, "(told from 1.10 times on)");
-  expectOne(found, "Record coil_command");
+  expectOne(found, "Record coil_setpoints");
 }
 
 TEST(MotionDoubts, SayThatTheTrackersNoiseIsNotWhite) {
