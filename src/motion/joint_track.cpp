@@ -1,6 +1,7 @@
 #include "joint_track.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -80,7 +81,7 @@ std::optional<TrackPoint> JointTrack::begun(double time, std::size_t count) cons
 }
 
 std::optional<TrackPoint> JointTrack::smoothAt(double time, double length) const {
-  const auto around = static_cast<std::size_t>(length / step_ + 0.5);
+  const auto around = static_cast<std::size_t>(std::lround(length / step_));
   const std::size_t count = std::min(kMostShares, around);
   if (count <= kStencil) {
     return at(time);

@@ -3,6 +3,7 @@
 refused, and nothing measured twice; coils excited for a look; plans and files."""
 
 import math
+import os
 import pathlib
 import signal
 import subprocess
@@ -197,7 +198,21 @@ class SessionEngine(LabCase):
         self.time_to_zero()
         self.send(excite, msg.ExciteGoal(coils=[25], current=1.5))
         self.assertIn("numbers from 1 to 24", self.result(excite, GoalStatus.ABORTED).message)
+        self.driver_falls_silent(excite)
         self.engine_ends(excite)
+
+    def driver_falls_silent(self, excite):
+        """Nobody knows then what flows: no look at coils succeeds."""
+        self.send(excite, msg.ExciteGoal(coils=[3], current=1.5, duration=4.0))
+        wait_for(lambda: self.feedback and self.feedback.progress.carries, "an excited coil")
+        driver = self.lab.process_of("coil_driver")
+        os.kill(driver, signal.SIGSTOP)
+        try:
+            message = self.result(excite, GoalStatus.ABORTED).message
+        finally:
+            os.kill(driver, signal.SIGCONT)
+        self.assertEqual(message, "Coil 3: No currents are measured: check the coil driver.")
+        wait_for(self.lab.is_without_current, "zero currents")
 
     def strangers_change_nothing(self):
         """Whose commands the driver refuses."""
@@ -224,7 +239,7 @@ class SessionEngine(LabCase):
         wait_for(lambda: self.is_judged(before), "another node that judges")
         wait_for(lambda: self.feedback.progress.carries, "excited coils")
         answer = self.client.call("check_coils", coils=[3], current=1.5)
-        self.assertRegex(answer.message, r"^Coil 7 carries -1\.\d+ A where 0\.000 A are commanded")
+        self.assertRegex(answer.message, r"^Coil 7 carries -1\.\d+ A where 0 A are commanded")
         for coils, current in (([25], 1.0), ([3], math.nan), ([3], math.inf), ([3], 0.0)):
             answer = self.client.call("check_coils", coils=coils, current=current)
             self.assertFalse(answer.success or answer.carried)

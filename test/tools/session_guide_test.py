@@ -112,10 +112,13 @@ class CarriedCurrents(unittest.TestCase):
         self.watch = coil_watch.CoilWatch("/actuator")
         self.addCleanup(self.watch.end)
 
-    def becomes(self, carried, currents):
+    def becomes(self, carried, currents, trouble=coil_watch.SILENT):
+        def told():
+            return self.watch.carries(), self.watch.currents(), self.watch.trouble()
+
         end = time.monotonic() + 30.0
-        while (self.watch.carries(), self.watch.currents()) != (carried, currents):
-            self.assertLess(time.monotonic(), end, (self.watch.carries(), self.watch.currents()))
+        while told() != (carried, currents, trouble):
+            self.assertLess(time.monotonic(), end, told())
             time.sleep(0.001)
 
     def test_are_those_of_the_command_in_force(self):
@@ -126,10 +129,12 @@ class CarriedCurrents(unittest.TestCase):
         self.assertEqual(self.judge.asked[-1], ((1, -3), 1.5))
         self.judge.answer = CheckCoilsResponse(success=True, carried=False, measured=[0.0, 0.1])
         self.becomes(False, (0.0, 0.1))
+        self.judge.answer = CheckCoilsResponse(message="No currents are measured.")
+        self.becomes(None, (), "No currents are measured.")
         self.judge.answer = None
         self.watch.expect((2,), 1.5)
         self.assertIsNone(self.watch.carries())  # that was of another command
-        self.becomes(None, ())
+        self.becomes(None, (), coil_watch.SILENT)
 
     def test_are_not_known_any_more_at_the_end(self):
         self.watch.begin()

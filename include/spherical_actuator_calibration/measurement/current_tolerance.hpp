@@ -6,7 +6,7 @@
 namespace sac {
 
 /// How near a measured current is to the one commanded where the coil carries it: the service
-/// capture_planned judges by it for a capture, the message CoilCheck for who looks at coils.
+/// capture_planned judges by it for a capture, check_coils for who looks at coils.
 struct CurrentTolerance {
   double absolute = 0.0;  ///< [A]
   double share = 0.0;     ///< of the command, where that is more [1]

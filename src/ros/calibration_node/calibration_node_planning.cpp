@@ -108,7 +108,13 @@ bool CalibrationNode::capturePlanned(msg::CapturePlanned::Request& request,
     const double threshold = calibration.config().estimation.current_threshold;
     const PlannedCapture planned = plannedCapture(
         request, calibration.start().actuator.coils.size(), excitationRange(calibration));
-    if (const auto coil = coilAmiss(planned, intake_.currents(), threshold)) {
+    const Eigen::VectorXd measured = intake_.currents();
+    if (!planned.pattern.empty() && measured.size() == 0) {
+      response.flaw = flawName(CaptureFlaw::kExcitation);
+      response.message = "No currents are measured: check the coil driver.";
+      return true;
+    }
+    if (const auto coil = coilAmiss(planned, measured, threshold)) {
       response.flaw = flawName(CaptureFlaw::kExcitation);
       response.message = amissInWords(planned, *coil);
       return true;
@@ -197,7 +203,10 @@ bool CalibrationNode::linearityCaptures(msg::LinearityCaptures::Request& request
   try {
     const CalibrationSession& calibration = session_.calibration();
     const PoseToMeasure pose = poseFromRos(request.pose, calibration.start().actuator.coils.size());
-    requireInRange("current", request.current, ValueRange::positive("A"));
+    requireInWorkspace(pose.joint_position, calibration.start().actuator.workspace);
+    if (!pose.patterns.empty()) {
+      requireInRange("current", request.current, excitationRange(calibration));
+    }
     const std::lock_guard<std::mutex> lock(session_mutex_);
     if (!session_.linearity()) {
       const LinearityPlan plan = linearityPlan(calibration.samples(),

@@ -39,6 +39,9 @@ constexpr double kStreamsEnded = 2.0;
 
 constexpr double kCapturePoll = 0.01;  // [s]
 
+/// Currents are those of now for so long; drivers measure them at 20 Hz and more [s].
+constexpr double kLatest = 1.0;
+
 }  // namespace
 
 MeasurementIntake::MeasurementIntake(const ros::NodeHandle& node,
@@ -101,13 +104,15 @@ void MeasurementIntake::subscribe(StreamMonitor& monitor) {
 // it better than what it was asked for.
 void MeasurementIntake::subscribeCommands() {
   subscribeCommands("coil_command", [this](const CurrentCommand& command) {
-    if (!hears_setpoints_) {
+    if (steadySeconds() - setpoints_arrived_ > kStreamsEnded) {
       motion_.add(command);
     }
   });
   subscribeCommands("coil_setpoints", [this](const CurrentCommand& setpoints) {
-    hears_setpoints_ = true;
-    motion_.add(setpoints);
+    if (isOfCoils(setpoints.current)) {
+      setpoints_arrived_ = steadySeconds();
+      motion_.add(setpoints);
+    }
   });
 }
 
@@ -184,8 +189,7 @@ std::optional<Stamp> MeasurementIntake::newest() const {
 
 Eigen::VectorXd MeasurementIntake::currents() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return steadySeconds() - currents_arrived_ <= kStreamsEnded ? newest_currents_
-                                                              : Eigen::VectorXd();
+  return steadySeconds() - currents_arrived_ <= kLatest ? newest_currents_ : Eigen::VectorXd();
 }
 
 MotionRecording MeasurementIntake::motion() {
@@ -278,8 +282,12 @@ void MeasurementIntake::build(const Measurement& measurement,
   monitor.accept(stampToRos(measurement.stamp));
 }
 
+bool MeasurementIntake::isOfCoils(const Eigen::VectorXd& currents) const {
+  return currents.size() == static_cast<Eigen::Index>(coils_) && currents.allFinite();
+}
+
 void MeasurementIntake::keepNewest(const Eigen::VectorXd& currents) {
-  if (currents.size() == static_cast<Eigen::Index>(coils_) && currents.allFinite()) {
+  if (isOfCoils(currents)) {
     newest_currents_ = currents;
     currents_arrived_ = steadySeconds();
   }
@@ -304,7 +312,7 @@ bool MeasurementIntake::checkCoils(msg::CheckCoils::Request& request,
     if (coil) {
       const auto j = static_cast<Eigen::Index>(*coil);
       response.message = format(
-          "Coil %zu carries %.3f A where %.3f A are commanded: check the "
+          "Coil %zu carries %.4g A where %.4g A are commanded: check the "
           "amplifier and the coil driver.",
           static_cast<std::size_t>(numberOf(*coil)),
           measured[j],

@@ -17,6 +17,8 @@ from .session import Session
 from .wanted_pose import WantedPose
 
 EXCITATION = 5.0  # [s] where none is asked for
+SILENCE = 3.0  # [s] in which a calibration node is started again
+UNKNOWN = 0.5  # [s] for which it may be unknown at the end what coils carry
 VALIDATING = "validating"
 
 
@@ -163,21 +165,26 @@ class ExciteAction(_AtTheBench):
         begin = heard = task.time()
         was_there = False
         while task.time() < begin + duration:
-            task.pause(POLL)
+            task.pause(min(POLL, duration))
             is_there = self._laboratory.carries()
             if is_there is None:
-                if task.time() > heard + SLOW:
-                    raise RuntimeError(f"{in_words(pattern)}: {self._laboratory.trouble()}")
+                self._require_answer(pattern, task.time() - heard, SILENCE)
                 continue
             heard = task.time()
             if not is_there and (was_there or task.time() > begin + SLOW):
                 complaint = self._laboratory.driver_complaint() or "the coil driver does not say why"
                 raise RuntimeError(f"{in_words(pattern)}: {self._missed(goal.current, pattern)}: {complaint}.")
             was_there = was_there or is_there
+        self._require_answer(pattern, task.time() - heard, UNKNOWN)
         result = msg.ExciteResult(success=was_there, measured=self._laboratory.currents())
         flowed = "excited" if was_there else self._missed(goal.current, pattern)
         result.message = f"{in_words(pattern)}: {flowed}; the currents are zero again."
         return was_there, result
+
+    def _require_answer(self, pattern, silence, most):
+        """Raises RuntimeError where nobody has told for more than `most` [s] what the coils carry."""
+        if silence > most:
+            raise RuntimeError(f"{in_words(pattern)}: {self._laboratory.trouble()}")
 
     def _flowing(self, pattern):
         """What the coils carry, in words."""

@@ -7,9 +7,9 @@ import time
 import rospy
 from spherical_actuator_calibration.srv import CheckCoils
 
-PERIOD = 0.05  # [s] between two questions
+PERIOD = 0.02  # [s] between two questions
 SILENT = "The calibration node does not answer, which tells what coils carry: start it again."
-LATEST = 2.0  # [s] after which an answer says nothing any more
+LATEST = 1.0  # [s] after which an answer says nothing any more
 
 
 class CoilWatch:
@@ -18,7 +18,7 @@ class CoilWatch:
     def __init__(self, ns):
         self._service = f"{ns}/calibration/check_coils"
         self._lock = threading.Lock()
-        self._commanded = ((), 0.0)
+        self._commanded = (0, (), 0.0)  # with a number: the same may be commanded once more
         self._answer = None
         self._asked = None  # what that was commanded then
         self._told = -math.inf  # [s] when it came
@@ -27,6 +27,8 @@ class CoilWatch:
 
     def begin(self):
         """Asks from now on."""
+        with self._lock:
+            self._trouble = SILENT
         self._ended = threading.Event()
         threading.Thread(target=self._run, args=(self._ended,), daemon=True).start()
 
@@ -40,7 +42,9 @@ class CoilWatch:
     def expect(self, pattern, current):
         """What is commanded from now on: coils counted from 1, negative where the current [A] is."""
         with self._lock:
-            self._commanded = (tuple(pattern), current)
+            number, *before = self._commanded
+            if before != [tuple(pattern), current]:
+                self._commanded = (number + 1, tuple(pattern), current)
 
     def carries(self):
         """Whether all coils carry what is commanded now; None while the node does not tell."""
@@ -56,7 +60,7 @@ class CoilWatch:
     def trouble(self):
         """Why it is not told whether coils carry what is commanded, in a sentence."""
         with self._lock:
-            return self._trouble
+            return self._trouble or SILENT
 
     def _is_told(self):
         return time.monotonic() - self._told <= LATEST
@@ -68,15 +72,17 @@ class CoilWatch:
                 asked = self._commanded
             try:
                 node = node or rospy.ServiceProxy(self._service, CheckCoils, persistent=True)
-                answer = node(coils=list(asked[0]), current=asked[1])
+                answer = node(coils=list(asked[1]), current=asked[2])
             except (rospy.ServiceException, rospy.ROSException):  # it is gone, or begins
-                node = None
-                with self._lock:
-                    self._trouble = SILENT
-                continue
-            with self._lock:
-                self._trouble = answer.message
-                if answer.success and not ended.is_set():
-                    self._answer, self._asked, self._told = answer, asked, time.monotonic()
+                node = answer = None
+            self._keep(answer, asked, ended)
         if node is not None:
             node.close()
+
+    def _keep(self, answer, asked, ended):
+        with self._lock:
+            if ended.is_set():
+                return
+            self._trouble = answer.message if answer else SILENT
+            if answer and answer.success:
+                self._answer, self._asked, self._told = answer, asked, time.monotonic()

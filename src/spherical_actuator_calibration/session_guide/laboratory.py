@@ -54,7 +54,9 @@ class Laboratory:
     def hold(self):
         """From now on currents are commanded, zero at first; others may not command then. Returns when readings and
         currents come, or do not for FIRST."""
-        if not self._is_listening:
+        with self._lock:
+            listens, self._is_listening = self._is_listening, True
+        if not listens:
             self._listen()
         with self._lock:
             self._command = [0.0] * self._coils
@@ -62,9 +64,13 @@ class Laboratory:
             self._is_held = True
 
     def _listen(self):
-        self._is_listening = True
         self.readings.listen()
         self._watch.begin()
+        with self._lock:
+            was_released = not self._is_listening
+        if was_released:  # meanwhile
+            self._watch.end()
+            self.readings.close()
         end = time.monotonic() + FIRST
         while time.monotonic() < end and not (self.readings.fresh() and self.currents()):
             time.sleep(LOOK)

@@ -52,7 +52,7 @@ class MeasurementIntake {
   /// why they do not: see SampleBuilder::capture(). Never kWaiting.
   CaptureProgress waitForCapture(double duration) const;
 
-  /// Currents that were measured last [A], one per coil; none where none came for two seconds.
+  /// Currents that were measured last [A], one per coil; none where none came for a second.
   Eigen::VectorXd currents() const;
 
   /// How the rotor moved with currents lately: see MotionMemory.
@@ -90,7 +90,8 @@ class MeasurementIntake {
   /// In the receiving thread: however long other services take, it answers.
   bool checkCoils(msg::CheckCoils::Request& request, msg::CheckCoils::Response& response);
 
-  /// Of the right number and finite; others are refused elsewhere.
+  /// Whether there is one for each coil, and all are finite.
+  bool isOfCoils(const Eigen::VectorXd& currents) const;
   void keepNewest(const Eigen::VectorXd& currents);
   CaptureProgress capture(Stamp from, double duration) const;
   std::optional<Stamp> newest() const;
@@ -105,8 +106,8 @@ class MeasurementIntake {
   StreamMerger merger_;
   SampleBuilder builder_;
   Eigen::VectorXd newest_currents_;
-  double currents_arrived_ = 0.0;  ///< when these came, by a clock that never jumps [s]
-  bool hears_setpoints_ = false;
+  double currents_arrived_ = -1e9;   ///< when these came, by a clock that never jumps [s]
+  double setpoints_arrived_ = -1e9;  ///< by the same clock [s]
   MotionMemory motion_;
   MotionSlicer slicer_;
   ArrivalWatch arrivals_{0, 0.0};  ///< by the calls of takeSamples()
