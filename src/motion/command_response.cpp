@@ -26,19 +26,23 @@ class Agreement {
         earlier_(followed_),
         before_(followed_),
         left_before_(followed_) {
-    for (const SampleRange& range : {comparison.before(), comparison.commanded()}) {
+    const auto add_all = [&](const SampleRange& range) {
       comparison.visit(
           delay, lag, range, [this](const Eigen::ArrayXd& change, const Eigen::ArrayXd& expected) {
             add(change, expected);
           });
-    }
+    };
+    add_all(comparison.commanded());
     const double usual = left_.sum() / count_;
-    comparison.visit(delay,
-                     lag,
-                     comparison.after(),
-                     [this, usual](const Eigen::ArrayXd& change, const Eigen::ArrayXd& /*none*/) {
-                       addAfter(change.square().sum() > kForeign * usual);
-                     });
+    for (const SampleRange& range : {comparison.before(), comparison.after()}) {
+      Beside& beside = range.begin == 0 ? before_first_ : after_last_;
+      comparison.visit(
+          delay, lag, range, [&](const Eigen::ArrayXd& change, const Eigen::ArrayXd& /*none*/) {
+            beside.samples += 1.0;
+            beside.changes += change.square().sum() > kForeign * usual ? 1.0 : 0.0;
+          });
+    }
+    add_all(comparison.before());
   }
 
   /// Whether all coils follow: one that does not would act at another time than the others.
@@ -48,8 +52,11 @@ class Agreement {
     constexpr double kSilent = 1e-12;  // [A²] in all
     constexpr double kMostMisfit = 0.15;
     const double usual = medianOf(std::vector<double>(left_.data(), left_.data() + left_.size()));
-    const bool ends_early = after_ > 0.0 && changes_after_ > kTolerance * after_;
-    if (!(followed_.sum() > kSilent) || misfit() > kMostMisfit || ends_early) {
+    const auto are_missing = [](const Beside& beside) {
+      return beside.samples > 0.0 && beside.changes > kTolerance * beside.samples;
+    };
+    if (!(followed_.sum() > kSilent) || misfit() > kMostMisfit || are_missing(before_first_) ||
+        are_missing(after_last_)) {
       return false;
     }
     for (Eigen::Index coil = 0; coil < left_.size(); ++coil) {
@@ -96,16 +103,17 @@ class Agreement {
     left_before_ = left;
   }
 
-  /// Of what came after the last command.
-  void addAfter(bool has_changed) {
-    after_ += 1.0;
-    changes_after_ += has_changed ? 1.0 : 0.0;
-  }
+  /// Before the first command, or after the last: many changes there are of commands that are
+  /// missing.
+  struct Beside {
+    double samples = 0.0;
+    double changes = 0.0;  ///< samples at which currents change
+  };
 
   static constexpr double kForeign = 3.0;  ///< times what is left of the others
 
-  double after_ = 0.0;          ///< samples after the last command
-  double changes_after_ = 0.0;  ///< those at which currents still change
+  Beside before_first_;
+  Beside after_last_;
   // Sums over all changes, coil by coil.
   Eigen::ArrayXd followed_;  ///< squares of what is expected
   Eigen::ArrayXd common_;    ///< products with what was measured

@@ -12,7 +12,7 @@ std::size_t nodeStride(const MotionSpan& span) {
 void NodeCurrents::gather(std::size_t row, std::size_t first, std::size_t last) {
   const StampTimes& times = span_->current_times;
   const auto& currents = span_->streams->currents;
-  const std::size_t reach = 2 * every_ - 1;
+  const std::size_t reach = 3 * every_ - 1;
   const auto at = [&](std::size_t n) {
     return currents.row(static_cast<Eigen::Index>(n)).transpose().cast<double>();
   };
@@ -37,7 +37,7 @@ void NodeCurrents::gather(std::size_t row, std::size_t first, std::size_t last) 
   bend_ /= step_;
 }
 
-/// Of Lagrange's polynomial through the four nodes around a reading; near the ends of a stream,
+/// Of Lagrange's polynomial through the six nodes around a reading; near the ends of a stream,
 /// where the test functions are next to nothing, through two.
 double NodeCurrents::shareOf(std::size_t reading, std::size_t node) const {
   const StampTimes& times = span_->current_times;
@@ -45,9 +45,9 @@ double NodeCurrents::shareOf(std::size_t reading, std::size_t node) const {
   if (reading == below) {
     return reading == node ? 1.0 : 0.0;
   }
-  const bool is_inside = below >= every_ && below + 2 * every_ < times.size();
-  const std::size_t begin = is_inside ? below - every_ : below;
-  const std::size_t end = std::min(times.size(), below + (is_inside ? 3 : 2) * every_);
+  const bool is_inside = below >= 2 * every_ && below + 3 * every_ < times.size();
+  const std::size_t begin = is_inside ? below - 2 * every_ : below;
+  const std::size_t end = std::min(times.size(), below + (is_inside ? 4 : 2) * every_);
   if (node < begin || node >= end) {
     return 0.0;
   }

@@ -10,8 +10,9 @@
 namespace sac {
 
 /// Currents of many readings as those of few, the nodes: every so manieth of them. Between nodes
-/// the torque of an ampere, times a test function, is a cubic of time, near enough; so what a
-/// reading counts for goes to the four nodes around it, and only there the torque is asked for.
+/// the torque of an ampere, times a test function, is a polynomial of time of fifth degree, near
+/// enough; so what a reading counts for goes to the six nodes around it, and only there the torque
+/// is asked for.
 class NodeCurrents {
  public:
   /// Keeps a reference. `every`: of so many readings one is a node, at least 2.

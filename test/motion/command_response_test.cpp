@@ -151,6 +151,11 @@ TEST(CommandResponse, IsNoneWhereCurrentsDoSomethingElse) {
   commands.currents =
       StreamCurrents(commands.currents.matrix().topRows(static_cast<Eigen::Index>(half)));
   EXPECT_FALSE(is_told(commands));
+  commands = commanded();  // recorded from then on
+  commands.stamps = {commands.stamps.begin() + half, commands.stamps.end()};
+  commands.currents = StreamCurrents(
+      commands.currents.matrix().bottomRows(static_cast<Eigen::Index>(commands.stamps.size())));
+  EXPECT_FALSE(is_told(commands));
   EXPECT_FALSE(is_told({}));
 }
 

@@ -101,6 +101,29 @@ bool RecordedTopics::isRecorded(const BagGroup& group, TopicRole role) const {
   });
 }
 
+bool RecordedTopics::covers(const BagGroup& group, TopicRole role, TopicRole other) const {
+  const ros::Duration beside(1.0);
+  const std::vector<ros::Time> own = endsOf(group, role);
+  const std::vector<ros::Time> others = endsOf(group, other);
+  return !own.empty() && (others.empty() || (own.front() <= others.front() + beside &&
+                                             own.back() + beside >= others.back()));
+}
+
+/// Times of the first and the last message; nothing where there is none.
+std::vector<ros::Time> RecordedTopics::endsOf(const BagGroup& group, TopicRole role) const {
+  std::vector<ros::Time> ends;
+  for (const BagFile* file : group) {
+    for (const BagTopic& topic : file->topics) {
+      if (topic.name == name(role)) {
+        ends.push_back(topic.begin);
+        ends.push_back(topic.end);
+      }
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
 void RecordedTopics::requireTypes(const BagFile& file) const {
   for (const BagTopic& topic : file.topics) {
     const auto found = std::find(names_.begin(), names_.end(), topic.name);

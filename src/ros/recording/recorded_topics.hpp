@@ -35,6 +35,8 @@ class RecordedTopics {
   std::vector<std::string> names(const std::vector<TopicRole>& roles) const;
 
   bool isRecorded(const BagGroup& group, TopicRole role) const;
+  /// Whether a topic is recorded for as long as another one, which need not be recorded at all.
+  bool covers(const BagGroup& group, TopicRole role, TopicRole other) const;
 
   /// Throws DataError, naming file, topic and type, when a topic has another type than it must.
   void requireTypes(const BagFile& file) const;
@@ -45,6 +47,8 @@ class RecordedTopics {
   void requireStreams(const BagGroup& group, bool has_joints, bool takes_motion) const;
 
  private:
+  std::vector<ros::Time> endsOf(const BagGroup& group, TopicRole role) const;
+
   std::string prefix_;
   std::array<std::string, kTopicRoles> names_;
 };

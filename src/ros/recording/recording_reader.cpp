@@ -123,7 +123,7 @@ class Reader {
 
   std::vector<TopicRole> rolesToRead(const BagGroup& group, bool from_samples) const {
     // What a driver has set tells what currents do better than what it was asked for.
-    const TopicRole commands = topics_.isRecorded(group, TopicRole::kSetpoints)
+    const TopicRole commands = topics_.covers(group, TopicRole::kSetpoints, TopicRole::kCommands)
                                    ? TopicRole::kSetpoints
                                    : TopicRole::kCommands;
     if (from_samples && options_.motion == MotionUse::kAlways) {
