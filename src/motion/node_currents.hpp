@@ -37,8 +37,7 @@ class NodeCurrents {
   Eigen::VectorXd bend_;
 };
 
-/// Of so many readings of the currents of a span one may be a node: three milliseconds apart at
-/// most.
+/// Of so many readings of the currents of a span one may be a node: two milliseconds apart at most.
 std::size_t nodeStride(const MotionSpan& span);
 
 }  // namespace sac

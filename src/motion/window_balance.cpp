@@ -230,7 +230,7 @@ void BalanceEvaluator::addNodes(const MotionSpan& span,
       span.track.time(window_.first), span.track.time(window_.last), options_.test_functions);
   const CurrentRange range(span, window_, point.currentDelay(), 1);
   const std::size_t first = (range.first + every - 1) / every;
-  const std::size_t count = (range.last + every - 1) / every - first;
+  const std::size_t count = range.size() == 0 ? 0 : (range.last + every - 1) / every - first;
   NodeCurrents nodes(span, every);
   for (std::size_t n = beginOf(count, part); n < endOf(count, part); ++n) {
     const std::size_t row = (first + n) * every;

@@ -12,6 +12,7 @@ namespace {
 
 /// Of the full current.
 constexpr std::array<double, 3> kShares = {1.0, 0.5, -1.0};
+constexpr double kLeastShare = 0.5;
 
 bool isAlone(const CoilPattern& pattern) {
   return pattern.size() == 1;
@@ -39,9 +40,10 @@ const Sample* strongestOf(const std::vector<const Sample*>& there, double thresh
 /// Whether a sample is of the pattern, and nearly at its current.
 bool serves(const Sample& sample, const PlannedCapture& planned, double threshold) {
   constexpr double kNear = 0.2;  // of the current
-  const double current = sample.current.cwiseAbs().maxCoeff();
+  // One that has no currents is of no pattern.
   return patternOf(sample, threshold) == planned.pattern &&
-         std::abs(current - planned.current) <= kNear * planned.current;
+         std::abs(sample.current.cwiseAbs().maxCoeff() - planned.current) <=
+             kNear * planned.current;
 }
 
 }  // namespace
@@ -51,12 +53,8 @@ LinearityPlan linearityPlan(const std::vector<Sample>& held,
                             double current,
                             double current_threshold) {
   LinearityPlan plan;
-  const double least =
-      std::abs(*std::min_element(kShares.begin(), kShares.end(), [](double a, double b) {
-        return std::abs(a) < std::abs(b);
-      }));
   if (pose.validation || pose.patterns.empty() ||
-      least * current < leastExcitation(current_threshold)) {
+      kLeastShare * current < leastExcitation(current_threshold)) {
     return plan;
   }
   const bool has_full = std::any_of(pose.patterns.begin(), pose.patterns.end(), isAlone);

@@ -9,15 +9,20 @@
 namespace sac {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSlow = 0.02;  // [s]
+constexpr int kCurrents = 0;    // address
+
+CurrentAmplifierOptions shippedOptions() {
+  return readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml"));
+}
+
 // Stamps of measured currents follow from it: what else the beat asks for must not shift them.
 TEST(CoilDriverReading, KnowsWhenItWas) {
-  constexpr double kSlow = 0.02;
-  constexpr int kCurrents = 0;
   constexpr int kTrip = 100;
-  using Clock = std::chrono::steady_clock;
   ScriptedTransport bus;
-  CoilDriver driver(
-      readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")), 24, bus);
+  CoilDriver driver(shippedOptions(), 24, bus);
   driver.beat(100.0);
   bus.setSlow(kCurrents, kSlow);
   const Clock::time_point begin = Clock::now();
@@ -35,12 +40,8 @@ TEST(CoilDriverReading, KnowsWhenItWas) {
 
 // Stamps of setpoints follow from it.
 TEST(CoilDriverReading, KnowsWhenItHasSet) {
-  constexpr double kSlow = 0.02;
-  constexpr int kCurrents = 0;
-  using Clock = std::chrono::steady_clock;
   ScriptedTransport bus;
-  CoilDriver driver(
-      readCurrentAmplifierOptions(YamlMap::load(SOURCE_DIR "/config/coil_driver.yaml")), 24, bus);
+  CoilDriver driver(shippedOptions(), 24, bus);
   driver.beat(100.0);
   bus.setSlow(kCurrents, kSlow);
   const Clock::time_point begin = Clock::now();

@@ -119,6 +119,24 @@ TEST_F(WindowBalanceTest, AtNodesIsThatOfAllCurrents) {
   }
 }
 
+// As where a delay that is being looked for has gone astray.
+TEST_F(WindowBalanceTest, AtNodesTakesNoCurrentsWhereNoneAre) {
+  const CalibrationModel model = WindowBalanceTest::model({});
+  const MotionPlaces places(model.space());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model.space().size());
+  BalanceEvaluator evaluator(options_, Eigen::Vector3d::Constant(1e-5));
+  for (const double delay : {-50.0, 50.0}) {
+    x[places.current_delay] =
+        delay / model.space().effects().scale(places.current_delay - model.space().effect());
+    WindowBalance all;
+    WindowBalance nodes;
+    const MotionPoint point(model, places, x);
+    evaluator.evaluate(spans_[0], windows_[1], point, {false, 1, false}, all);
+    evaluator.evaluate(spans_[0], windows_[1], point, {false, 1, true}, nodes);
+    EXPECT_EQ(nodes.residual, all.residual);
+  }
+}
+
 TEST_F(WindowBalanceTest, IsZeroForTheRotorThatMoved) {
   const CalibrationModel model = WindowBalanceTest::model({});
   const MotionPlaces places(model.space());

@@ -103,7 +103,10 @@ TEST(LinearityPlan, HeedsNoSampleElsewhereAndNoneThatJudges) {
   Sample judging = excitedSample({{1, 1}}, 0.9);
   judging.validation = true;
   std::vector<Sample> held = measuredSingly();
-  held.insert(held.begin(), {elsewhere, judging});
+  Sample without_currents;  // of the joint alone, in the same rest
+  without_currents.joint_position = linearityPlace();
+  without_currents.dwell = kLinearityRest;
+  held.insert(held.begin(), {elsewhere, judging, without_currents});
   EXPECT_EQ(missingInWords(held, singlyExcited()),
             (CaptureTexts{"+5 at 1.000000", "-5 at 2.000000"}));
   EXPECT_TRUE(missingInWords({elsewhere, judging}, singlyExcited()).empty());
